@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file AdvancingFrontTetrahedralizer.h
+ * @brief Stage 3: grows the Delaunay tetrahedralization of each region from its boundary.
+ *
+ * Method (thesis 6.4):
+ *  1. test that each triangle of the surface is strongly Delaunay; turn the diagonals inside of
+ *     cocircular facets to the pulling rule;
+ *  2. take a side of a triangle of each enclosed region as seed and put it into the front;
+ *  3. take a triangle from the front; find the point in front of it with the smallest lambda
+ *     (Crit. 6.2) in the point octree, exactly, and all points cospherical with them: the cell;
+ *  4. triangulate the cell by pulling its lowest numbered point, its polygonal faces from theirs;
+ *     each triangle of its hull either meets its like in the front (Lemma 6.1), or is a triangle of
+ *     the surface, where the front stops, or joins the front;
+ *  5. until the front is empty (Lemma 6.2).
+ *
+ * Regions: with labels a side of a triangle belongs to its label, and sides labelled
+ * OutsideRegion are not meshed. Without labels every enclosed segment gets an id from 0 on, and the
+ * unbounded outside is not meshed. With seeds only the regions that hold one are meshed.
+ *
+ * Guarantees: tetrahedra are positively oriented, none is flat; their circumspheres are empty of
+ * all points (exact); the mesh depends on the numbering of the points only. Points keep their
+ * coordinates; Boundary is the surface with diagonals of cocircular facets turned.
+ * Failure: InvalidInput names the triangles that are not Delaunay, that contradict each other's
+ * labels, or that enclose nothing. Aborted leaves a valid partial mesh and its front.
+ */
+#ifndef cdmAdvancingFrontTetrahedralizer_h
+#define cdmAdvancingFrontTetrahedralizer_h
+
+#include "ExecutionContext.h"
+#include "Status.h"
+#include "TetMesh.h"
+#include "TriangleMesh.h"
+
+namespace cdm
+{
+struct RegionSeed
+{
+  Vec3 Position;
+  Id Region = 0;
+};
+
+struct AdvancingFrontTetrahedralizerOptions
+{
+  /**
+   * Where the surface is open, close the mesh with triangles on the convex hull of the points
+   * (thesis 6.4.2); otherwise an open region is an error.
+   */
+  bool CloseOpenBoundary = false;
+  /** Stop after this many tetrahedra and leave the front as it is. 0: no limit. */
+  Id MaximumNumberOfTetrahedra = 0;
+};
+
+struct AdvancingFrontTetrahedralizerInput
+{
+  const TriangleMesh* Surface = nullptr;
+  /** May be null. Points outside of all meshed regions are not used, and counted. */
+  const std::vector<Vec3>* MeshPoints = nullptr;
+  /** May be null or empty: all enclosed regions are meshed. */
+  const std::vector<RegionSeed>* Seeds = nullptr;
+};
+
+struct AdvancingFrontTetrahedralizerReport
+{
+  /** Mesh points that lie in no meshed region. */
+  Id UnusedMeshPoints = 0;
+  /** Degenerate cells: more than four points on one empty sphere. */
+  Id CosphericalCells = 0;
+  /** Points of the largest of them. */
+  Id LargestCell = 0;
+  Id TurnedDiagonals = 0;
+  Id NumberOfRegions = 0;
+};
+
+struct AdvancingFrontTetrahedralizerOutput
+{
+  /** Points: those of the surface in their order, then the used mesh points. */
+  TetMesh Mesh;
+  /** Input mesh point of each point after those of the surface. */
+  std::vector<Id> MeshPointSources;
+  /**
+   * The surface that bounds the mesh and its regions, on the points of Mesh; with Labels. A
+   * triangle made to close an open boundary has SourceCells NoId.
+   */
+  TriangleMesh Boundary;
+  /** Triangles of the front left by an abort or the limit, fronts to the unmeshed side. */
+  std::vector<TriangleIds> Front;
+  AdvancingFrontTetrahedralizerReport Report;
+};
+
+Status TetrahedralizeByAdvancingFront(const AdvancingFrontTetrahedralizerInput& input,
+  const AdvancingFrontTetrahedralizerOptions& options, const ExecutionContext& context,
+  AdvancingFrontTetrahedralizerOutput& output);
+}
+
+#endif

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BoundaryTriangulator.h
+ * @brief Stage 0: from a soup of polygons to a clean, well connected triangulated surface.
+ *
+ * Method (thesis 3.5 and 6.3):
+ *  1. refuse points that are not finite; merge coincident points (exactly, or within a tolerance);
+ *  2. drop repeated vertices and degenerate polygons;
+ *  3. split polygon edges at the vertices that lie on them (T-junctions, Fig. 3.16); then drop
+ *     duplicate polygons, whose labels are united;
+ *  4. triangulate every polygon by recursive splitting with exact signs, in the projection along
+ *     the largest component of its normal (PolygonTriangulation.h); outlines bridged to holes and
+ *     collinear vertices are welcome. A non-planar polygon is triangulated in that same projection;
+ *  5. trace open edges into rings and patch those of at most MaximumGapEdges edges, unless the patch
+ *     would meet the surface (a lone triangle is no hole);
+ *  6. find all pairs of triangles that cross, overlap or touch other than in a common edge or
+ *     vertex, exactly (TriangleIntersection.h).
+ *
+ * Guarantees: on Ok the surface has the invariants stated in TriangleMesh.h; the input points that
+ * are used keep their exact coordinates. Deterministic.
+ * Uniting labels: a side labelled OutsideRegion takes the region that a copy of the polygon has on
+ * that side; two different regions on one side contradict each other.
+ * Failure: InvalidInput names the cells (self-intersections: unless they are only to be reported)
+ * or the points; the output is then empty except for Problems and Report.
+ * Cost: O(n log n) for n triangles of bounded overlap.
+ */
+#ifndef cdmBoundaryTriangulator_h
+#define cdmBoundaryTriangulator_h
+
+#include "ExecutionContext.h"
+#include "PolygonSoup.h"
+#include "Status.h"
+#include "TriangleMesh.h"
+
+namespace cdm
+{
+struct BoundaryTriangulatorOptions
+{
+  /**
+   * Points closer than this are merged (the lowest id stays), and a vertex closer than this to an
+   * edge splits it. Model units; 0: only equal coordinates, only vertices exactly on the edge.
+   * Range >= 0.
+   */
+  double MergeTolerance = 0.0;
+  /** Rings of at most this many open edges are patched. 0: none. Range >= 0. */
+  Id MaximumGapEdges = 0;
+  /** False: a self-intersection is listed in Problems, and the surface is made all the same. */
+  bool RefuseSelfIntersections = true;
+};
+
+enum class SurfaceProblemKind : unsigned char
+{
+  /** Two triangles cross, overlap or touch; SegmentBegin/End: where. */
+  SelfIntersection,
+  /** A polygon without area, dropped. */
+  DegeneratePolygon,
+  /** A polygon that repeats another one (OtherCell), or has a triangle in common; dropped. */
+  DuplicatePolygon,
+  /** A polygon whose outline crosses itself so that no triangulation exists. */
+  InvalidOutline,
+  /** A vertex (SegmentBegin and End) that lies on an edge of Cell: the edge was split there. */
+  TJunction,
+  /** An open edge of a ring that was patched. */
+  PatchedGap,
+  /** An open edge left as it is. */
+  OpenEdge
+};
+
+/** One finding, with the cells of the input it concerns and a segment (or point) to look at. */
+struct SurfaceProblem
+{
+  SurfaceProblemKind Kind = SurfaceProblemKind::SelfIntersection;
+  Id Cell = NoId;
+  Id OtherCell = NoId;
+  Vec3 SegmentBegin;
+  Vec3 SegmentEnd;
+};
+
+struct BoundaryTriangulatorReport
+{
+  Id MergedPoints = 0;
+  /** Points of the input that are in no triangle, other than the merged ones. */
+  Id UnusedPoints = 0;
+  Id RepeatedVertices = 0;
+  Id DegeneratePolygons = 0;
+  Id DuplicatePolygons = 0;
+  /** Triangles that different polygons have in common, dropped but for one. */
+  Id DuplicateTriangles = 0;
+  /** Vertices on edges, counted for each polygon at the edge. */
+  Id TJunctions = 0;
+  /** Polygons that leave their mean plane by more than 1e-6 of their extent. */
+  Id NonPlanarPolygons = 0;
+  Id PatchedRings = 0;
+  Id OpenEdges = 0;
+  Id NonManifoldEdges = 0;
+  /** Pairs of triangles. The search stops at a million. */
+  Id SelfIntersections = 0;
+};
+
+struct BoundaryTriangulatorOutput
+{
+  /** SourceCells: polygon of the input (for a patch the polygon at its first edge). */
+  TriangleMesh Surface;
+  /** For each point of Surface the input point whose coordinates and data it has. */
+  std::vector<Id> PointSources;
+  std::vector<SurfaceProblem> Problems;
+  BoundaryTriangulatorReport Report;
+};
+
+Status TriangulateBoundary(const PolygonSoup& input, const BoundaryTriangulatorOptions& options,
+  const ExecutionContext& context, BoundaryTriangulatorOutput& output);
+} // namespace cdm
+
+#endif

@@ -1,0 +1,1181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DelaunaySurfaceRefiner.h"
+
+#include "BallIndex.h"
+#include "Measures.h"
+#include "Predicates.h"
+#include "RefinableSurface.h"
+#include "SurfaceDelaunayTest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <string>
+
+namespace cdm
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+constexpr double Pi = 3.14159265358979323846;
+constexpr std::size_t ReportInterval = 256;
+
+/** New points keep this distance, as a ratio of the edge, from the ends of an edge they split. */
+constexpr double SmallestPiece = 0.15;
+/** A disturbing point this close to the plane of a triangle, in units of its circumradius, is
+ * mirrored into the plane: thin layers get matching points instead of small triangles. */
+constexpr double ThinLayerRatio = 0.5;
+/** A mirrored point has to keep this distance, in units of its height, from all other points. */
+constexpr double MirrorClearance = 0.5;
+
+/** Distance from a position to the nearest point other than one. */
+class NearestPointVisitor
+{
+public:
+  NearestPointVisitor(const Vec3& position, Id except)
+    : Position(position)
+    , Except(except)
+  {
+  }
+
+  double Order(const Box& box) const
+  {
+    double distance = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double c = this->Position[axis];
+      const double nearest = std::min(std::max(c, box.Low[axis]), box.High[axis]) - c;
+      distance += nearest * nearest;
+    }
+    return distance < this->SquaredDistance ? distance : Infinity;
+  }
+
+  void Visit(Id id, const Vec3& p)
+  {
+    if (id != this->Except)
+    {
+      this->SquaredDistance = std::min(this->SquaredDistance, SquaredNorm(p - this->Position));
+    }
+  }
+
+  double SquaredDistance = Infinity;
+
+private:
+  Vec3 Position;
+  Id Except;
+};
+
+/** Points within a distance of a triangle. */
+class NearTriangleVisitor
+{
+public:
+  NearTriangleVisitor(
+    const Vec3& a, const Vec3& b, const Vec3& c, double distance, std::vector<char>& isNear)
+    : Corners{ a, b, c }
+    , Distance(distance)
+    , IsNear(isNear)
+  {
+    this->Bounds.Add(a);
+    this->Bounds.Add(b);
+    this->Bounds.Add(c);
+  }
+
+  double Order(const Box& box) const
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (box.Low[axis] > this->Bounds.High[axis] + this->Distance ||
+        box.High[axis] < this->Bounds.Low[axis] - this->Distance)
+      {
+        return Infinity;
+      }
+    }
+    return 0.0;
+  }
+
+  void Visit(Id id, const Vec3& p)
+  {
+    if (!this->IsNear[id] &&
+      GetDistanceToTriangle(p, this->Corners[0], this->Corners[1], this->Corners[2]) <= this->Distance)
+    {
+      this->IsNear[id] = 1;
+    }
+  }
+
+private:
+  Vec3 Corners[3];
+  Box Bounds;
+  double Distance;
+  std::vector<char>& IsNear;
+};
+
+/** Points strictly inside the diametral sphere of an edge, other than its ends. */
+class DiametralSphereVisitor
+{
+public:
+  DiametralSphereVisitor(const std::vector<Vec3>& points, const EdgeIds& edge)
+    : Edge(edge)
+    , A(points[edge[0]])
+    , B(points[edge[1]])
+    , Center(0.5 * (this->A + this->B))
+    , Reach(0.5 * Distance(this->A, this->B) * (1.0 + 1e-9))
+  {
+  }
+
+  double Order(const Box& box) const
+  {
+    double distance = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double c = this->Center[axis];
+      const double nearest = std::min(std::max(c, box.Low[axis]), box.High[axis]) - c;
+      distance += nearest * nearest;
+    }
+    return distance <= this->Reach * this->Reach ? distance : Infinity;
+  }
+
+  void Visit(Id id, const Vec3& p)
+  {
+    const double distance = SquaredNorm(p - this->Center);
+    if (id != this->Edge[0] && id != this->Edge[1] && distance < this->Deepest &&
+      InDiametralSphere(this->A, this->B, p) > 0)
+    {
+      this->Found = id;
+      this->Deepest = distance;
+    }
+  }
+
+  /** The deepest one, or NoId. */
+  Id Found = NoId;
+
+private:
+  EdgeIds Edge;
+  Vec3 A;
+  Vec3 B;
+  Vec3 Center;
+  double Reach;
+  double Deepest = Infinity;
+};
+
+class SurfaceRefiner
+{
+public:
+  SurfaceRefiner(const DelaunaySurfaceRefinerInput& input,
+    const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
+    DelaunaySurfaceRefinerOutput& output)
+    : Input(input)
+    , Options(options)
+    , Context(context)
+    , Output(output)
+    , Test(Points, Octree)
+  {
+  }
+
+  Status Run();
+
+private:
+  Status Prepare();
+  void DropCloseMeshPoints();
+  void CollectPointFacets();
+  void CollectAxes();
+  void Saturate();
+  Status Refine();
+  void Process(Id t);
+  bool IsGood(Id t);
+  bool IsCocircularFacet(Id t) const;
+  bool FindTooCoarse(Id t, Id& segment) const;
+
+  // Each returns true if it has changed the surface.
+  bool ResolveByFlip(Id t);
+  bool ResolveByEdge(Id t);
+  bool ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMirrored);
+  bool MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) const;
+  bool SplitSegment(Id segment, Id disturbing);
+  Vec3 PlaceOnSegment(Id segment, Id disturbing) const;
+  Id FindSharedCorner(Id segment, Id point) const;
+
+  bool CanFlip(Id use) const;
+  bool ShouldFlip(Id use) const;
+  void Legalize(std::vector<Id>& uses);
+  Id AddPoint(const Vec3& position, const PointParents& parents, std::vector<Id> facets);
+  void Enqueue(Id t);
+  double GetNearestDistance(const Vec3& position, Id except = NoId) const
+  {
+    NearestPointVisitor visitor(position, except);
+    this->Octree.Visit(visitor);
+    return std::sqrt(visitor.SquaredDistance);
+  }
+  void Finish();
+
+  const DelaunaySurfaceRefinerInput& Input;
+  const DelaunaySurfaceRefinerOptions& Options;
+  const ExecutionContext& Context;
+  DelaunaySurfaceRefinerOutput& Output;
+
+  /** Points of the surface, then kept mesh points, then new ones. */
+  std::vector<Vec3> Points;
+  Id NumberOfSurfacePoints = 0;
+  Id NumberOfGivenPoints = 0;
+  Id MaximumNewPoints = 0;
+  double Flatness = 0.0;
+  double MinimumEdge = 0.0;
+  PointOctree Octree;
+  SurfaceDelaunayTest Test;
+  SurfaceDelaunayTest::Result Found;
+  std::unique_ptr<RefinableSurface> Surface;
+
+  /** Facets that each point lies on, ascending; empty for mesh points. */
+  std::vector<std::vector<Id>> PointFacets;
+  /** Segments of the input that two facets share, by the facets, the smaller first. */
+  std::map<std::pair<Id, Id>, std::vector<EdgeIds>> Axes;
+  /** For each point of the input surface the input edges at it; for new ones on an edge, it. */
+  std::vector<std::vector<Id>> PointEdges;
+  /** Input points at which two structural edges meet at less than 90 degrees. */
+  std::vector<char> IsAcuteCorner;
+
+  BallIndex Proofs;
+  std::deque<Id> Queue;
+  std::vector<char> IsQueued;
+  std::vector<char> IsUnresolved;
+  std::vector<Id> Reached;
+  Id FlipBudget = 0;
+};
+
+Status SurfaceRefiner::Prepare()
+{
+  const TriangleMesh& surface = *this->Input.Surface;
+  if (surface.Triangles.empty())
+  {
+    return Status::InvalidInput("The surface has no triangles; there is nothing to refine.");
+  }
+  this->Points = surface.Points;
+  this->NumberOfSurfacePoints = static_cast<Id>(surface.Points.size());
+  for (Id i = 0; i < this->NumberOfSurfacePoints; ++i)
+  {
+    if (!IsFinite(this->Points[i]))
+    {
+      return Status::InvalidInput(
+        "A point has a coordinate that is not a finite number; remove or repair it.", {}, { i });
+    }
+  }
+  std::vector<Id> order(this->Points.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [this](Id i, Id j) {
+    return this->Points[i] != this->Points[j] ? this->Points[i] < this->Points[j] : i < j;
+  });
+  std::vector<Id> coincident;
+  for (std::size_t i = 1; i < order.size(); ++i)
+  {
+    if (this->Points[order[i]] == this->Points[order[i - 1]])
+    {
+      coincident.push_back(order[i - 1]);
+      coincident.push_back(order[i]);
+    }
+  }
+  if (!coincident.empty())
+  {
+    std::sort(coincident.begin(), coincident.end());
+    coincident.erase(std::unique(coincident.begin(), coincident.end()), coincident.end());
+    return Status::InvalidInput("Points of the surface coincide; merge them with "
+                                "vtkBoundaryTriangulator first.",
+      {}, std::move(coincident));
+  }
+  std::vector<Id> degenerate;
+  for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
+  {
+    const TriangleIds& ids = surface.Triangles[t];
+    if (AreCollinear(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]))
+    {
+      degenerate.push_back(static_cast<Id>(t));
+    }
+  }
+  if (!degenerate.empty())
+  {
+    return Status::InvalidInput(
+      "Triangles without area; clean the surface with vtkBoundaryTriangulator first.",
+      std::move(degenerate));
+  }
+
+  const double diagonal = GetBoundingBoxDiagonal(this->Points);
+  this->Flatness = this->Options.StructuralEdges.FlatnessRatio * diagonal;
+  this->MinimumEdge = this->Options.MinimumEdgeRatio * diagonal;
+  StructuralEdgesOutput edges;
+  const Status status = ExtractStructuralEdges(
+    surface, this->Options.StructuralEdges, this->Context.Part(0.0, 0.05), edges);
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  this->DropCloseMeshPoints();
+  this->NumberOfGivenPoints = static_cast<Id>(this->Points.size());
+  // Without a limit of the user's, one that only a runaway refinement reaches.
+  this->MaximumNewPoints = this->Options.MaximumNewPoints > 0
+    ? this->Options.MaximumNewPoints
+    : static_cast<Id>(std::min<std::size_t>(
+        1000000 + 50 * surface.Triangles.size(), std::numeric_limits<Id>::max() / 8));
+  this->Octree.Insert(this->Points);
+  this->Surface = std::make_unique<RefinableSurface>(surface, edges.Edges, this->Points);
+  this->CollectPointFacets();
+  this->CollectAxes();
+  return Status();
+}
+
+void SurfaceRefiner::DropCloseMeshPoints()
+{
+  if (this->Input.MeshPoints == nullptr || this->Input.MeshPoints->empty())
+  {
+    return;
+  }
+  const std::vector<Vec3>& meshPoints = *this->Input.MeshPoints;
+  const double clearance =
+    this->Options.MeshPointClearanceRatio * GetBoundingBoxDiagonal(this->Points);
+  // Copies of points and points that are no numbers are of no use either.
+  std::vector<char> isDropped(meshPoints.size(), 0);
+  std::vector<Id> order;
+  for (std::size_t i = 0; i < meshPoints.size(); ++i)
+  {
+    if (IsFinite(meshPoints[i]))
+    {
+      order.push_back(static_cast<Id>(i));
+    }
+    isDropped[i] = !IsFinite(meshPoints[i]);
+  }
+  std::sort(order.begin(), order.end(), [&meshPoints](Id i, Id j) {
+    return meshPoints[i] != meshPoints[j] ? meshPoints[i] < meshPoints[j] : i < j;
+  });
+  PointOctree octree;
+  for (std::size_t i = 0; i < order.size(); ++i)
+  {
+    isDropped[order[i]] = i > 0 && meshPoints[order[i]] == meshPoints[order[i - 1]];
+    if (!isDropped[order[i]])
+    {
+      octree.Insert(order[i], meshPoints[order[i]]);
+    }
+  }
+  for (const TriangleIds& ids : this->Input.Surface->Triangles)
+  {
+    NearTriangleVisitor visitor(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]],
+      clearance, isDropped);
+    octree.Visit(visitor);
+  }
+  for (std::size_t i = 0; i < meshPoints.size(); ++i)
+  {
+    if (isDropped[i])
+    {
+      ++this->Output.Report.DroppedMeshPoints;
+    }
+    else
+    {
+      this->Output.KeptMeshPoints.push_back(static_cast<Id>(i));
+      this->Points.push_back(meshPoints[i]);
+    }
+  }
+}
+
+void SurfaceRefiner::CollectPointFacets()
+{
+  this->PointFacets.resize(this->Points.size());
+  for (Id t = 0; t < this->Surface->GetNumberOfTriangles(); ++t)
+  {
+    const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
+    for (Id id : triangle.Points)
+    {
+      this->PointFacets[id].push_back(triangle.Facet);
+    }
+  }
+  for (std::vector<Id>& facets : this->PointFacets)
+  {
+    std::sort(facets.begin(), facets.end());
+    facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
+  }
+}
+
+void SurfaceRefiner::CollectAxes()
+{
+  this->PointEdges.resize(this->Points.size());
+  this->IsAcuteCorner.resize(this->Points.size(), 0);
+  for (Id s = 0; s < this->Surface->GetNumberOfSegments(); ++s)
+  {
+    const EdgeIds& edge = this->Surface->GetSegment(s).Points;
+    const std::vector<Id> facets = this->Surface->GetFacets(s);
+    for (std::size_t i = 0; i < facets.size(); ++i)
+    {
+      for (std::size_t j = i + 1; j < facets.size(); ++j)
+      {
+        this->Axes[{ facets[i], facets[j] }].push_back(edge);
+      }
+    }
+    this->PointEdges[edge[0]].push_back(s);
+    this->PointEdges[edge[1]].push_back(s);
+  }
+  const std::vector<EdgeIds>& edges = this->Surface->GetInputEdges();
+  for (Id p = 0; p < this->NumberOfSurfacePoints; ++p)
+  {
+    const std::vector<Id>& incident = this->PointEdges[p];
+    for (std::size_t i = 0; i < incident.size() && !this->IsAcuteCorner[p]; ++i)
+    {
+      for (std::size_t j = i + 1; j < incident.size(); ++j)
+      {
+        const EdgeIds& e = edges[incident[i]];
+        const EdgeIds& f = edges[incident[j]];
+        const Vec3 u = this->Points[e[0] == p ? e[1] : e[0]] - this->Points[p];
+        const Vec3 v = this->Points[f[0] == p ? f[1] : f[0]] - this->Points[p];
+        if (Dot(u, v) > 1e-9 * Norm(u) * Norm(v))
+        {
+          this->IsAcuteCorner[p] = 1;
+          break;
+        }
+      }
+    }
+  }
+}
+
+void SurfaceRefiner::Enqueue(Id t)
+{
+  if (static_cast<std::size_t>(t) >= this->IsQueued.size())
+  {
+    this->IsQueued.resize(t + 1, 0);
+    this->IsUnresolved.resize(t + 1, 0);
+  }
+  this->IsUnresolved[t] = 0;
+  if (!this->IsQueued[t])
+  {
+    this->IsQueued[t] = 1;
+    this->Queue.push_back(t);
+  }
+}
+
+bool SurfaceRefiner::CanFlip(Id use) const
+{
+  const RefinableSurface& surface = *this->Surface;
+  const Id other = surface.GetTriangle(use / 3).Adjacent[use % 3];
+  if (other < 0 || !surface.IsConvex(use))
+  {
+    return false;
+  }
+  const TriangleIds& ids = surface.GetTriangle(use / 3).Points;
+  const Vec3& a = this->Points[ids[use % 3]];
+  const Vec3& b = this->Points[ids[(use % 3 + 1) % 3]];
+  const Vec3& c = this->Points[surface.GetApex(use)];
+  const Vec3& d = this->Points[surface.GetApex(other)];
+  const double angle = this->Options.StructuralEdges.AccuracyAngle;
+  return IsSmoothEdge(a, b, c, d, angle, this->Flatness) &&
+    IsSmoothEdge(d, c, a, b, angle, this->Flatness);
+}
+
+bool SurfaceRefiner::ShouldFlip(Id use) const
+{
+  // Flip what is locally bad into what is locally good: it cannot flip back at once.
+  const RefinableSurface& surface = *this->Surface;
+  const Id other = surface.GetTriangle(use / 3).Adjacent[use % 3];
+  if (other < 0)
+  {
+    return false;
+  }
+  const TriangleIds& ids = surface.GetTriangle(use / 3).Points;
+  const Vec3& a = this->Points[ids[use % 3]];
+  const Vec3& b = this->Points[ids[(use % 3 + 1) % 3]];
+  const Vec3& c = this->Points[surface.GetApex(use)];
+  const Vec3& d = this->Points[surface.GetApex(other)];
+  const bool isBad = InEquatorialSphere(a, b, c, d) > 0 || InEquatorialSphere(b, a, d, c) > 0;
+  return isBad && this->CanFlip(use) && InEquatorialSphere(a, d, c, b) <= 0 &&
+    InEquatorialSphere(d, b, c, a) <= 0;
+}
+
+void SurfaceRefiner::Legalize(std::vector<Id>& uses)
+{
+  for (Id use : uses)
+  {
+    this->Enqueue(use / 3);
+  }
+  while (!uses.empty())
+  {
+    const Id use = uses.back();
+    uses.pop_back();
+    if (this->FlipBudget <= 0 || !this->ShouldFlip(use))
+    {
+      continue;
+    }
+    const Id t = use / 3;
+    const Id u = this->Surface->GetTriangle(t).Adjacent[use % 3] / 3;
+    this->Surface->Flip(use);
+    ++this->Output.Report.Flips;
+    --this->FlipBudget;
+    this->Enqueue(t);
+    this->Enqueue(u);
+    // The four outer edges of the quadrilateral.
+    uses.push_back(3 * t);
+    uses.push_back(3 * t + 2);
+    uses.push_back(3 * u);
+    uses.push_back(3 * u + 1);
+  }
+}
+
+void SurfaceRefiner::Saturate()
+{
+  const Id count = this->Surface->GetNumberOfTriangles();
+  std::vector<Id> uses;
+  for (Id use = 3 * count - 1; use >= 0; --use)
+  {
+    const Id other = this->Surface->GetTriangle(use / 3).Adjacent[use % 3];
+    if (other > use)
+    {
+      uses.push_back(use);
+    }
+  }
+  this->Legalize(uses);
+  for (Id t = 0; t < count; ++t)
+  {
+    this->Enqueue(t);
+  }
+}
+
+bool SurfaceRefiner::IsCocircularFacet(Id t) const
+{
+  // All points on the circumcircle have to be reached across smooth edges of triangles on it.
+  const std::vector<Id>& cocircular = this->Found.Cocircular;
+  std::vector<Id> triangles(1, t);
+  std::vector<Id> reached;
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+  {
+    for (Id use : this->Surface->GetTriangle(triangles[i]).Adjacent)
+    {
+      if (use < 0 || std::find(triangles.begin(), triangles.end(), use / 3) != triangles.end())
+      {
+        continue;
+      }
+      const Id apex = this->Surface->GetApex(use);
+      if (std::binary_search(cocircular.begin(), cocircular.end(), apex))
+      {
+        triangles.push_back(use / 3);
+        reached.push_back(apex);
+      }
+    }
+  }
+  std::sort(reached.begin(), reached.end());
+  return reached == cocircular;
+}
+
+bool SurfaceRefiner::IsGood(Id t)
+{
+  this->Test.Run(this->Surface->GetTriangle(t).Points, this->Found);
+  if (!this->Found.IsDelaunay || (!this->Found.Cocircular.empty() && !this->IsCocircularFacet(t)))
+  {
+    return false;
+  }
+  return this->Options.Criterion == SurfaceCriterion::Delaunay ||
+    this->Found.InsideSmallestSphere.empty();
+}
+
+bool SurfaceRefiner::ResolveByFlip(Id t)
+{
+  std::vector<Id> uses{ 3 * t, 3 * t + 1, 3 * t + 2 };
+  for (Id use : uses)
+  {
+    if (this->FlipBudget > 0 && this->ShouldFlip(use))
+    {
+      this->Legalize(uses);
+      return true;
+    }
+  }
+  // Nearly cocircular and nearly coplanar points: the local rule may not see what the exact
+  // double sphere sees.
+  for (Id use : uses)
+  {
+    const Id other = this->Surface->GetTriangle(t).Adjacent[use % 3];
+    if (other < 0 || this->FlipBudget <= 0 || !this->CanFlip(use))
+    {
+      continue;
+    }
+    const TriangleIds ids = this->Surface->GetTriangle(t).Points;
+    const Id a = ids[use % 3];
+    const Id b = ids[(use % 3 + 1) % 3];
+    const Id c = this->Surface->GetApex(use);
+    const Id d = this->Surface->GetApex(other);
+    SurfaceDelaunayTest::Result first;
+    SurfaceDelaunayTest::Result second;
+    this->Test.Run({ a, d, c }, first);
+    this->Test.Run({ d, b, c }, second);
+    const bool isAllowed = this->Options.Criterion == SurfaceCriterion::Delaunay ||
+      (first.InsideSmallestSphere.empty() && second.InsideSmallestSphere.empty());
+    if (first.IsDelaunay && second.IsDelaunay && isAllowed && first.Cocircular.empty() &&
+      second.Cocircular.empty())
+    {
+      this->Surface->Flip(use);
+      ++this->Output.Report.Flips;
+      --this->FlipBudget;
+      this->Enqueue(t);
+      this->Enqueue(other / 3);
+      return true;
+    }
+  }
+  return false;
+}
+
+Id SurfaceRefiner::FindSharedCorner(Id segment, Id point) const
+{
+  if (static_cast<std::size_t>(point) >= this->PointEdges.size())
+  {
+    return NoId;
+  }
+  const std::vector<EdgeIds>& edges = this->Surface->GetInputEdges();
+  const Id own = this->Surface->GetSegment(segment).InputEdge;
+  for (Id edge : this->PointEdges[point])
+  {
+    for (Id corner : edges[edge])
+    {
+      if (edge != own && corner != point && (corner == edges[own][0] || corner == edges[own][1]))
+      {
+        return corner;
+      }
+    }
+  }
+  return NoId;
+}
+
+Vec3 SurfaceRefiner::PlaceOnSegment(Id segment, Id disturbing) const
+{
+  const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
+  const Vec3& a = this->Points[ends[0]];
+  const Vec3& b = this->Points[ends[1]];
+  const double length = Distance(a, b);
+  const Vec3 direction = (1.0 / length) * (b - a);
+  if (disturbing != NoId)
+  {
+    const Vec3& p = this->Points[disturbing];
+    const Id corner = this->FindSharedCorner(segment, disturbing);
+    if (corner != NoId)
+    {
+      // Type R: as far from the corner as the disturbing point.
+      const Vec3& center = this->Points[corner];
+      const double radius = Distance(center, p);
+      const bool isFromA = SquaredNorm(a - center) <= SquaredNorm(b - center);
+      const double way = radius - Distance(isFromA ? a : b, center);
+      if (way > SmallestPiece * length && way < (1.0 - SmallestPiece) * length)
+      {
+        return isFromA ? a + way * direction : b - way * direction;
+      }
+    }
+    else
+    {
+      // Type P: the foot of the disturbing point, not nearer to the ends than it is to the edge.
+      const double foot = Dot(p - a, direction);
+      const double height = Distance(p, a + foot * direction);
+      const double margin = std::min(height, 0.5 * length);
+      const double way = std::min(std::max(foot, margin), length - margin);
+      if (foot > 0.0 && foot < length)
+      {
+        return a + way * direction;
+      }
+    }
+  }
+  // From an acute corner only powers of two are used, so that all edges there end up alike.
+  const bool isAcuteA = ends[0] < this->NumberOfSurfacePoints && this->IsAcuteCorner[ends[0]];
+  const bool isAcuteB = ends[1] < this->NumberOfSurfacePoints && this->IsAcuteCorner[ends[1]];
+  if (isAcuteA != isAcuteB)
+  {
+    const double way = std::ldexp(1.0, std::ilogb(length * (2.0 / 3.0)));
+    return isAcuteA ? a + way * direction : b - way * direction;
+  }
+  return 0.5 * (a + b);
+}
+
+Id SurfaceRefiner::AddPoint(
+  const Vec3& position, const PointParents& parents, std::vector<Id> facets)
+{
+  const Id point = static_cast<Id>(this->Points.size());
+  this->Points.push_back(position);
+  this->Octree.Insert(point, position);
+  this->PointFacets.push_back(std::move(facets));
+  this->PointEdges.emplace_back();
+  this->Output.NewPoints.push_back(parents);
+  this->Proofs.Find(position, this->Reached);
+  for (Id t : this->Reached)
+  {
+    this->Proofs.Remove(t);
+    this->Enqueue(t);
+  }
+  return point;
+}
+
+bool SurfaceRefiner::SplitSegment(Id segment, Id disturbing)
+{
+  const EdgeIds ends = this->Surface->GetSegment(segment).Points;
+  const Vec3 a = this->Points[ends[0]];
+  const Vec3 b = this->Points[ends[1]];
+  const double length = Distance(a, b);
+  Vec3 position = this->PlaceOnSegment(segment, disturbing);
+  for (int attempt = 0; attempt < 2; ++attempt)
+  {
+    if (std::min(Distance(position, a), Distance(position, b)) >= this->MinimumEdge &&
+      this->GetNearestDistance(position) > 0.0 &&
+      this->Surface->CanSplitSegment(segment, position))
+    {
+      const double weight = Distance(position, a) / length;
+      const PointParents parents{ { ends[0], ends[1], NoId }, { 1.0 - weight, weight, 0.0 } };
+      const Id point = this->AddPoint(position, parents, this->Surface->GetFacets(segment));
+      this->PointEdges[point].push_back(this->Surface->GetSegment(segment).InputEdge);
+      ++this->Output.Report.EdgePoints;
+      std::vector<Id> uses;
+      this->Surface->SplitSegment(segment, point, uses);
+      this->Legalize(uses);
+      return true;
+    }
+    position = 0.5 * (a + b);
+  }
+  return false;
+}
+
+bool SurfaceRefiner::ResolveByEdge(Id t)
+{
+  Id bestSegment = NoId;
+  Id bestPoint = NoId;
+  double bestDepth = Infinity;
+  const auto consider = [&](Id segment, Id point) {
+    const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
+    const Vec3& a = this->Points[ends[0]];
+    const Vec3& b = this->Points[ends[1]];
+    const double depth = Distance(this->Points[point], 0.5 * (a + b)) / Distance(a, b);
+    if (point != ends[0] && point != ends[1] && depth < bestDepth &&
+      InDiametralSphere(a, b, this->Points[point]) >= 0)
+    {
+      bestSegment = segment;
+      bestPoint = point;
+      bestDepth = depth;
+    }
+  };
+  for (int i = 0; i < 3; ++i)
+  {
+    const Id segment = this->Surface->GetSegmentAt(t, i);
+    if (segment != NoId)
+    {
+      for (Id point : this->Found.InsideSmallestSphere)
+      {
+        consider(segment, point);
+      }
+      for (Id point : this->Found.OnSmallestSphere)
+      {
+        consider(segment, point);
+      }
+      for (Id point : this->Found.Cocircular)
+      {
+        consider(segment, point);
+      }
+    }
+  }
+  if (bestSegment == NoId)
+  {
+    for (int i = 0; i < 3; ++i)
+    {
+      const Id segment = this->Surface->GetSegmentAt(t, i);
+      if (segment != NoId)
+      {
+        consider(segment, this->Surface->GetApex(3 * t + i));
+      }
+    }
+  }
+  return bestSegment != NoId && this->SplitSegment(bestSegment, bestPoint);
+}
+
+bool SurfaceRefiner::MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) const
+{
+  const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
+  const Vec3& a = this->Points[triangle.Points[0]];
+  const Vec3 normal =
+    Cross(this->Points[triangle.Points[1]] - a, this->Points[triangle.Points[2]] - a);
+  const Vec3 unit = (1.0 / Norm(normal)) * normal;
+  const Vec3 center =
+    GetCircumcenter(a, this->Points[triangle.Points[1]], this->Points[triangle.Points[2]]);
+  const double radius = Distance(center, a);
+  const Vec3& p = this->Points[disturbing];
+  const double height = std::abs(Dot(unit, p - a));
+
+  // Type R: about the line that the two facets share, if they meet at an acute angle there.
+  double nearest = Infinity;
+  for (Id facet : this->PointFacets[disturbing])
+  {
+    const auto axes = this->Axes.find(
+      { std::min(facet, triangle.Facet), std::max(facet, triangle.Facet) });
+    if (facet == triangle.Facet || axes == this->Axes.end())
+    {
+      continue;
+    }
+    for (const EdgeIds& axis : axes->second)
+    {
+      const Vec3& begin = this->Points[axis[0]];
+      const Vec3 direction =
+        (1.0 / Distance(begin, this->Points[axis[1]])) * (this->Points[axis[1]] - begin);
+      const Vec3 foot = begin + Dot(p - begin, direction) * direction;
+      const Vec3 centerFoot = begin + Dot(center - begin, direction) * direction;
+      const Vec3 inward = center - centerFoot;
+      const double distance = Distance(p, foot);
+      if (distance < nearest && distance > 0.0 && Dot(inward, p - foot) > 0.0)
+      {
+        nearest = distance;
+        target = foot + (distance / Norm(inward)) * inward;
+      }
+    }
+  }
+  if (nearest == Infinity)
+  {
+    if (height > ThinLayerRatio * radius)
+    {
+      return false;
+    }
+    // Type P: along the normal.
+    target = p - Dot(unit, p - a) * unit;
+  }
+  return this->GetNearestDistance(target, disturbing) >= MirrorClearance * height;
+}
+
+bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMirrored)
+{
+  const RefinableSurface& surface = *this->Surface;
+  const TriangleIds& start = surface.GetTriangle(t).Points;
+  const Vec3& a = this->Points[start[0]];
+  const Vec3 normal = Cross(this->Points[start[1]] - a, this->Points[start[2]] - a);
+
+  // Walk (thesis 6.3, "Locate Triangle"): over the edge that faces the target most.
+  Id current = t;
+  Id previous = NoId;
+  std::pair<Id, bool> place(NoId, true);
+  Vec3 position = target;
+  for (int step = 0;; ++step)
+  {
+    if (step > 10000)
+    {
+      return false;
+    }
+    const TriangleIds& ids = surface.GetTriangle(current).Points;
+    Id worst = NoId;
+    double worstSide = 0.0;
+    for (int i = 0; i < 3; ++i)
+    {
+      const Vec3& p = this->Points[ids[i]];
+      const Vec3 edge = this->Points[ids[(i + 1) % 3]] - p;
+      const double side = Dot(normal, Cross(edge, target - p)) / Norm(edge);
+      const Id adjacent = surface.GetTriangle(current).Adjacent[i];
+      if (side < worstSide && !(adjacent >= 0 && adjacent / 3 == previous))
+      {
+        worst = i;
+        worstSide = side;
+      }
+    }
+    if (worst == NoId)
+    {
+      const Vec3& p = this->Points[ids[0]];
+      const Vec3 n = Cross(this->Points[ids[1]] - p, this->Points[ids[2]] - p);
+      const double slope = Dot(n, normal);
+      position = slope != 0.0 ? target + (Dot(n, p - target) / slope) * normal : target;
+      place = surface.Locate(current, position);
+      if (place.second)
+      {
+        break;
+      }
+      worst = place.first;
+    }
+    const Id adjacent = surface.GetTriangle(current).Adjacent[worst];
+    if (adjacent < 0)
+    {
+      const Id segment = -1 - adjacent;
+      const EdgeIds& ends = surface.GetSegment(segment).Points;
+      const bool isDisturbed = disturbing != NoId &&
+        InDiametralSphere(
+          this->Points[ends[0]], this->Points[ends[1]], this->Points[disturbing]) >= 0;
+      return this->SplitSegment(segment, isDisturbed ? disturbing : NoId);
+    }
+    previous = current;
+    current = adjacent / 3;
+  }
+
+  if (this->GetNearestDistance(position) < std::max(this->MinimumEdge, 1e-300))
+  {
+    return false;
+  }
+  if (place.first != NoId && surface.GetSegmentAt(current, place.first) != NoId)
+  {
+    return this->SplitSegment(surface.GetSegmentAt(current, place.first), disturbing);
+  }
+
+  // A point that would disturb an edge of the facet must not be made: split the edge instead.
+  std::vector<Id> cavity(1, current);
+  for (std::size_t i = 0; i < cavity.size() && cavity.size() < 1000; ++i)
+  {
+    for (int e = 0; e < 3; ++e)
+    {
+      const Id adjacent = surface.GetTriangle(cavity[i]).Adjacent[e];
+      if (adjacent < 0)
+      {
+        const EdgeIds& ends = surface.GetSegment(-1 - adjacent).Points;
+        if (InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], position) >= 0)
+        {
+          return this->SplitSegment(-1 - adjacent, isMirrored ? disturbing : NoId);
+        }
+        continue;
+      }
+      const TriangleIds& ids = surface.GetTriangle(adjacent / 3).Points;
+      if (std::find(cavity.begin(), cavity.end(), adjacent / 3) == cavity.end() &&
+        InEquatorialSphere(
+          this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]], position) >= 0)
+      {
+        cavity.push_back(adjacent / 3);
+      }
+    }
+  }
+
+  const TriangleIds ids = surface.GetTriangle(current).Points;
+  const Vec3 weights = GetBarycentricWeights(
+    position, this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]);
+  const PointParents parents{ ids, { weights.X, weights.Y, weights.Z } };
+  const Id point = this->AddPoint(position, parents, { surface.GetTriangle(current).Facet });
+  ++this->Output.Report.FacetPoints;
+  std::vector<Id> uses;
+  if (place.first == NoId)
+  {
+    this->Surface->SplitTriangle(current, point, uses);
+  }
+  else
+  {
+    this->Surface->SplitSmoothEdge(3 * current + place.first, point, uses);
+  }
+  this->Legalize(uses);
+  return true;
+}
+
+bool SurfaceRefiner::FindTooCoarse(Id t, Id& segment) const
+{
+  segment = NoId;
+  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+  const Vec3 corners[3] = { this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]] };
+  double limit = this->Options.MaximumEdgeLength > 0.0 ? this->Options.MaximumEdgeLength : Infinity;
+  if (this->Input.Sizing)
+  {
+    const double size = this->Input.Sizing((1.0 / 3.0) * (corners[0] + corners[1] + corners[2]));
+    limit = size > 0.0 ? std::min(limit, size) : limit;
+  }
+  int longest = 0;
+  double lengths[3];
+  for (int i = 0; i < 3; ++i)
+  {
+    lengths[i] = Distance(corners[i], corners[(i + 1) % 3]);
+    longest = lengths[i] > lengths[longest] ? i : longest;
+  }
+  const double area = 0.5 * Norm(Cross(corners[1] - corners[0], corners[2] - corners[0]));
+  const bool isLarge = lengths[longest] > limit ||
+    (this->Options.MaximumArea > 0.0 && area > this->Options.MaximumArea);
+  if (isLarge)
+  {
+    // The longest structural edge first: facets are refined from a fine enough outline.
+    double length = limit;
+    for (int i = 0; i < 3; ++i)
+    {
+      const Id candidate = this->Surface->GetSegmentAt(t, i);
+      if (candidate != NoId && (lengths[i] > length || (i == longest && segment == NoId)))
+      {
+        segment = candidate;
+        length = lengths[i];
+      }
+    }
+    return true;
+  }
+  if (this->Options.MinimumAngle > 0.0)
+  {
+    const int shortest = static_cast<int>(std::min_element(lengths, lengths + 3) - lengths);
+    const double sine = 2.0 * area / (lengths[(shortest + 1) % 3] * lengths[(shortest + 2) % 3]);
+    const bool isGivenAngle = this->Surface->GetSegmentAt(t, (shortest + 1) % 3) != NoId &&
+      this->Surface->GetSegmentAt(t, (shortest + 2) % 3) != NoId;
+    return !isGivenAngle && sine < std::sin(this->Options.MinimumAngle * Pi / 180.0);
+  }
+  return false;
+}
+
+void SurfaceRefiner::Process(Id t)
+{
+  const auto getCircumcenter = [this](Id triangle) {
+    const TriangleIds& ids = this->Surface->GetTriangle(triangle).Points;
+    return GetCircumcenter(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]);
+  };
+  Id segment = NoId;
+  if (this->IsGood(t))
+  {
+    this->Proofs.Set(t, this->Found.ProofCenter, this->Found.ProofRadius);
+    if (this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges)
+    {
+      for (int i = 0; i < 3; ++i)
+      {
+        segment = this->Surface->GetSegmentAt(t, i);
+        if (segment == NoId)
+        {
+          continue;
+        }
+        const EdgeIds ends = this->Surface->GetSegment(segment).Points;
+        DiametralSphereVisitor visitor(this->Points, ends);
+        this->Octree.Visit(visitor);
+        if (visitor.Found != NoId)
+        {
+          this->Enqueue(t);
+          if (!this->SplitSegment(segment, visitor.Found))
+          {
+            this->IsUnresolved[t] = 1;
+          }
+          return;
+        }
+        // The proof has to cover the spheres of the edges as well.
+        const Vec3 middle = 0.5 * (this->Points[ends[0]] + this->Points[ends[1]]);
+        this->Found.ProofRadius = std::max(this->Found.ProofRadius,
+          Distance(middle, this->Found.ProofCenter) +
+            0.5 * Distance(this->Points[ends[0]], this->Points[ends[1]]) * (1.0 + 1e-6));
+      }
+      this->Proofs.Set(t, this->Found.ProofCenter, this->Found.ProofRadius);
+    }
+    if (this->FindTooCoarse(t, segment))
+    {
+      // Too coarse is no fault: if a limit forbids to refine, the triangle stays as it is.
+      const bool isRefined = segment != NoId
+        ? this->SplitSegment(segment, NoId)
+        : this->ResolveInFacet(t, NoId, getCircumcenter(t), false);
+      if (isRefined)
+      {
+        this->Enqueue(t);
+      }
+    }
+    return;
+  }
+  this->Proofs.Remove(t);
+  if (this->ResolveByFlip(t))
+  {
+    return;
+  }
+  // Whatever is done now, t is looked at again: the new point need not have changed it.
+  this->IsUnresolved[t] = 0;
+  if (!this->IsGood(t) && this->ResolveByEdge(t))
+  {
+    this->Enqueue(t);
+    return;
+  }
+  const Id disturbing = !this->Found.InsideSmallestSphere.empty()
+    ? this->Found.InsideSmallestSphere.front()
+    : !this->Found.OnSmallestSphere.empty() ? this->Found.OnSmallestSphere.front()
+    : !this->Found.Cocircular.empty()       ? this->Found.Cocircular.front()
+                                            : NoId;
+  Vec3 target;
+  const bool isMirrored =
+    disturbing != NoId && this->MirrorDisturbingPoint(t, disturbing, target);
+  if ((isMirrored && this->ResolveInFacet(t, disturbing, target, true)) ||
+    this->ResolveInFacet(t, disturbing, getCircumcenter(t), false))
+  {
+    this->Enqueue(t);
+    return;
+  }
+  this->IsUnresolved[t] = 1;
+}
+
+Status SurfaceRefiner::Refine()
+{
+  const ExecutionContext part = this->Context.Part(0.1, 0.95);
+  std::size_t steps = 0;
+  while (!this->Queue.empty())
+  {
+    if (steps++ % ReportInterval == 0)
+    {
+      const double done = static_cast<double>(steps);
+      const double left = static_cast<double>(this->Queue.size());
+      if (!part.Continue(done / (done + left), "Refining the surface"))
+      {
+        return Status::Aborted();
+      }
+    }
+    const Id t = this->Queue.front();
+    this->Queue.pop_front();
+    this->IsQueued[t] = 0;
+    if (static_cast<Id>(this->Output.NewPoints.size()) >= this->MaximumNewPoints)
+    {
+      this->IsUnresolved[t] = !this->IsGood(t);
+      continue;
+    }
+    this->Process(t);
+  }
+  return Status();
+}
+
+void SurfaceRefiner::Finish()
+{
+  // Mesh points lie between the given and the new points of the surface: take them out.
+  const Id shift = this->NumberOfGivenPoints - this->NumberOfSurfacePoints;
+  const auto renumber = [this, shift](Id id) {
+    return id >= this->NumberOfGivenPoints ? id - shift : id;
+  };
+  TriangleMesh& surface = this->Output.Surface;
+  this->Surface->Export(surface);
+  if (this->Input.Surface->Labels.empty())
+  {
+    surface.Labels.clear();
+  }
+  for (TriangleIds& ids : surface.Triangles)
+  {
+    ids = { renumber(ids[0]), renumber(ids[1]), renumber(ids[2]) };
+  }
+  surface.Points.assign(this->Points.begin(), this->Points.begin() + this->NumberOfSurfacePoints);
+  surface.Points.insert(surface.Points.end(), this->Points.begin() + this->NumberOfGivenPoints,
+    this->Points.end());
+  for (PointParents& parents : this->Output.NewPoints)
+  {
+    for (Id& id : parents.Ids)
+    {
+      id = id == NoId ? NoId : renumber(id);
+    }
+  }
+  for (Id s = 0; s < this->Surface->GetNumberOfSegments(); ++s)
+  {
+    const RefinableSurface::Segment& segment = this->Surface->GetSegment(s);
+    const Id a = renumber(segment.Points[0]);
+    const Id b = renumber(segment.Points[1]);
+    this->Output.StructuralEdges.push_back({ { std::min(a, b), std::max(a, b) }, segment.Kind,
+      segment.Chain, segment.DihedralAngle });
+  }
+  std::sort(this->Output.StructuralEdges.begin(), this->Output.StructuralEdges.end(),
+    [](const StructuralEdge& x, const StructuralEdge& y) { return x.Points < y.Points; });
+  for (Id t = 0; t < static_cast<Id>(this->IsUnresolved.size()); ++t)
+  {
+    if (this->IsUnresolved[t])
+    {
+      this->Output.UnresolvedTriangles.push_back(t);
+    }
+  }
+}
+
+Status SurfaceRefiner::Run()
+{
+  Status status = this->Prepare();
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  this->FlipBudget = 100000 + 50 * this->Surface->GetNumberOfTriangles();
+  this->Saturate();
+  status = this->Refine();
+  if (status.IsOk())
+  {
+    this->Finish();
+  }
+  return status;
+}
+}
+
+Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,
+  const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
+  DelaunaySurfaceRefinerOutput& output)
+{
+  output = DelaunaySurfaceRefinerOutput();
+  const Status status = SurfaceRefiner(input, options, context, output).Run();
+  if (!status.IsOk())
+  {
+    output = DelaunaySurfaceRefinerOutput();
+  }
+  return status;
+}
+}

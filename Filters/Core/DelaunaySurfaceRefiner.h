@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file DelaunaySurfaceRefiner.h
+ * @brief Stage 2: flips and new points until every triangle of the surface is strongly Delaunay.
+ *
+ * A triangle is strongly Delaunay if some sphere through its vertices holds no other point of the
+ * surface or the mesh points, neither inside nor on it; triangles of one flat facet with a common
+ * empty circumcircle count as one polygon. Then every Delaunay tetrahedralization of the points
+ * contains the surface (Filters/Core/README.md).
+ *
+ * Method (thesis 6.3):
+ *  1. find the structural edges (Def. 6.2), flip to saturation (recursive triangle flip, Def. 6.1);
+ *  2. test each triangle by the chosen criterion, with the double sphere (Crit. 6.1) in at most two
+ *     searches of the point octree, and remember the sphere that proves it;
+ *  3. for a triangle that fails: flip; or split the structural edge that is disturbed (type P:
+ *     project the disturbing point, type R: rotate it about the shared vertex); or mirror the
+ *     disturbing point into the triangle's facet (type P for thin layers, type R for sharp dihedral
+ *     angles); or insert the projected circumcenter found by the walk (Fig. 6.10);
+ *  4. test again the triangles whose proving sphere holds the new point.
+ *
+ * Guarantees: exact decisions; input points keep their coordinates and ids; new points follow them.
+ * Deterministic.
+ * Failure: InvalidInput for a surface that breaks the invariants of TriangleMesh.h. Triangles that
+ * stay bad because a limit stops the refinement are listed in UnresolvedTriangles: never silently.
+ */
+#ifndef cdmDelaunaySurfaceRefiner_h
+#define cdmDelaunaySurfaceRefiner_h
+
+#include "ExecutionContext.h"
+#include "Status.h"
+#include "StructuralEdges.h"
+#include "TriangleMesh.h"
+
+#include <functional>
+
+namespace cdm
+{
+enum class SurfaceCriterion
+{
+  /** Criterion 5.2 by the double sphere 6.1: the surface is part of the Delaunay mesh. */
+  Delaunay = 0,
+  /** Criterion 3.1: the smallest sphere of each triangle is empty. */
+  SmallestSphere = 1,
+  /** Criterion 3.2: those of each triangle and of its edges are: closed control volumes. */
+  SmallestSphereAndEdges = 2
+};
+
+struct DelaunaySurfaceRefinerOptions
+{
+  SurfaceCriterion Criterion = SurfaceCriterion::Delaunay;
+  /** What counts as flat, see StructuralEdges.h. */
+  StructuralEdgeOptions StructuralEdges;
+  /** Triangles with a smaller angle are refined where possible. Degrees, 0 (off) to 30. */
+  double MinimumAngle = 0.0;
+  /** Triangles with a larger area are refined. Square model units; 0: off. */
+  double MaximumArea = 0.0;
+  /** Edges longer than this are split. Model units; 0: off. */
+  double MaximumEdgeLength = 0.0;
+  /** Mesh points closer to the surface, as a ratio of the diagonal, are dropped. >= 0. */
+  double MeshPointClearanceRatio = 1e-3;
+  /** No edge is made shorter than this ratio of the diagonal. >= 0. */
+  double MinimumEdgeRatio = 1e-9;
+  /** The refinement stops when it has made so many points. 0: no limit. */
+  Id MaximumNewPoints = 0;
+};
+
+struct DelaunaySurfaceRefinerInput
+{
+  const TriangleMesh* Surface = nullptr;
+  /** May be null. */
+  const std::vector<Vec3>* MeshPoints = nullptr;
+  /** Target edge length at a position, model units; may be empty. */
+  std::function<double(const Vec3&)> Sizing;
+};
+
+struct DelaunaySurfaceRefinerReport
+{
+  Id EdgePoints = 0;
+  Id FacetPoints = 0;
+  Id Flips = 0;
+  Id DroppedMeshPoints = 0;
+};
+
+struct DelaunaySurfaceRefinerOutput
+{
+  /** SourceCells: triangle of the input surface. */
+  TriangleMesh Surface;
+  /** One for each point after those of the input. */
+  std::vector<PointParents> NewPoints;
+  /** The pieces of the structural edges; Chain is that of the input surface. */
+  std::vector<StructuralEdge> StructuralEdges;
+  /** Ids of the mesh points that are kept, ascending. */
+  std::vector<Id> KeptMeshPoints;
+  /** Triangles that do not fulfil the criterion, ascending. */
+  std::vector<Id> UnresolvedTriangles;
+  DelaunaySurfaceRefinerReport Report;
+};
+
+Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,
+  const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
+  DelaunaySurfaceRefinerOutput& output);
+}
+
+#endif

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "EmptySphereSearch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace cdm
+{
+namespace
+{
+constexpr Id LeafSize = 8;
+
+/**
+ * Relative error of a coefficient rounded to double and of the few operations on it: less than 16
+ * units in the last place.
+ */
+constexpr double RoundingBound = 0x1p-49;
+
+/**
+ * Absolute error of the coefficients before they are rounded, and of what is made of them in twice
+ * the working precision: sums of fewer than 60 products that are below 20 in units of Size and of
+ * the point's distance, each off by less than 2^-100.
+ */
+constexpr double WideBound = 0x1p-88;
+
+/** Unevaluated sum of two doubles (T. J. Dekker, 1971, doi:10.1007/BF01397083). */
+struct Wide
+{
+  double High = 0.0;
+  double Low = 0.0;
+};
+
+Wide AddOrdered(double larger, double smaller)
+{
+  const double sum = larger + smaller;
+  return { sum, smaller - (sum - larger) };
+}
+
+Wide AddExactly(double a, double b)
+{
+  const double sum = a + b;
+  const double part = sum - a;
+  return { sum, (a - (sum - part)) + (b - part) };
+}
+
+Wide operator+(const Wide& a, const Wide& b)
+{
+  const Wide high = AddExactly(a.High, b.High);
+  const Wide low = AddExactly(a.Low, b.Low);
+  const Wide sum = AddOrdered(high.High, high.Low + low.High);
+  return AddOrdered(sum.High, sum.Low + low.Low);
+}
+
+Wide operator-(const Wide& a, const Wide& b)
+{
+  return a + Wide{ -b.High, -b.Low };
+}
+
+Wide operator*(const Wide& a, const Wide& b)
+{
+  const double product = a.High * b.High;
+  const double error = std::fma(a.High, b.High, -product);
+  return AddOrdered(product, error + (a.High * b.Low + a.Low * b.High));
+}
+
+struct WideVec3
+{
+  Wide X;
+  Wide Y;
+  Wide Z;
+};
+
+WideVec3 operator+(const WideVec3& a, const WideVec3& b)
+{
+  return { a.X + b.X, a.Y + b.Y, a.Z + b.Z };
+}
+
+WideVec3 operator-(const WideVec3& a, const WideVec3& b)
+{
+  return { a.X - b.X, a.Y - b.Y, a.Z - b.Z };
+}
+
+WideVec3 operator*(const Wide& s, const WideVec3& a)
+{
+  return { s * a.X, s * a.Y, s * a.Z };
+}
+
+Wide Dot(const WideVec3& a, const WideVec3& b)
+{
+  return a.X * b.X + a.Y * b.Y + a.Z * b.Z;
+}
+
+WideVec3 Cross(const WideVec3& a, const WideVec3& b)
+{
+  return { a.Y * b.Z - a.Z * b.Y, a.Z * b.X - a.X * b.Z, a.X * b.Y - a.Y * b.X };
+}
+
+Vec3 GetHigh(const WideVec3& a)
+{
+  return { a.X.High, a.Y.High, a.Z.High };
+}
+
+Vec3 GetLow(const WideVec3& a)
+{
+  return { a.X.Low, a.Y.Low, a.Z.Low };
+}
+
+/** (a - b) * scale without an error, for scale a power of two. */
+WideVec3 SubtractExactly(const Vec3& a, const Vec3& b, double scale)
+{
+  const Wide x = AddExactly(a.X, -b.X);
+  const Wide y = AddExactly(a.Y, -b.Y);
+  const Wide z = AddExactly(a.Z, -b.Z);
+  return { { scale * x.High, scale * x.Low }, { scale * y.High, scale * y.Low },
+    { scale * z.High, scale * z.Low } };
+}
+
+double GetLargestComponent(const Vec3& a)
+{
+  return std::max({ std::abs(a.X), std::abs(a.Y), std::abs(a.Z) });
+}
+
+/** The power of two above a length, for which scaled components stay below one. */
+double GetPowerAbove(double length)
+{
+  int exponent = 0;
+  std::frexp(length, &exponent);
+  return std::ldexp(1.0, exponent);
+}
+} // namespace
+
+SphereForm::SphereForm(const Vec3& a, const Vec3& b)
+  : Origin(a), Size(GetPowerAbove(GetLargestComponent(b - a)))
+{
+  const WideVec3 edge = SubtractExactly(b, a, 1.0);
+  this->Gradient = GetHigh(edge);
+  this->GradientRest = GetLow(edge);
+}
+
+SphereForm::SphereForm(const Vec3& a, const Vec3& b, const Vec3& c)
+  : Origin(a), Size(GetPowerAbove(std::max(GetLargestComponent(b - a), GetLargestComponent(c - a))))
+{
+  const WideVec3 u = SubtractExactly(b, a, 1.0 / this->Size);
+  const WideVec3 v = SubtractExactly(c, a, 1.0 / this->Size);
+  const WideVec3 normal = Cross(u, v);
+  const Wide curvature = Dot(normal, normal);
+  const WideVec3 gradient = Cross(normal, Dot(v, v) * u - Dot(u, u) * v);
+  this->Curvature = curvature.High;
+  this->CurvatureRest = curvature.Low;
+  this->Gradient = this->Size * GetHigh(gradient);
+  this->GradientRest = this->Size * GetLow(gradient);
+}
+
+SphereForm::SphereForm(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+  : Origin(a), Size(GetPowerAbove(std::max({ GetLargestComponent(b - a), GetLargestComponent(c - a),
+                 GetLargestComponent(d - a) })))
+{
+  const WideVec3 u = SubtractExactly(b, a, 1.0 / this->Size);
+  const WideVec3 v = SubtractExactly(c, a, 1.0 / this->Size);
+  const WideVec3 w = SubtractExactly(d, a, 1.0 / this->Size);
+  const WideVec3 uv = Cross(u, v);
+  const Wide curvature = Dot(uv, w);
+  const WideVec3 gradient = Dot(w, w) * uv + Dot(v, v) * Cross(w, u) + Dot(u, u) * Cross(v, w);
+  if (curvature.High > 0.0)
+  {
+    this->Curvature = curvature.High;
+    this->CurvatureRest = curvature.Low;
+  }
+  else
+  {
+    // The determinant is positive: where it is too small to tell, the sphere is a half space.
+    this->Curvature = 0.0;
+  }
+  this->Gradient = this->Size * GetHigh(gradient);
+  this->GradientRest = this->Size * GetLow(gradient);
+}
+
+bool SphereForm::MayTouch(const Vec3& lower, const Vec3& upper) const
+{
+  double smallest = 0.0;
+  double error = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double begin = lower[axis] - this->Origin[axis];
+    const double end = upper[axis] - this->Origin[axis];
+    const double gradient = this->Gradient[axis];
+    // The parabola's lowest point, or the lower end of the straight line that it is without
+    // curvature.
+    double lowest = gradient > 0.0 ? end : begin;
+    if (this->Curvature > 0.0)
+    {
+      lowest = std::min(std::max(gradient / (2.0 * this->Curvature), begin), end);
+    }
+    smallest += lowest * (this->Curvature * lowest - gradient);
+    const double reach = std::max(std::abs(begin), std::abs(end));
+    error += reach *
+      (RoundingBound * (this->Curvature * reach + std::abs(gradient)) +
+        WideBound * (reach + this->Size));
+  }
+  // In this form a result that is not a number counts as touched.
+  return !(smallest > error);
+}
+
+bool SphereForm::MayHold(const Vec3& point) const
+{
+  if (!this->MayTouch(point, point))
+  {
+    return false;
+  }
+  const WideVec3 offset = SubtractExactly(point, this->Origin, 1.0);
+  const WideVec3 gradient{ { this->Gradient.X, this->GradientRest.X },
+    { this->Gradient.Y, this->GradientRest.Y }, { this->Gradient.Z, this->GradientRest.Z } };
+  const Wide value =
+    Wide{ this->Curvature, this->CurvatureRest } * Dot(offset, offset) - Dot(offset, gradient);
+  const double reach = std::abs(offset.X.High) + std::abs(offset.Y.High) + std::abs(offset.Z.High);
+  return !(value.High > WideBound * reach * (reach + this->Size));
+}
+
+EmptySphereSearch::EmptySphereSearch(const std::vector<Vec3>& points) : Order(points.size())
+{
+  std::iota(this->Order.begin(), this->Order.end(), 0);
+  if (!points.empty())
+  {
+    this->Nodes.reserve(points.size() / (LeafSize / 2) + 1);
+    this->Build(points, 0, static_cast<Id>(points.size()));
+  }
+  this->Positions.reserve(points.size());
+  for (const Id point : this->Order)
+  {
+    this->Positions.push_back(points[point]);
+  }
+}
+
+void EmptySphereSearch::Build(const std::vector<Vec3>& points, Id begin, Id end)
+{
+  const std::size_t index = this->Nodes.size();
+  this->Nodes.emplace_back();
+  Vec3 lower = points[this->Order[begin]];
+  Vec3 upper = lower;
+  for (Id i = begin + 1; i < end; ++i)
+  {
+    const Vec3& point = points[this->Order[i]];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      lower[axis] = std::min(lower[axis], point[axis]);
+      upper[axis] = std::max(upper[axis], point[axis]);
+    }
+  }
+  this->Nodes[index].Lower = lower;
+  this->Nodes[index].Upper = upper;
+  this->Nodes[index].Begin = begin;
+  this->Nodes[index].End = end;
+  if (end - begin <= LeafSize)
+  {
+    return;
+  }
+  const Vec3 extent = upper - lower;
+  const int axis = extent.X >= extent.Y && extent.X >= extent.Z ? 0 : extent.Y >= extent.Z ? 1 : 2;
+  const Id middle = begin + (end - begin) / 2;
+  std::nth_element(this->Order.begin() + begin, this->Order.begin() + middle,
+    this->Order.begin() + end, [&](Id a, Id b) { return points[a][axis] < points[b][axis]; });
+  this->Build(points, begin, middle);
+  this->Nodes[index].Right = static_cast<Id>(this->Nodes.size());
+  this->Build(points, middle, end);
+}
+} // namespace cdm

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file EmptySphereSearch.h
+ * @brief The mesh checker's own search: which points may lie inside of a sphere?
+ *
+ * Method: a sphere through point a with center c holds p exactly where
+ * g(p) = D |p - a|^2 - 2 (p - a) . D (c - a) is negative; D and D (c - a) are polynomials of the
+ * points, evaluated in twice the working precision, so g stays accurate where the center runs off
+ * to infinity and the sphere becomes a half space. g is a sum over the axes, each convex: its
+ * minimum over a box is found without a square root. Boxes of a k-d tree where it is positive by
+ * more than the error bound are left out.
+ *
+ * Guarantees: no point strictly inside or on the sphere is left out (up to overflow, where
+ * nothing is left out).
+ * Cost: O(n log n) to build; 28 bytes per point and 64 bytes per eight points.
+ */
+#ifndef cdmEmptySphereSearch_h
+#define cdmEmptySphereSearch_h
+
+#include "Types.h"
+#include "Vec3.h"
+
+#include <array>
+#include <vector>
+
+namespace cdm
+{
+/** A sphere in the form above. */
+class SphereForm
+{
+public:
+  /** The smallest sphere through two points. */
+  SphereForm(const Vec3& a, const Vec3& b);
+  /** The smallest sphere through three points, the equatorial sphere of the triangle. */
+  SphereForm(const Vec3& a, const Vec3& b, const Vec3& c);
+  /** The circumsphere of a tetrahedron of positive orientation. */
+  SphereForm(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+  /** False only if no point of the box lies inside or on the sphere. */
+  bool MayTouch(const Vec3& lower, const Vec3& upper) const;
+
+  /**
+   * False only if the point lies outside of the sphere; rarely true for a point that does, as g is
+   * evaluated in twice the working precision where the box's bound does not tell.
+   */
+  bool MayHold(const Vec3& point) const;
+
+private:
+  Vec3 Origin;
+  /** Length by which the polynomials are scaled: a power of two near the size of the simplex. */
+  double Size = 1.0;
+  /** D in units of Size; what rounding leaves of it. */
+  double Curvature = 1.0;
+  double CurvatureRest = 0.0;
+  /** 2 D (c - a), likewise. */
+  Vec3 Gradient;
+  Vec3 GradientRest;
+};
+
+class EmptySphereSearch
+{
+public:
+  /** The points have to be finite, and to outlive the search. */
+  explicit EmptySphereSearch(const std::vector<Vec3>& points);
+
+  /**
+   * Calls isInside(id) for every point that may lie in the sphere, until it returns true; returns
+   * whether it did.
+   */
+  template <typename Predicate>
+  bool FindInside(const SphereForm& sphere, Predicate&& isInside) const
+  {
+    // Every level of the tree leaves at most one node behind.
+    std::array<Id, 64> stack;
+    int size = 0;
+    if (!this->Nodes.empty())
+    {
+      stack[size++] = 0;
+    }
+    while (size > 0)
+    {
+      const Id index = stack[--size];
+      const Node& node = this->Nodes[index];
+      if (!sphere.MayTouch(node.Lower, node.Upper))
+      {
+        continue;
+      }
+      if (node.Right != NoId)
+      {
+        stack[size++] = node.Right;
+        stack[size++] = index + 1;
+        continue;
+      }
+      for (Id i = node.Begin; i < node.End; ++i)
+      {
+        if (sphere.MayHold(this->Positions[i]) && isInside(this->Order[i]))
+        {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+private:
+  /** The left child follows its parent. */
+  struct Node
+  {
+    Vec3 Lower;
+    Vec3 Upper;
+    Id Begin = 0;
+    Id End = 0;
+    /** NoId: a leaf. */
+    Id Right = NoId;
+  };
+
+  void Build(const std::vector<Vec3>& points, Id begin, Id end);
+
+  std::vector<Node> Nodes;
+  std::vector<Id> Order;
+  /** The points in that order. */
+  std::vector<Vec3> Positions;
+};
+} // namespace cdm
+
+#endif

@@ -1,0 +1,807 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MeshChecks.h"
+
+#include "EmptySphereSearch.h"
+#include "Predicates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+constexpr double DegreesPerRadian = 57.29577951308232;
+constexpr std::size_t ContinueInterval = 1 << 12;
+constexpr std::size_t MaximumNumberOfExamples = 10;
+
+/** Facet ids are 4 * tetrahedron + i and have to fit into an Id. */
+constexpr std::size_t MaximumNumberOfTetrahedra = std::numeric_limits<Id>::max() / 4;
+
+/**
+ * Sum whose error does not grow with the number of terms (A. Neumaier, 1974,
+ * doi:10.1002/zamm.19740540106), in extended precision where the machine has it.
+ */
+class CompensatedSum
+{
+public:
+  void Add(long double term)
+  {
+    const long double sum = this->Sum + term;
+    this->Correction +=
+      std::abs(this->Sum) >= std::abs(term) ? (this->Sum - sum) + term : (term - sum) + this->Sum;
+    this->Sum = sum;
+  }
+  double Get() const { return static_cast<double>(this->Sum + this->Correction); }
+
+private:
+  long double Sum = 0.0L;
+  long double Correction = 0.0L;
+};
+
+/** Six volumes of the tetrahedron (origin, a, b, c). */
+long double GetDeterminant(const Vec3& origin, const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  const long double ax = static_cast<long double>(a.X) - origin.X;
+  const long double ay = static_cast<long double>(a.Y) - origin.Y;
+  const long double az = static_cast<long double>(a.Z) - origin.Z;
+  const long double bx = static_cast<long double>(b.X) - origin.X;
+  const long double by = static_cast<long double>(b.Y) - origin.Y;
+  const long double bz = static_cast<long double>(b.Z) - origin.Z;
+  const long double cx = static_cast<long double>(c.X) - origin.X;
+  const long double cy = static_cast<long double>(c.Y) - origin.Y;
+  const long double cz = static_cast<long double>(c.Z) - origin.Z;
+  return ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx);
+}
+
+/** Sort the points of a triangle; true if its normal keeps its direction. */
+bool SortPoints(TriangleIds& triangle)
+{
+  bool isEven = true;
+  const auto order = [&](int i, int j)
+  {
+    if (triangle[i] > triangle[j])
+    {
+      std::swap(triangle[i], triangle[j]);
+      isEven = !isEven;
+    }
+  };
+  order(0, 1);
+  order(1, 2);
+  order(0, 1);
+  return isEven;
+}
+
+/** A facet of a tetrahedron, or a triangle of the boundary, found by its sorted points. */
+struct FacetRecord
+{
+  TriangleIds Points;
+  /** Facet id, or id of the triangle. */
+  Id Source;
+  /** Whether the normal of the sorted points is the source's. */
+  bool IsEven;
+
+  friend bool operator<(const FacetRecord& a, const FacetRecord& b)
+  {
+    return a.Points != b.Points ? a.Points < b.Points : a.Source < b.Source;
+  }
+};
+
+std::vector<FacetRecord> CollectFacets(const TetMesh& mesh)
+{
+  std::vector<FacetRecord> facets;
+  facets.reserve(4 * mesh.Tetrahedra.size());
+  for (Id tetrahedron = 0; tetrahedron < static_cast<Id>(mesh.Tetrahedra.size()); ++tetrahedron)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      FacetRecord facet{ GetFacet(mesh.Tetrahedra[tetrahedron], i), 4 * tetrahedron + i, true };
+      facet.IsEven = SortPoints(facet.Points);
+      facets.push_back(facet);
+    }
+  }
+  std::sort(facets.begin(), facets.end());
+  return facets;
+}
+
+template <typename Iterator>
+Iterator FindEndOfGroup(Iterator begin, Iterator end)
+{
+  return std::find_if(
+    begin, end, [&](const FacetRecord& other) { return other.Points != begin->Points; });
+}
+
+template <std::size_t Size>
+std::vector<Id> FindOutOfRange(
+  const std::vector<std::array<Id, Size>>& cells, std::size_t numberOfPoints)
+{
+  std::vector<Id> found;
+  for (std::size_t cell = 0; cell < cells.size(); ++cell)
+  {
+    for (const Id point : cells[cell])
+    {
+      if (point < 0 || static_cast<std::size_t>(point) >= numberOfPoints)
+      {
+        found.push_back(static_cast<Id>(cell));
+        break;
+      }
+    }
+  }
+  return found;
+}
+
+std::vector<Id> FindNotFinite(const std::vector<Vec3>& points)
+{
+  std::vector<Id> found;
+  for (std::size_t point = 0; point < points.size(); ++point)
+  {
+    if (!IsFinite(points[point]))
+    {
+      found.push_back(static_cast<Id>(point));
+    }
+  }
+  return found;
+}
+
+Status CheckTetrahedra(const TetMesh& mesh)
+{
+  if (mesh.Tetrahedra.size() > MaximumNumberOfTetrahedra)
+  {
+    return Status::InvalidInput("The mesh has more than " +
+      std::to_string(MaximumNumberOfTetrahedra) + " tetrahedra: split it.");
+  }
+  std::vector<Id> cells = FindOutOfRange(mesh.Tetrahedra, mesh.Points.size());
+  if (!cells.empty())
+  {
+    return Status::InvalidInput(
+      std::to_string(cells.size()) + " tetrahedra refer to points that do not exist.",
+      std::move(cells));
+  }
+  return {};
+}
+
+Status CheckInput(const TetMesh& mesh, const TriangleMesh* boundary)
+{
+  Status status = CheckTetrahedra(mesh);
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  if (mesh.Regions.size() != mesh.Tetrahedra.size() ||
+    mesh.Neighbors.size() != mesh.Tetrahedra.size())
+  {
+    return Status::InvalidInput("The mesh needs one region and four neighbours for each "
+                                "tetrahedron: BuildNeighbors() makes the latter.");
+  }
+  std::vector<Id> points = FindNotFinite(mesh.Points);
+  if (!points.empty())
+  {
+    return Status::InvalidInput(
+      std::to_string(points.size()) + " points of the mesh have coordinates that are not finite.",
+      {}, std::move(points));
+  }
+  if (boundary == nullptr)
+  {
+    return {};
+  }
+  std::vector<Id> triangles = FindOutOfRange(boundary->Triangles, boundary->Points.size());
+  if (!triangles.empty())
+  {
+    return Status::InvalidInput(std::to_string(triangles.size()) +
+        " triangles of the boundary refer to points that do not exist.",
+      std::move(triangles));
+  }
+  if (!boundary->Labels.empty() && boundary->Labels.size() != boundary->Triangles.size())
+  {
+    return Status::InvalidInput("The boundary needs no labels or one pair for each triangle.");
+  }
+  points = FindNotFinite(boundary->Points);
+  if (!points.empty())
+  {
+    return Status::InvalidInput(std::to_string(points.size()) +
+        " points of the boundary have coordinates that are not finite.",
+      {}, std::move(points));
+  }
+  return {};
+}
+
+/** Runs the checks one after the other on one mesh. */
+class Checker
+{
+public:
+  Checker(const TetMesh& mesh, const TriangleMesh* boundary, MeshCheckReport& report)
+    : Mesh(mesh), Boundary(boundary), Report(report)
+  {
+  }
+
+  Status Run(const ExecutionContext& context);
+
+private:
+  /** Volume of a region from its tetrahedra and from its boundary. */
+  struct Region
+  {
+    Id Tetrahedra = 0;
+    CompensatedSum Volume;
+    CompensatedSum EnclosedVolume;
+    /** Origin of the divergence theorem: a point of the region's boundary. */
+    Id Origin = NoId;
+  };
+
+  void CheckPoints();
+  void CollectRegions();
+  bool CheckTetrahedra(const ExecutionContext& context);
+  bool CheckFacets(const ExecutionContext& context);
+  bool CheckSpheres(const EmptySphereSearch& search, const ExecutionContext& context);
+  bool CheckBoundarySpheres(const EmptySphereSearch& search, const ExecutionContext& context);
+  void FinishVolumes();
+
+  Id FindMeshPoint(Id boundaryPoint) const;
+  std::vector<FacetRecord> CollectBoundary();
+  void CheckNeighbors(const FacetRecord* begin, const FacetRecord* end);
+  void CheckBoundaryTriangle(const FacetRecord& triangle, const RegionPair& regions);
+  void AddEnclosedVolume(Id triangle, const RegionPair& regions);
+  Region* FindRegion(Id region);
+  void AddExample(Id tetrahedron);
+  const Vec3& GetPoint(Id tetrahedron, int vertex) const
+  {
+    return this->Mesh.Points[this->Mesh.Tetrahedra[tetrahedron][vertex]];
+  }
+
+  const TetMesh& Mesh;
+  const TriangleMesh* Boundary;
+  MeshCheckReport& Report;
+  /** Exact orientation of each tetrahedron. */
+  std::vector<signed char> Orientations;
+  std::vector<char> IsUsed;
+  /** Points in lexicographic order, used ones first among coincident ones. */
+  std::vector<Id> SortedPoints;
+  /** Outer and interface facets of the mesh. */
+  std::vector<TriangleIds> BorderFacets;
+  /** Ascending ids of the regions, and what is known of each. */
+  std::vector<Id> RegionIds;
+  std::vector<Region> Regions;
+};
+
+Status Checker::Run(const ExecutionContext& context)
+{
+  this->Report.Tetrahedra = static_cast<Id>(this->Mesh.Tetrahedra.size());
+  this->Report.Points = static_cast<Id>(this->Mesh.Points.size());
+  this->Report.HasBoundary = this->Boundary != nullptr;
+  this->CheckPoints();
+  this->CollectRegions();
+  if (!this->CheckTetrahedra(context.Part(0.0, 0.2)) || !this->CheckFacets(context.Part(0.2, 0.5)))
+  {
+    return Status::Aborted();
+  }
+  this->FinishVolumes();
+  const EmptySphereSearch search(this->Mesh.Points);
+  if (!this->CheckSpheres(search, context.Part(0.5, 0.9)) ||
+    !this->CheckBoundarySpheres(search, context.Part(0.9, 1.0)))
+  {
+    return Status::Aborted();
+  }
+  return {};
+}
+
+void Checker::CheckPoints()
+{
+  const std::vector<Vec3>& points = this->Mesh.Points;
+  this->IsUsed.assign(points.size(), 0);
+  for (const TetrahedronIds& tetrahedron : this->Mesh.Tetrahedra)
+  {
+    for (const Id point : tetrahedron)
+    {
+      this->IsUsed[point] = 1;
+    }
+  }
+  this->Report.UnusedPoints =
+    static_cast<Id>(std::count(this->IsUsed.begin(), this->IsUsed.end(), 0));
+
+  this->SortedPoints.resize(points.size());
+  std::iota(this->SortedPoints.begin(), this->SortedPoints.end(), 0);
+  std::sort(this->SortedPoints.begin(), this->SortedPoints.end(),
+    [&](Id a, Id b)
+    {
+      return points[a] != points[b]          ? points[a] < points[b]
+        : this->IsUsed[a] != this->IsUsed[b] ? this->IsUsed[a] > this->IsUsed[b]
+                                             : a < b;
+    });
+  for (std::size_t i = 1; i < this->SortedPoints.size(); ++i)
+  {
+    const Id point = this->SortedPoints[i];
+    if (this->IsUsed[point] && points[this->SortedPoints[i - 1]] == points[point])
+    {
+      ++this->Report.CoincidentPoints;
+    }
+  }
+}
+
+void Checker::CollectRegions()
+{
+  this->RegionIds = this->Mesh.Regions;
+  if (this->Boundary != nullptr)
+  {
+    for (const RegionPair& label : this->Boundary->Labels)
+    {
+      for (const Id region : { label.Front, label.Back })
+      {
+        if (region != OutsideRegion)
+        {
+          this->RegionIds.push_back(region);
+        }
+      }
+    }
+  }
+  std::sort(this->RegionIds.begin(), this->RegionIds.end());
+  this->RegionIds.erase(
+    std::unique(this->RegionIds.begin(), this->RegionIds.end()), this->RegionIds.end());
+  this->Regions.resize(this->RegionIds.size());
+}
+
+Checker::Region* Checker::FindRegion(Id region)
+{
+  const auto found = std::lower_bound(this->RegionIds.begin(), this->RegionIds.end(), region);
+  return found == this->RegionIds.end() || *found != region
+    ? nullptr
+    : &this->Regions[found - this->RegionIds.begin()];
+}
+
+void Checker::AddExample(Id tetrahedron)
+{
+  std::vector<Id>& examples = this->Report.Examples;
+  if (examples.size() < MaximumNumberOfExamples &&
+    std::find(examples.begin(), examples.end(), tetrahedron) == examples.end())
+  {
+    examples.push_back(tetrahedron);
+  }
+}
+
+bool Checker::CheckTetrahedra(const ExecutionContext& context)
+{
+  const std::size_t count = this->Mesh.Tetrahedra.size();
+  this->Orientations.resize(count);
+  double smallest = this->Report.SmallestDihedralAngle;
+  double largest = this->Report.LargestDihedralAngle;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    if (i % ContinueInterval == 0 &&
+      !context.Continue(static_cast<double>(i) / count, "Checking tetrahedra"))
+    {
+      return false;
+    }
+    const Id tetrahedron = static_cast<Id>(i);
+    const std::array<Vec3, 4> p{ this->GetPoint(tetrahedron, 0), this->GetPoint(tetrahedron, 1),
+      this->GetPoint(tetrahedron, 2), this->GetPoint(tetrahedron, 3) };
+    const int orientation = Orientation(p[0], p[1], p[2], p[3]);
+    this->Orientations[i] = static_cast<signed char>(orientation);
+    if (orientation <= 0)
+    {
+      ++(orientation < 0 ? this->Report.InvertedTetrahedra : this->Report.FlatTetrahedra);
+      this->AddExample(tetrahedron);
+    }
+    const long double determinant = GetDeterminant(p[0], p[1], p[2], p[3]);
+    Region& region = *this->FindRegion(this->Mesh.Regions[i]);
+    ++region.Tetrahedra;
+    region.Volume.Add(determinant / 6.0L);
+
+    std::array<Vec3, 4> normals;
+    for (int facet = 0; facet < 4; ++facet)
+    {
+      const int* ids = FacetVertices[facet];
+      normals[facet] = Cross(p[ids[1]] - p[ids[0]], p[ids[2]] - p[ids[0]]);
+    }
+    for (int j = 0; j < 4; ++j)
+    {
+      for (int k = j + 1; k < 4; ++k)
+      {
+        // Facets j and k meet in the edge of the other two vertices; n x m is the edge times the
+        // determinant.
+        const int first = j == 0 ? (k == 1 ? 2 : 1) : 0;
+        const double edge = Distance(p[first], p[6 - j - k - first]);
+        const double angle = std::atan2(
+          edge * static_cast<double>(std::abs(determinant)), -Dot(normals[j], normals[k]));
+        smallest = std::min(smallest, angle * DegreesPerRadian);
+        largest = std::max(largest, angle * DegreesPerRadian);
+      }
+    }
+  }
+  this->Report.SmallestDihedralAngle = smallest;
+  this->Report.LargestDihedralAngle = largest;
+  return true;
+}
+
+Id Checker::FindMeshPoint(Id boundaryPoint) const
+{
+  // Usually the mesh begins with the points of its boundary; otherwise coordinates decide.
+  const std::vector<Vec3>& points = this->Mesh.Points;
+  const Vec3& position = this->Boundary->Points[boundaryPoint];
+  if (static_cast<std::size_t>(boundaryPoint) < points.size() &&
+    points[boundaryPoint] == position && this->IsUsed[boundaryPoint])
+  {
+    return boundaryPoint;
+  }
+  const auto found = std::lower_bound(this->SortedPoints.begin(), this->SortedPoints.end(),
+    position, [&](Id point, const Vec3& value) { return points[point] < value; });
+  return found != this->SortedPoints.end() && points[*found] == position ? *found : NoId;
+}
+
+std::vector<FacetRecord> Checker::CollectBoundary()
+{
+  std::vector<Id> meshPoints(this->Boundary->Points.size());
+  for (std::size_t point = 0; point < meshPoints.size(); ++point)
+  {
+    meshPoints[point] = this->FindMeshPoint(static_cast<Id>(point));
+  }
+  std::vector<FacetRecord> triangles;
+  triangles.reserve(this->Boundary->Triangles.size());
+  for (std::size_t i = 0; i < this->Boundary->Triangles.size(); ++i)
+  {
+    const TriangleIds& ids = this->Boundary->Triangles[i];
+    FacetRecord triangle{ { meshPoints[ids[0]], meshPoints[ids[1]], meshPoints[ids[2]] },
+      static_cast<Id>(i), true };
+    triangle.IsEven = SortPoints(triangle.Points);
+    triangles.push_back(triangle);
+  }
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+void Checker::CheckNeighbors(const FacetRecord* begin, const FacetRecord* end)
+{
+  if (end - begin > 2)
+  {
+    return;
+  }
+  for (const FacetRecord* facet = begin; facet != end; ++facet)
+  {
+    const Id expected = end - begin == 1 ? NoId : begin[facet == begin ? 1 : 0].Source;
+    if (this->Mesh.Neighbors[facet->Source / 4][facet->Source % 4] != expected)
+    {
+      ++this->Report.WrongNeighbors;
+      this->AddExample(facet->Source / 4);
+    }
+  }
+}
+
+void Checker::AddEnclosedVolume(Id triangle, const RegionPair& regions)
+{
+  if (regions.Front == regions.Back)
+  {
+    return;
+  }
+  const TriangleIds& ids = this->Boundary->Triangles[triangle];
+  const std::vector<Vec3>& points = this->Boundary->Points;
+  for (const bool isFront : { false, true })
+  {
+    Region* region = this->FindRegion(isFront ? regions.Front : regions.Back);
+    if (region == nullptr)
+    {
+      continue;
+    }
+    if (region->Origin == NoId)
+    {
+      region->Origin = ids[0];
+    }
+    const long double volume =
+      GetDeterminant(points[region->Origin], points[ids[0]], points[ids[1]], points[ids[2]]) / 6.0L;
+    region->EnclosedVolume.Add(isFront ? -volume : volume);
+  }
+}
+
+void Checker::CheckBoundaryTriangle(const FacetRecord& triangle, const RegionPair& regions)
+{
+  const RegionPair sides = triangle.IsEven ? regions : RegionPair{ regions.Back, regions.Front };
+  if (this->Boundary->Labels.empty())
+  {
+    this->AddEnclosedVolume(triangle.Source, sides);
+  }
+  else if (this->Boundary->Labels[triangle.Source] != sides)
+  {
+    ++this->Report.MissingBoundaryTriangles;
+  }
+}
+
+bool Checker::CheckFacets(const ExecutionContext& context)
+{
+  const std::vector<FacetRecord> facets = CollectFacets(this->Mesh);
+  std::vector<FacetRecord> triangles;
+  if (this->Boundary != nullptr)
+  {
+    triangles = this->CollectBoundary();
+    for (std::size_t i = 0; i < this->Boundary->Labels.size(); ++i)
+    {
+      this->AddEnclosedVolume(static_cast<Id>(i), this->Boundary->Labels[i]);
+    }
+  }
+  const auto countMissing = [&](const FacetRecord& triangle)
+  {
+    // Without labels a region that was not to be meshed is told by the points it has for itself.
+    const bool isTouched = std::all_of(triangle.Points.begin(), triangle.Points.end(),
+      [&](Id point) { return point != NoId && this->IsUsed[point]; });
+    if (isTouched || !this->Boundary->Labels.empty())
+    {
+      ++this->Report.MissingBoundaryTriangles;
+    }
+  };
+
+  auto triangle = triangles.cbegin();
+  std::size_t nextContinue = 0;
+  for (auto begin = facets.cbegin(), end = begin; begin != facets.cend(); begin = end)
+  {
+    const std::size_t done = begin - facets.cbegin();
+    if (done >= nextContinue)
+    {
+      nextContinue = done + ContinueInterval;
+      if (!context.Continue(static_cast<double>(done) / facets.size(), "Checking facets"))
+      {
+        return false;
+      }
+    }
+    end = FindEndOfGroup(begin, facets.cend());
+    for (; triangle != triangles.cend() && triangle->Points < begin->Points; ++triangle)
+    {
+      countMissing(*triangle);
+    }
+    auto triangleEnd = triangle;
+    while (triangleEnd != triangles.cend() && triangleEnd->Points == begin->Points)
+    {
+      ++triangleEnd;
+    }
+
+    // Regions on the two sides of the facet with sorted points.
+    RegionPair regions;
+    int behind = 0;
+    int inFront = 0;
+    for (auto facet = begin; facet != end; ++facet)
+    {
+      const Id tetrahedron = facet->Source / 4;
+      const bool isBehind = facet->IsEven == (this->Orientations[tetrahedron] >= 0);
+      ++(isBehind ? behind : inFront);
+      (isBehind ? regions.Back : regions.Front) = this->Mesh.Regions[tetrahedron];
+    }
+    if (behind > 1 || inFront > 1)
+    {
+      ++this->Report.OverfullFacets;
+      this->AddExample(begin->Source / 4);
+    }
+    this->CheckNeighbors(&*begin, &*begin + (end - begin));
+
+    const bool isBorder = end - begin == 1 || regions.Front != regions.Back;
+    if (isBorder)
+    {
+      this->BorderFacets.push_back(begin->Points);
+      if (this->Boundary != nullptr && triangle == triangleEnd)
+      {
+        ++this->Report.UnboundFacets;
+        this->AddExample(begin->Source / 4);
+      }
+    }
+    for (; triangle != triangleEnd; ++triangle)
+    {
+      this->CheckBoundaryTriangle(*triangle, regions);
+    }
+  }
+  for (; triangle != triangles.cend(); ++triangle)
+  {
+    countMissing(*triangle);
+  }
+  return true;
+}
+
+void Checker::FinishVolumes()
+{
+  for (std::size_t i = 0; i < this->Regions.size(); ++i)
+  {
+    const Region& region = this->Regions[i];
+    const double volume = region.Volume.Get();
+    const double enclosed = region.EnclosedVolume.Get();
+    this->Report.Regions.push_back({ this->RegionIds[i], region.Tetrahedra, volume, enclosed });
+    if (this->Boundary != nullptr)
+    {
+      const double difference = std::abs(volume - enclosed);
+      const double error = difference == 0.0 ? 0.0
+        : enclosed == 0.0                    ? std::numeric_limits<double>::infinity()
+                                             : difference / std::abs(enclosed);
+      this->Report.LargestVolumeError = std::max(this->Report.LargestVolumeError, error);
+    }
+  }
+}
+
+bool Checker::CheckSpheres(const EmptySphereSearch& search, const ExecutionContext& context)
+{
+  const std::size_t count = this->Mesh.Tetrahedra.size();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    if (i % ContinueInterval == 0 &&
+      !context.Continue(static_cast<double>(i) / count, "Checking circumspheres"))
+    {
+      return false;
+    }
+    if (this->Orientations[i] == 0)
+    {
+      continue;
+    }
+    // An inverted tetrahedron has a circumsphere too.
+    TetrahedronIds ids = this->Mesh.Tetrahedra[i];
+    if (this->Orientations[i] < 0)
+    {
+      std::swap(ids[0], ids[1]);
+    }
+    const std::vector<Vec3>& points = this->Mesh.Points;
+    const Vec3& a = points[ids[0]];
+    const Vec3& b = points[ids[1]];
+    const Vec3& c = points[ids[2]];
+    const Vec3& d = points[ids[3]];
+    const bool holdsPoint = search.FindInside(SphereForm(a, b, c, d),
+      [&](Id point)
+      {
+        return std::find(ids.begin(), ids.end(), point) == ids.end() &&
+          InSphere(a, b, c, d, points[point]) > 0;
+      });
+    if (holdsPoint)
+    {
+      ++this->Report.NonDelaunayTetrahedra;
+      this->AddExample(static_cast<Id>(i));
+    }
+  }
+  return true;
+}
+
+bool Checker::CheckBoundarySpheres(const EmptySphereSearch& search, const ExecutionContext& context)
+{
+  const std::vector<Vec3>& points = this->Mesh.Points;
+  std::vector<EdgeIds> edges;
+  for (std::size_t i = 0; i < this->BorderFacets.size(); ++i)
+  {
+    if (i % ContinueInterval == 0 &&
+      !context.Continue(0.5 * i / this->BorderFacets.size(), "Checking boundary triangles"))
+    {
+      return false;
+    }
+    const TriangleIds& ids = this->BorderFacets[i];
+    edges.push_back({ ids[0], ids[1] });
+    edges.push_back({ ids[1], ids[2] });
+    edges.push_back({ ids[0], ids[2] });
+    const Vec3& a = points[ids[0]];
+    const Vec3& b = points[ids[1]];
+    const Vec3& c = points[ids[2]];
+    // A degenerate triangle has no sphere; it shows as flat tetrahedra.
+    if (!AreCollinear(a, b, c) &&
+      search.FindInside(SphereForm(a, b, c),
+        [&](Id point)
+        {
+          return std::find(ids.begin(), ids.end(), point) == ids.end() &&
+            InEquatorialSphere(a, b, c, points[point]) > 0;
+        }))
+    {
+      ++this->Report.SmallestSphereViolations;
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  for (std::size_t i = 0; i < edges.size(); ++i)
+  {
+    if (i % ContinueInterval == 0 &&
+      !context.Continue(0.5 + 0.5 * i / edges.size(), "Checking boundary edges"))
+    {
+      return false;
+    }
+    const EdgeIds& ids = edges[i];
+    if (search.FindInside(SphereForm(points[ids[0]], points[ids[1]]),
+          [&](Id point)
+          {
+            return point != ids[0] && point != ids[1] &&
+              InDiametralSphere(points[ids[0]], points[ids[1]], points[point]) > 0;
+          }))
+    {
+      ++this->Report.EdgeSphereViolations;
+    }
+  }
+  return true;
+}
+
+/** "3 name" with the name's plural where needed. */
+std::string Count(Id count, const char* singular, const char* plural)
+{
+  return std::to_string(count) + " " + (count == 1 ? singular : plural);
+}
+} // namespace
+
+bool MeshCheckReport::IsValid(double volumeTolerance) const
+{
+  return this->InvertedTetrahedra == 0 && this->FlatTetrahedra == 0 &&
+    this->NonDelaunayTetrahedra == 0 && this->CoincidentPoints == 0 && this->OverfullFacets == 0 &&
+    this->WrongNeighbors == 0 && this->UnboundFacets == 0 && this->MissingBoundaryTriangles == 0 &&
+    this->LargestVolumeError <= volumeTolerance;
+}
+
+std::string MeshCheckReport::GetSummary() const
+{
+  std::string text = Count(this->Tetrahedra, "tetrahedron, ", "tetrahedra, ") +
+    Count(this->Points, "point, ", "points, ") +
+    Count(static_cast<Id>(this->Regions.size()), "region: ", "regions: ") +
+    std::to_string(this->InvertedTetrahedra) + " inverted, " +
+    std::to_string(this->FlatTetrahedra) + " flat, " + std::to_string(this->NonDelaunayTetrahedra) +
+    " non-Delaunay, ";
+  char number[64];
+  if (this->HasBoundary)
+  {
+    std::snprintf(number, sizeof number, "%.1g", this->LargestVolumeError);
+    text += Count(this->UnboundFacets + this->MissingBoundaryTriangles, "boundary fault, ",
+              "boundary faults, ") +
+      "volume error " + number + ", ";
+  }
+  // What hardly ever happens is named only then.
+  if (this->CoincidentPoints != 0)
+  {
+    text += Count(this->CoincidentPoints, "coincident point, ", "coincident points, ");
+  }
+  if (this->OverfullFacets != 0)
+  {
+    text += Count(this->OverfullFacets, "overfull facet, ", "overfull facets, ");
+  }
+  if (this->WrongNeighbors != 0)
+  {
+    text += Count(this->WrongNeighbors, "wrong neighbour, ", "wrong neighbours, ");
+  }
+  if (this->Tetrahedra != 0)
+  {
+    std::snprintf(number, sizeof number, "dihedral angles %.1f to %.1f degrees",
+      this->SmallestDihedralAngle, this->LargestDihedralAngle);
+    text += number;
+  }
+  else
+  {
+    text += "empty";
+  }
+  return text + (this->IsValid() ? ": valid" : ": not valid");
+}
+
+Status CheckTetMesh(const TetMesh& mesh, const TriangleMesh* boundary,
+  const ExecutionContext& context, MeshCheckReport& report)
+{
+  report = {};
+  const Status status = CheckInput(mesh, boundary);
+  return status.IsOk() ? Checker(mesh, boundary, report).Run(context) : status;
+}
+
+Status BuildNeighbors(TetMesh& mesh)
+{
+  Status status = CheckTetrahedra(mesh);
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  mesh.Neighbors.assign(mesh.Tetrahedra.size(), { NoId, NoId, NoId, NoId });
+  const std::vector<FacetRecord> facets = CollectFacets(mesh);
+  std::vector<Id> overfull;
+  for (auto begin = facets.cbegin(), end = begin; begin != facets.cend(); begin = end)
+  {
+    end = FindEndOfGroup(begin, facets.cend());
+    if (end - begin == 2)
+    {
+      const Id first = begin[0].Source;
+      const Id second = begin[1].Source;
+      mesh.Neighbors[first / 4][first % 4] = second;
+      mesh.Neighbors[second / 4][second % 4] = first;
+    }
+    for (auto facet = begin; end - begin > 2 && facet != end; ++facet)
+    {
+      overfull.push_back(facet->Source / 4);
+    }
+  }
+  if (!overfull.empty())
+  {
+    std::sort(overfull.begin(), overfull.end());
+    overfull.erase(std::unique(overfull.begin(), overfull.end()), overfull.end());
+    return Status::InvalidInput(
+      std::to_string(overfull.size()) + " tetrahedra share a facet with more than one other.",
+      std::move(overfull));
+  }
+  return {};
+}
+} // namespace cdm

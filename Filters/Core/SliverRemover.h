@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SliverRemover.h
+ * @brief Stage 4: better tetrahedra from the same points, with every tetrahedron still Delaunay.
+ *
+ * Method (thesis 3.4.7, 5.7 and 6.4.3), for tetrahedra with a dihedral angle below the target:
+ *  1. one that is numerically flat and has exactly two facets on the outer boundary, which bend by
+ *     less than a degree, is peeled off: a 2-2 flip of these two triangles;
+ *  2. worst first, each tries to vanish by a 2-3 flip at one of its facets or by the removal of one
+ *     of its edges (3-2, 4-4 and larger flips, the ring triangulated best possible by Klincsek's
+ *     dynamic programming). A flip counts if it stays in one region, if each new tetrahedron has
+ *     the circumsphere of one that it replaces (exactly cospherical sets, where any tetrahedra are
+ *     Delaunay), and if the smallest dihedral angle of the tetrahedra involved grows;
+ *  3. one that is flat on an interface, like 1., is handed to the other region if a flip there
+ *     makes it vanish.
+ *
+ * Guarantees: points are neither moved nor removed, none loses its last tetrahedron; no tetrahedron
+ * is inverted or flat; a mesh that was Delaunay is so still. The boundary and the interfaces change
+ * where tetrahedra are peeled off or handed over, by less than the flatness, otherwise not at all.
+ * Deterministic.
+ * Failure: InvalidInput names tetrahedra that are inverted, flat or have wrong neighbours; the mesh
+ * is then left alone. Aborted leaves a valid mesh.
+ * Cost: O(b log b) for b tetrahedra below the target, after one look at all of them; 20 bytes per
+ * tetrahedron.
+ * References: G. T. Klincsek, "Minimal triangulations of polygonal domains", 1980,
+ * doi:10.1016/S0167-5060(08)70044-X; J. R. Shewchuk, "Two discrete optimization algorithms for the
+ * topological improvement of tetrahedral meshes", 2002 (edge removal by it).
+ */
+#ifndef cdmSliverRemover_h
+#define cdmSliverRemover_h
+
+#include "ExecutionContext.h"
+#include "Status.h"
+#include "TetMesh.h"
+
+namespace cdm
+{
+struct SliverRemoverOptions
+{
+  /** Tetrahedra with a smaller dihedral angle are treated. Degrees, 0 to 70. */
+  double DihedralAngleTarget = 15.0;
+  /** A boundary tetrahedron lower than this ratio of the diagonal may be peeled off. >= 0. */
+  double FlatnessRatio = 1e-9;
+};
+
+struct SliverRemoverReport
+{
+  /** Removed at the outer boundary, or handed to another region. */
+  Id PeeledTetrahedra = 0;
+  Id Flips = 0;
+  /** Degrees, before and after; 0 for a mesh without tetrahedra. */
+  double SmallestDihedralAngleBefore = 0.0;
+  double SmallestDihedralAngleAfter = 0.0;
+};
+
+/** Works in place; tetrahedra may be renumbered. */
+Status RemoveSlivers(TetMesh& mesh, const SliverRemoverOptions& options,
+  const ExecutionContext& context, SliverRemoverReport& report);
+} // namespace cdm
+
+#endif

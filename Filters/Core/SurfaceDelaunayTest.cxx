@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SurfaceDelaunayTest.h"
+
+#include "Measures.h"
+#include "Predicates.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cdm
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+constexpr double Epsilon = std::numeric_limits<double>::epsilon();
+
+/** Collects the points in and on the smallest sphere through a triangle. */
+class SmallestSphereVisitor
+{
+public:
+  SmallestSphereVisitor(const std::vector<Vec3>& points, const TriangleIds& triangle,
+    SurfaceDelaunayTest::Result& result)
+    : Triangle(triangle)
+    , A(points[triangle[0]])
+    , B(points[triangle[1]])
+    , C(points[triangle[2]])
+    , Found(result)
+  {
+    this->Center = this->A + GetCircumcenterOffset(this->A, this->B, this->C);
+    this->Radius = Distance(this->Center, this->A);
+    const Vec3 u = this->B - this->A;
+    const Vec3 v = this->C - this->A;
+    const double condition = Norm(u) * Norm(v) / Norm(Cross(u, v));
+    // Relative error of center and radius (see FourthPointSearch.cxx), with room to spare.
+    const double error = 64.0 * Epsilon * condition * condition;
+    const double reach = this->Radius + Norm(u) + Norm(v);
+    const double size = std::abs(this->A.X) + std::abs(this->A.Y) + std::abs(this->A.Z);
+    this->Slack = error * reach + 16.0 * Epsilon * (size + reach);
+    this->IsHopeless = !(this->Slack < 0.1 * this->Radius);
+  }
+
+  double Order(const Box& box) const
+  {
+    double distance = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double c = this->Center[axis];
+      const double nearest = std::min(std::max(c, box.Low[axis]), box.High[axis]) - c;
+      distance += nearest * nearest;
+    }
+    const double reach = this->Radius + this->Slack;
+    return distance > reach * reach && !this->IsHopeless ? Infinity : distance;
+  }
+
+  void Visit(Id id, const Vec3& q)
+  {
+    if (id == this->Triangle[0] || id == this->Triangle[1] || id == this->Triangle[2])
+    {
+      return;
+    }
+    const double distance = Distance(q, this->Center);
+    if (!this->IsHopeless && distance > this->Radius + this->Slack)
+    {
+      return;
+    }
+    const int position = !this->IsHopeless && distance < this->Radius - this->Slack
+      ? 1
+      : InEquatorialSphere(this->A, this->B, this->C, q);
+    if (position > 0)
+    {
+      this->Found.InsideSmallestSphere.push_back(id);
+      if (distance < this->Deepest)
+      {
+        this->Deepest = distance;
+        std::swap(this->Found.InsideSmallestSphere.front(), this->Found.InsideSmallestSphere.back());
+      }
+    }
+    else if (position == 0)
+    {
+      const bool isCoplanar = Orientation(this->A, this->B, this->C, q) == 0;
+      (isCoplanar ? this->Found.Cocircular : this->Found.OnSmallestSphere).push_back(id);
+    }
+  }
+
+  Vec3 Center;
+  double Radius;
+
+private:
+  TriangleIds Triangle;
+  Vec3 A;
+  Vec3 B;
+  Vec3 C;
+  double Slack;
+  /** The triangle is a needle whose sphere doubles cannot describe: everything is exact. */
+  bool IsHopeless;
+  double Deepest = Infinity;
+  SurfaceDelaunayTest::Result& Found;
+};
+}
+
+void SurfaceDelaunayTest::Run(const TriangleIds& triangle, Result& result)
+{
+  result.InsideSmallestSphere.clear();
+  result.OnSmallestSphere.clear();
+  result.Cocircular.clear();
+  SmallestSphereVisitor visitor(this->Points, triangle, result);
+  this->Octree.Visit(visitor);
+  std::sort(result.Cocircular.begin(), result.Cocircular.end());
+  // The proof may be a little larger than the empty sphere: that costs a needless test at most.
+  constexpr double Inflation = 1.0 + 1e-6;
+  result.ProofCenter = visitor.Center;
+  result.ProofRadius = visitor.Radius * Inflation;
+  if (result.InsideSmallestSphere.empty() && result.OnSmallestSphere.empty())
+  {
+    result.IsDelaunay = true;
+    return;
+  }
+
+  this->Search.Find(triangle, this->Front);
+  const TriangleIds reversed{ triangle[0], triangle[2], triangle[1] };
+  this->Search.Find(reversed, this->Back);
+  result.IsDelaunay = this->Front.InsideCircle == NoId &&
+    (this->Front.Point == NoId || this->Back.Point == NoId ||
+      InSphere(this->Points[triangle[0]], this->Points[triangle[1]], this->Points[triangle[2]],
+        this->Points[this->Front.Point], this->Points[this->Back.Point]) < 0);
+  if (result.IsDelaunay)
+  {
+    const Vec3& a = this->Points[triangle[0]];
+    const Vec3 normal = Cross(this->Points[triangle[1]] - a, this->Points[triangle[2]] - a);
+    // The sphere through the disturbing point: in front of the triangle or behind.
+    const double lambda = this->Front.Lambda <= 0.0 ? this->Front.Lambda
+      : this->Back.Lambda <= 0.0                    ? -this->Back.Lambda
+                                                    : 0.0;
+    result.ProofCenter = visitor.Center + lambda * normal;
+    result.ProofRadius = Distance(result.ProofCenter, a) * Inflation;
+    if (!std::isfinite(result.ProofRadius))
+    {
+      result.ProofCenter = visitor.Center;
+      result.ProofRadius = Infinity;
+    }
+  }
+}
+}

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SurfaceDelaunayTest.h
+ * @brief Whether a triangle is strongly Delaunay: the double sphere criterion 6.1, exactly.
+ *
+ * With p the point in front of the triangle whose lambda is smallest and q its like behind, the
+ * triangle is strongly Delaunay if and only if q lies strictly outside of the sphere through the
+ * triangle and p, and no point of its plane lies in or on its circumcircle. Points on the
+ * circumcircle are handed to the caller, who knows whether they belong to the same flat facet.
+ *
+ * Method: if the smallest sphere holds no other point there is nothing more to do; otherwise two
+ * searches of the octree and one in-sphere sign.
+ */
+#ifndef cdmSurfaceDelaunayTest_h
+#define cdmSurfaceDelaunayTest_h
+
+#include "FourthPointSearch.h"
+
+namespace cdm
+{
+class SurfaceDelaunayTest
+{
+public:
+  struct Result
+  {
+    /** Strongly Delaunay, Cocircular points apart. */
+    bool IsDelaunay = false;
+    /** Strictly inside of the smallest sphere through the triangle; the deepest one first. */
+    std::vector<Id> InsideSmallestSphere;
+    /** On that sphere, but not in the plane of the triangle. */
+    std::vector<Id> OnSmallestSphere;
+    /** On the circumcircle, ascending. */
+    std::vector<Id> Cocircular;
+    /**
+     * A ball that contains an empty sphere through the triangle: as long as no point is added
+     * within, the answer stays.
+     */
+    Vec3 ProofCenter;
+    double ProofRadius = 0.0;
+  };
+
+  SurfaceDelaunayTest(const std::vector<Vec3>& points, const PointOctree& octree)
+    : Points(points)
+    , Octree(octree)
+    , Search(points, octree)
+  {
+  }
+
+  void Run(const TriangleIds& triangle, Result& result);
+
+private:
+  const std::vector<Vec3>& Points;
+  const PointOctree& Octree;
+  FourthPointSearch Search;
+  FourthPoint Front;
+  FourthPoint Back;
+};
+}
+
+#endif

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file LayeredStructure.h
+ * @brief Builds the polygon boundary of a structure that is made of layers with one common layout.
+ *
+ * A layout is a planar subdivision: polygonal cells over shared vertices. It is stacked along one
+ * axis: between two levels lies a layer, and each layer gives each cell a region. One layer makes
+ * an extruded cross-section; several make devices that are built up from the wafer, with as many
+ * masks as there are cells to tell apart.
+ *
+ * Method:
+ *  1. a plate for each level and cell, and a wall for each layer and edge of the layout, where the
+ *     regions on both sides differ: a polygon complex without T-junctions, since all of it stands
+ *     on the common layout;
+ *  2. neighbours in one plane with the same regions are joined, as long as the union is a polygon
+ *     without a hole; whether two edges of the layout are in line is an exact sign;
+ *  3. vertices at which nothing but one straight line passes are dropped from all polygons at once.
+ *
+ * Outputs: each polygon once, its normal pointing from the larger region id to the smaller one (so
+ * out of the structure at its outside). Polygons with the same facet id are the pieces of one
+ * connected planar interface; there are several only where it has holes.
+ *
+ * Guarantees: every point is used, no point is there twice, none lies on an edge or in a polygon
+ * that it is no vertex of. Plates and walls that are parallel to the axes are planar exactly, the
+ * other walls between two edges of the layout are, because their vertices have the same coordinates
+ * in the layout. Deterministic.
+ * Cost: O(n^2) for n polygons, which are few.
+ */
+#ifndef cdmLayeredStructure_h
+#define cdmLayeredStructure_h
+
+#include "Core/PolygonSoup.h"
+
+#include <array>
+#include <vector>
+
+namespace cdm
+{
+class LayeredStructure
+{
+public:
+  /**
+   * Stacking axis: 0, 1, 2 for x, y, z; the layout has the other two coordinates, in this order.
+   * First level: where the first layer begins.
+   */
+  LayeredStructure(int axis, double firstLevel) : Axis(axis), Levels{ firstLevel } {}
+
+  /** A vertex of the layout; no two have the same coordinates. */
+  Id AddVertex(double u, double v);
+
+  /**
+   * A cell of the layout: a simple polygon, run in either direction. Cells do not overlap, and
+   * neighbours share all vertices on their common border. Returns the index of the cell.
+   */
+  Id AddCell(std::vector<Id> outline);
+
+  /**
+   * Put a layer on top of the previous one, up to this level, which has to be above. Regions: one
+   * for each cell, OutsideRegion where the layer leaves the cell empty.
+   */
+  void AddLayer(double top, std::vector<Id> regions);
+
+  /** FacetIds: one for each polygon. */
+  PolygonSoup MakeBoundary(std::vector<Id>& facetIds) const;
+
+private:
+  int Axis;
+  std::vector<double> Levels;
+  std::vector<std::array<double, 2>> Vertices;
+  std::vector<std::vector<Id>> Cells;
+  std::vector<std::vector<Id>> Regions;
+};
+} // namespace cdm
+
+#endif

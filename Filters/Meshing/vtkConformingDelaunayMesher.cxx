@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkConformingDelaunayMesher.h"
+
+#include "vtkAdvancingFrontTetrahedralizer.h"
+#include "vtkBoundaryTriangulator.h"
+#include "vtkConformingDelaunayCompatibility.h"
+#include "vtkCoreBridge.h"
+#include "vtkDelaunaySurfaceRefiner.h"
+#include "vtkSliverRemover.h"
+
+#include "Core/MeshChecks.h"
+
+#include <vtkCellData.h>
+#include <vtkCommand.h>
+#include <vtkDataSet.h>
+#include <vtkExecutive.h>
+#include <vtkFieldData.h>
+#include <vtkIdTypeArray.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkStringArray.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <string>
+
+vtkStandardNewMacro(vtkConformingDelaunayMesher);
+
+namespace
+{
+/** Text of an error or warning event without VTK's "ERROR: In file, line, class (address): ". */
+std::string GetMessage(void* callData)
+{
+  std::string text = callData ? static_cast<const char*>(callData) : "";
+  const std::size_t address = text.find("): ");
+  text = address == std::string::npos ? text : text.substr(address + 3);
+  return text.substr(0, text.find_last_not_of(" \n") + 1);
+}
+
+/** Hears what a stage says while it runs, and passes it on to the filter around it. */
+class StageObserver : public vtkCommand
+{
+public:
+  static StageObserver* New() { return new StageObserver; }
+
+  void Execute(vtkObject* caller, unsigned long event, void* callData) override
+  {
+    auto stage = vtkAlgorithm::SafeDownCast(caller);
+    if (event == vtkCommand::WarningEvent)
+    {
+      const std::string text = GetMessage(callData);
+      vtkWarningWithObjectMacro(this->Filter, << text);
+    }
+    else if (event == vtkCommand::ErrorEvent)
+    {
+      // The executive complains as well, after the stage itself.
+      this->Error = this->Error.empty() ? GetMessage(callData) : this->Error;
+    }
+    else if (stage && event == vtkCommand::ProgressEvent)
+    {
+      const char* activity = stage->GetProgressText();
+      const std::string text =
+        this->Name + (activity && *activity ? std::string(": ") + activity : std::string());
+      this->Filter->SetProgressText(text.c_str());
+      this->Filter->UpdateProgress(
+        this->Begin + (this->End - this->Begin) * *static_cast<double*>(callData));
+      if (vtkConformingDelaunayCompatibility::CheckAbort(this->Filter))
+      {
+        stage->SetAbortExecute(1);
+      }
+    }
+  }
+
+  vtkAlgorithm* Filter = nullptr;
+  std::string Name;
+  double Begin = 0.0;
+  double End = 1.0;
+  std::string Error;
+};
+
+/** Update a stage of the pipeline; its progress is [begin, end] of the filter's. */
+cdm::Status RunStage(
+  vtkAlgorithm* filter, vtkAlgorithm* stage, const char* name, double begin, double end)
+{
+  vtkNew<StageObserver> observer;
+  observer->Filter = filter;
+  observer->Name = name;
+  observer->Begin = begin;
+  observer->End = end;
+  for (unsigned long event :
+    { vtkCommand::ProgressEvent, vtkCommand::WarningEvent, vtkCommand::ErrorEvent })
+  {
+    stage->AddObserver(event, observer);
+  }
+  stage->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+  stage->Update();
+  stage->RemoveObserver(observer);
+  stage->GetExecutive()->RemoveObserver(observer);
+  if (vtkConformingDelaunayCompatibility::CheckAbort(filter))
+  {
+    return cdm::Status::Aborted();
+  }
+  return observer->Error.empty() ? cdm::Status{} : cdm::Status::InvalidInput(observer->Error);
+}
+
+using SortedTriangle = std::array<cdm::Id, 3>;
+
+SortedTriangle Sort(SortedTriangle ids)
+{
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+cdm::EdgeIds GetEdge(const cdm::TriangleIds& triangle, int i)
+{
+  const auto ends = std::minmax(triangle[i], triangle[(i + 1) % 3]);
+  return { ends.first, ends.second };
+}
+
+/**
+ * The boundary of a mesh from which flat tetrahedra were peeled off: triangles of the boundary before
+ * that are still there, then the new ones, with an old triangle of the same patch as their source.
+ */
+cdm::TriangleMesh UpdateBoundary(const cdm::TetMesh& mesh, const cdm::TriangleMesh& before)
+{
+  struct Interface
+  {
+    cdm::TriangleIds Ids;
+    cdm::RegionPair Labels;
+  };
+  std::map<SortedTriangle, Interface> interfaces;
+  for (std::size_t t = 0; t < mesh.Tetrahedra.size(); ++t)
+  {
+    for (int facet = 0; facet < 4; ++facet)
+    {
+      const cdm::Id neighbor = mesh.Neighbors[t][facet];
+      const cdm::Id front = neighbor == cdm::NoId ? cdm::OutsideRegion : mesh.Regions[neighbor / 4];
+      const cdm::TriangleIds ids = cdm::GetFacet(mesh.Tetrahedra[t], facet);
+      if (neighbor == cdm::NoId || (front != mesh.Regions[t] && neighbor / 4 > cdm::Id(t)))
+      {
+        interfaces[Sort(ids)] = { ids, { front, mesh.Regions[t] } };
+      }
+    }
+  }
+
+  cdm::TriangleMesh after;
+  after.Points = mesh.Points;
+  std::map<cdm::EdgeIds, std::vector<cdm::Id>> goneByEdge;
+  for (std::size_t i = 0; i < before.Triangles.size(); ++i)
+  {
+    const cdm::TriangleIds& ids = before.Triangles[i];
+    const auto found = interfaces.find(Sort(ids));
+    // A sheet inside of one region is no interface, and nothing is peeled off at it.
+    if (found != interfaces.end() || before.Labels[i].Front == before.Labels[i].Back)
+    {
+      after.Triangles.push_back(ids);
+      after.Labels.push_back(before.Labels[i]);
+      after.SourceCells.push_back(static_cast<cdm::Id>(i));
+      if (found != interfaces.end())
+      {
+        interfaces.erase(found);
+      }
+      continue;
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      goneByEdge[GetEdge(ids, k)].push_back(static_cast<cdm::Id>(i));
+    }
+  }
+  for (const auto& item : interfaces)
+  {
+    const Interface& added = item.second;
+    cdm::Id source = cdm::NoId;
+    for (int k = 0; k < 3 && source == cdm::NoId; ++k)
+    {
+      const auto gone = goneByEdge.find(GetEdge(added.Ids, k));
+      source = gone == goneByEdge.end() ? cdm::NoId : gone->second.front();
+    }
+    after.Triangles.push_back(added.Ids);
+    after.Labels.push_back(added.Labels);
+    after.SourceCells.push_back(source);
+  }
+  return after;
+}
+
+/** Check the mesh, bring its boundary up to date if tetrahedra were peeled off, make outputs. */
+cdm::Status Finish(vtkAlgorithm* filter, vtkUnstructuredGrid* grid, vtkPolyData* surface,
+  bool isPeeled, vtkInformationVector* outputs)
+{
+  cdm::TetMesh mesh;
+  cdm::TriangleMesh boundary;
+  cdm::MeshCheckReport report;
+  cdm::Status status = vtkCoreBridge::ToTetMesh(grid, mesh);
+  if (status.IsOk())
+  {
+    status = vtkCoreBridge::ToTriangleMesh(surface, boundary);
+  }
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(filter).Part(0.95, 1.0);
+  vtkPolyData* boundaryOutput = vtkPolyData::GetData(outputs, 1);
+  if (isPeeled)
+  {
+    // Volumes are those of the boundary before: a patch that was peeled has none.
+    cdm::MeshCheckReport volumes;
+    status = cdm::CheckTetMesh(mesh, &boundary, context.Part(0.0, 0.5), volumes);
+    boundary = UpdateBoundary(mesh, boundary);
+    if (status.IsOk())
+    {
+      status = cdm::CheckTetMesh(mesh, &boundary, context.Part(0.5, 1.0), report);
+    }
+    report.Regions = volumes.Regions;
+    report.LargestVolumeError = volumes.LargestVolumeError;
+    vtkCoreBridge::FromTriangleMesh(boundary, boundaryOutput);
+    vtkCoreBridge::CopyTriangleTuples(surface, boundary.SourceCells, boundaryOutput);
+    boundaryOutput->GetPointData()->PassData(grid->GetPointData());
+  }
+  else
+  {
+    status = cdm::CheckTetMesh(mesh, &boundary, context, report);
+    boundaryOutput->ShallowCopy(surface);
+  }
+  boundaryOutput->GetCellData()->RemoveArray(vtkCoreBridge::InputCellName);
+
+  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputs, 0);
+  output->ShallowCopy(grid);
+  vtkNew<vtkStringArray> certificate;
+  certificate->SetName("Certificate");
+  certificate->InsertNextValue(report.GetSummary());
+  output->GetFieldData()->AddArray(certificate);
+  if (status.IsOk() && !report.IsValid())
+  {
+    vtkWarningWithObjectMacro(
+      filter, << "The check finds fault with the mesh: " << report.GetSummary());
+  }
+  return status;
+}
+} // namespace
+
+//--------------------------------------------------------------------------------------------------
+vtkConformingDelaunayMesher::vtkConformingDelaunayMesher()
+{
+  this->SetNumberOfInputPorts(3);
+  this->SetNumberOfOutputPorts(3);
+}
+
+//--------------------------------------------------------------------------------------------------
+int vtkConformingDelaunayMesher::FillInputPortInformation(int port, vtkInformation* info)
+{
+  static const char* const types[3] = { "vtkPolyData", "vtkPointSet", "vtkDataSet" };
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), types[port]);
+  if (port > 0)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+//--------------------------------------------------------------------------------------------------
+int vtkConformingDelaunayMesher::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkUnstructuredGrid" : "vtkPolyData");
+  return 1;
+}
+
+//--------------------------------------------------------------------------------------------------
+int vtkConformingDelaunayMesher::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
+  if (vtkCoreBridge::IsIdleProcess(input, outputVector))
+  {
+    return 1;
+  }
+  // Error messages of later stages name the cells of this input.
+  vtkNew<vtkPolyData> surface;
+  surface->ShallowCopy(input);
+  vtkNew<vtkIdTypeArray> inputCells;
+  inputCells->SetName(vtkCoreBridge::InputCellName);
+  inputCells->SetNumberOfTuples(input->GetNumberOfCells());
+  std::iota(inputCells->GetPointer(0), inputCells->GetPointer(input->GetNumberOfCells()), 0);
+  surface->GetCellData()->AddArray(inputCells);
+
+  vtkNew<vtkBoundaryTriangulator> triangulator;
+  triangulator->SetInputData(surface);
+  triangulator->SetMergeTolerance(this->MergeTolerance);
+  triangulator->SetMaximumGapEdges(this->MaximumGapEdges);
+  vtkNew<vtkDelaunaySurfaceRefiner> refiner;
+  refiner->SetInputConnection(triangulator->GetOutputPort());
+  refiner->SetInputDataObject(1, vtkPointSet::GetData(inputVector[1]));
+  refiner->SetInputDataObject(2, vtkDataSet::GetData(inputVector[2]));
+  refiner->SetCriterion(this->Criterion);
+  refiner->SetAccuracyAngle(this->AccuracyAngle);
+  refiner->SetMinimumAngle(this->MinimumAngle);
+  refiner->SetMaximumArea(this->MaximumArea);
+  refiner->SetMaximumEdgeLength(this->MaximumEdgeLength);
+  vtkNew<vtkAdvancingFrontTetrahedralizer> tetrahedralizer;
+  tetrahedralizer->SetInputConnection(refiner->GetOutputPort());
+  if (vtkPointSet::GetData(inputVector[1]))
+  {
+    tetrahedralizer->SetInputConnection(1, refiner->GetOutputPort(2));
+  }
+  tetrahedralizer->SetCloseOpenBoundary(this->CloseOpenBoundary);
+  vtkNew<vtkSliverRemover> remover;
+  remover->SetInputConnection(tetrahedralizer->GetOutputPort());
+  remover->SetDihedralAngleTarget(this->DihedralAngleTarget);
+
+  cdm::Status status = RunStage(this, triangulator, "Boundary triangulation", 0.0, 0.1);
+  if (status.IsOk())
+  {
+    status = RunStage(this, refiner, "Surface refinement", 0.1, 0.5);
+  }
+  if (status.IsOk())
+  {
+    status = RunStage(this, tetrahedralizer, "Tetrahedralization", 0.5, 0.85);
+  }
+  if (status.IsOk() && this->RemoveSlivers)
+  {
+    status = RunStage(this, remover, "Sliver removal", 0.85, 0.95);
+  }
+  if (status.IsOk())
+  {
+    status = vtkCoreBridge::Guard(
+      [&]
+      {
+        return Finish(this,
+          this->RemoveSlivers ? remover->GetOutput() : tetrahedralizer->GetOutput(),
+          vtkPolyData::SafeDownCast(tetrahedralizer->GetOutputDataObject(1)),
+          remover->GetNumberOfPeeledTetrahedra() > 0, outputVector);
+      });
+  }
+  const int success =
+    status.IsOk() ? 1 : vtkCoreBridge::ReportFailure(this, outputVector, status, nullptr);
+  vtkPolyData::GetData(outputVector, 2)->ShallowCopy(triangulator->GetOutputDataObject(1));
+  return success;
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkConformingDelaunayMesher::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "MergeTolerance: " << this->MergeTolerance << "\n";
+  os << indent << "MaximumGapEdges: " << this->MaximumGapEdges << "\n";
+  os << indent << "Criterion: " << this->Criterion << "\n";
+  os << indent << "AccuracyAngle: " << this->AccuracyAngle << "\n";
+  os << indent << "MinimumAngle: " << this->MinimumAngle << "\n";
+  os << indent << "MaximumArea: " << this->MaximumArea << "\n";
+  os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
+  os << indent << "CloseOpenBoundary: " << this->CloseOpenBoundary << "\n";
+  os << indent << "RemoveSlivers: " << this->RemoveSlivers << "\n";
+  os << indent << "DihedralAngleTarget: " << this->DihedralAngleTarget << "\n";
+}

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkConformingDelaunayMesher
+ * @brief   Everything at once: polygons in, boundary-conforming Delaunay tetrahedra out.
+ *
+ * Method (Fleischmann 1999, chapters 3, 5 and 6): the stages as a pipeline inside of this filter,
+ *  1. vtkBoundaryTriangulator: one clean triangulated surface (3.5, 6.3);
+ *  2. vtkDelaunaySurfaceRefiner: structural edges, flips and new points until the surface is part of
+ *     its Delaunay mesh (6.3);
+ *  3. vtkAdvancingFrontTetrahedralizer: tetrahedra for every enclosed region (6.4);
+ *  4. vtkSliverRemover, if RemoveSlivers is on (3.4.7, 5.7);
+ *  5. a check of the result, from the output alone.
+ *
+ * Inputs: port 0: vtkPolyData, any list of polygons, optionally with the two-component cell array
+ * BoundaryLabels (region ids on the front and back side, -1 outside). Port 1, optional: vtkPointSet,
+ * mesh points. Port 2, optional: vtkDataSet with the point array Sizing: target edge length in model
+ * units.
+ *
+ * Outputs: port 0: vtkUnstructuredGrid of VTK_TETRA with the cell array RegionId (int), the point
+ * data of the input, interpolated at new points, and the string array Certificate in the field data:
+ * one line that says what the check found. Port 1: the boundary of the mesh and its regions as
+ * triangles, with BoundaryLabels (int, 2 components) and the cell data of the input polygons.
+ * Port 2: the problems found in the input, see vtkBoundaryTriangulator.
+ *
+ * Guarantees: those of the stages. Tetrahedra are positively oriented, none is flat, circumspheres
+ * are empty, the boundary is kept, points of the input keep their coordinates. A result that the
+ * check finds at fault comes with a warning. Deterministic.
+ *
+ * Failure: the error of the stage that failed, with the cells of this filter's input, and empty
+ * outputs; port 2 still lists what was found. An aborted run has empty outputs.
+ *
+ * Cost: O(n log n) for n tetrahedra, if the surface is not much finer than its smallest features.
+ *
+ * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999.
+ */
+#ifndef vtkConformingDelaunayMesher_h
+#define vtkConformingDelaunayMesher_h
+
+#include "cdmMeshingModule.h" // For export macro
+#include <vtkUnstructuredGridAlgorithm.h>
+
+class CDMMESHING_EXPORT vtkConformingDelaunayMesher : public vtkUnstructuredGridAlgorithm
+{
+public:
+  static vtkConformingDelaunayMesher* New();
+  vtkTypeMacro(vtkConformingDelaunayMesher, vtkUnstructuredGridAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Criteria
+  {
+    /** Criterion 5.2: the surface is part of the Delaunay mesh. */
+    Delaunay = 0,
+    /** Criterion 3.1: the smallest sphere of each boundary triangle is empty. */
+    SmallestSphere,
+    /** Criterion 3.2: those of each triangle and of its edges are: closed control volumes. */
+    SmallestSphereAndEdges
+  };
+
+  ///@{
+  /**
+   * Points closer to each other than this are merged. Model units; default 0: only points with
+   * equal coordinates; range 0 and above.
+   */
+  vtkSetClampMacro(MergeTolerance, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(MergeTolerance, double);
+  ///@}
+
+  ///@{
+  /** Gaps of at most this many open edges are patched. Default 0: none; range 0 and above. */
+  vtkSetClampMacro(MaximumGapEdges, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MaximumGapEdges, int);
+  ///@}
+
+  ///@{
+  /** What every boundary triangle has to fulfil, one of Criteria. Default Delaunay. */
+  vtkSetClampMacro(Criterion, int, Delaunay, SmallestSphereAndEdges);
+  vtkGetMacro(Criterion, int);
+  void SetCriterionToDelaunay() { this->SetCriterion(Delaunay); }
+  void SetCriterionToSmallestSphere() { this->SetCriterion(SmallestSphere); }
+  void SetCriterionToSmallestSphereAndEdges() { this->SetCriterion(SmallestSphereAndEdges); }
+  ///@}
+
+  ///@{
+  /**
+   * Edges that bend by no more than this are smooth and may be flipped, which changes the shape of
+   * the surface by that much. Degrees; default 0: only numerically flat edges are smooth; range 0 to
+   * 180.
+   */
+  vtkSetClampMacro(AccuracyAngle, double, 0.0, 180.0);
+  vtkGetMacro(AccuracyAngle, double);
+  ///@}
+
+  ///@{
+  /**
+   * Boundary triangles with a smaller angle are refined where possible. Degrees; default 0: off;
+   * range 0 to 30.
+   */
+  vtkSetClampMacro(MinimumAngle, double, 0.0, 30.0);
+  vtkGetMacro(MinimumAngle, double);
+  ///@}
+
+  ///@{
+  /**
+   * Boundary triangles with a larger area are refined. Square model units; default 0: off; range 0
+   * and above.
+   */
+  vtkSetClampMacro(MaximumArea, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(MaximumArea, double);
+  ///@}
+
+  ///@{
+  /** Longer boundary edges are split. Model units; default 0: off; range 0 and above. */
+  vtkSetClampMacro(MaximumEdgeLength, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(MaximumEdgeLength, double);
+  ///@}
+
+  ///@{
+  /**
+   * Where the surface is open, close the mesh with triangles on the convex hull of the points;
+   * otherwise an open region is an error. Default off.
+   */
+  vtkSetMacro(CloseOpenBoundary, bool);
+  vtkGetMacro(CloseOpenBoundary, bool);
+  vtkBooleanMacro(CloseOpenBoundary, bool);
+  ///@}
+
+  ///@{
+  /** Whether to run vtkSliverRemover. Default on. */
+  vtkSetMacro(RemoveSlivers, bool);
+  vtkGetMacro(RemoveSlivers, bool);
+  vtkBooleanMacro(RemoveSlivers, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Tetrahedra with a smaller dihedral angle are treated by the sliver remover. Degrees; default
+   * 15; range 0 to 70.
+   */
+  vtkSetClampMacro(DihedralAngleTarget, double, 0.0, 70.0);
+  vtkGetMacro(DihedralAngleTarget, double);
+  ///@}
+
+protected:
+  vtkConformingDelaunayMesher();
+  ~vtkConformingDelaunayMesher() override = default;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  double MergeTolerance = 0.0;
+  int MaximumGapEdges = 0;
+  int Criterion = Delaunay;
+  double AccuracyAngle = 0.0;
+  double MinimumAngle = 0.0;
+  double MaximumArea = 0.0;
+  double MaximumEdgeLength = 0.0;
+  bool CloseOpenBoundary = false;
+  bool RemoveSlivers = true;
+  double DihedralAngleTarget = 15.0;
+
+private:
+  vtkConformingDelaunayMesher(const vtkConformingDelaunayMesher&) = delete;
+  void operator=(const vtkConformingDelaunayMesher&) = delete;
+};
+
+#endif

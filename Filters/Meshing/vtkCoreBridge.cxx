@@ -1,0 +1,902 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkCoreBridge.h"
+
+#include "vtkConformingDelaunayCompatibility.h"
+
+#include "Core/MeshChecks.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellArrayIterator.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkDataObject.h>
+#include <vtkDataSet.h>
+#include <vtkDoubleArray.h>
+#include <vtkGenericCell.h>
+#include <vtkIdList.h>
+#include <vtkIdTypeArray.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkIntArray.h>
+#include <vtkMath.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkStaticCellLocator.h>
+#include <vtkStaticPointLocator.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <new>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace
+{
+constexpr vtkIdType LargestId = std::numeric_limits<cdm::Id>::max();
+constexpr std::size_t NamedIds = 10;
+
+cdm::Status TooLarge(const char* what, vtkIdType number)
+{
+  return cdm::Status::InvalidInput("The input has " + std::to_string(number) + " " + what +
+    ", more than the 2147483647 that 32-bit ids can count. Mesh it in parts.");
+}
+
+/** A whole number from -1 on that fits into an id; otherwise false. */
+bool ToRegion(double value, cdm::Id& region)
+{
+  if (!(value >= cdm::OutsideRegion && value <= LargestId) || value != std::floor(value))
+  {
+    return false;
+  }
+  region = static_cast<cdm::Id>(value);
+  return true;
+}
+
+cdm::Status ToVectors(vtkPoints* input, std::vector<cdm::Vec3>& points)
+{
+  const vtkIdType count = input ? input->GetNumberOfPoints() : 0;
+  if (count > LargestId)
+  {
+    return TooLarge("points", count);
+  }
+  points.resize(count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    double x[3];
+    input->GetPoint(i, x);
+    points[i] = { x[0], x[1], x[2] };
+  }
+  return {};
+}
+
+/** Labels of the given cells; empty without the array. */
+cdm::Status ToLabels(
+  vtkPolyData* input, const std::vector<vtkIdType>& cells, std::vector<cdm::RegionPair>& labels)
+{
+  vtkAbstractArray* any = input->GetCellData()->GetAbstractArray(vtkCoreBridge::BoundaryLabelsName);
+  labels.clear();
+  if (!any)
+  {
+    return {};
+  }
+  auto array = vtkDataArray::SafeDownCast(any);
+  if (!array || array->GetNumberOfComponents() != 2 ||
+    array->GetNumberOfTuples() != input->GetNumberOfCells())
+  {
+    return cdm::Status::InvalidInput(
+      "The cell array BoundaryLabels must hold two integers for each cell: the region ids on its "
+      "front and on its back side, -1 for outside. Correct, rename or remove it.");
+  }
+  labels.resize(cells.size());
+  std::vector<cdm::Id> wrong;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+  {
+    if (!ToRegion(array->GetComponent(cells[i], 0), labels[i].Front) ||
+      !ToRegion(array->GetComponent(cells[i], 1), labels[i].Back))
+    {
+      wrong.push_back(static_cast<cdm::Id>(cells[i]));
+    }
+  }
+  if (!wrong.empty())
+  {
+    wrong.erase(std::unique(wrong.begin(), wrong.end()), wrong.end());
+    return cdm::Status::InvalidInput(
+      "The cell array BoundaryLabels holds values that are no region ids: they are whole numbers "
+      "from 0 on, or -1 for outside.",
+      std::move(wrong));
+  }
+  return {};
+}
+
+/** Arrays that are shorter than the data set would be read behind their end. */
+cdm::Status CheckArrays(vtkDataSet* input)
+{
+  if (input->CheckAttributes())
+  {
+    return cdm::Status::InvalidInput(
+      "An array of the input has fewer tuples than the input has points or cells.");
+  }
+  return {};
+}
+
+/** What both conversions of a surface check before they look at a cell. */
+cdm::Status CheckSurface(vtkPolyData* input)
+{
+  if (input->GetNumberOfCells() > LargestId)
+  {
+    return TooLarge("cells", input->GetNumberOfCells());
+  }
+  if (input->GetNumberOfPolys() + input->GetNumberOfStrips() == 0)
+  {
+    return cdm::Status::InvalidInput(
+      "The input is empty: it has no polygons. A closed polygonal surface is needed.");
+  }
+  return CheckArrays(input);
+}
+
+cdm::Status MissingPoints(std::vector<cdm::Id> cells)
+{
+  return cdm::Status::InvalidInput(
+    "Cells of the input use points that do not exist.", std::move(cells));
+}
+
+bool UsesMissingPoints(vtkIdType size, const vtkIdType* ids, vtkIdType numberOfPoints)
+{
+  return std::any_of(ids, ids + size, [=](vtkIdType id) { return id < 0 || id >= numberOfPoints; });
+}
+
+/** Triangles that a stage made by itself have no cell to name. */
+void DropNoId(std::vector<cdm::Id>& ids)
+{
+  ids.erase(std::remove(ids.begin(), ids.end(), cdm::NoId), ids.end());
+}
+
+void AddPolygon(cdm::PolygonSoup& soup, vtkIdType size, const vtkIdType* ids)
+{
+  for (vtkIdType i = 0; i < size; ++i)
+  {
+    soup.Connectivity.push_back(static_cast<cdm::Id>(ids[i]));
+  }
+  soup.Offsets.push_back(static_cast<cdm::Id>(soup.Connectivity.size()));
+}
+
+/** Numbers the points that are used in the order of their first use. */
+class PointSelection
+{
+public:
+  explicit PointSelection(std::size_t numberOfPoints) : NewIds(numberOfPoints, -1) {}
+  vtkIdType Add(cdm::Id point)
+  {
+    if (this->NewIds[point] < 0)
+    {
+      this->NewIds[point] = static_cast<vtkIdType>(this->Sources.size());
+      this->Sources.push_back(point);
+    }
+    return this->NewIds[point];
+  }
+  const std::vector<vtkIdType>& GetSources() const { return this->Sources; }
+
+private:
+  std::vector<vtkIdType> NewIds;
+  std::vector<vtkIdType> Sources;
+};
+
+std::string ListIds(const char* what, const std::vector<vtkIdType>& ids,
+  const std::function<void(std::ostream&, vtkIdType)>& describe)
+{
+  if (ids.empty())
+  {
+    return {};
+  }
+  std::ostringstream text;
+  text.precision(17);
+  text << ' ' << what << ": ";
+  for (std::size_t i = 0; i < std::min(ids.size(), NamedIds); ++i)
+  {
+    text << (i ? ", " : "") << ids[i];
+    describe(text, ids[i]);
+  }
+  text << (ids.size() > NamedIds ? ", ..." : "") << " (" << ids.size() << " in all).";
+  return text.str();
+}
+
+std::string Describe(const cdm::Status& status, vtkDataSet* input)
+{
+  std::vector<vtkIdType> cells(status.Cells.begin(), status.Cells.end());
+  vtkDataArray* names =
+    input ? input->GetCellData()->GetArray(vtkCoreBridge::InputCellName) : nullptr;
+  if (names)
+  {
+    for (vtkIdType& cell : cells)
+    {
+      cell = static_cast<vtkIdType>(names->GetComponent(cell, 0));
+    }
+  }
+  const std::vector<vtkIdType> points(status.Points.begin(), status.Points.end());
+  auto writePosition = [input](std::ostream& text, vtkIdType point)
+  {
+    if (input && point < input->GetNumberOfPoints())
+    {
+      double x[3];
+      input->GetPoint(point, x);
+      text << " (" << x[0] << ", " << x[1] << ", " << x[2] << ')';
+    }
+  };
+  const bool isBug = status.Code == cdm::StatusCode::InternalError;
+  return (isBug ? "Internal error, please report it: " : "") + status.Message +
+    vtkCoreBridge::ListCells(std::move(cells)) + ListIds("Points", points, writePosition);
+}
+
+/** Interpolates the array Sizing of a data set; see ToSizing(). */
+class SizingInterpolator
+{
+public:
+  SizingInterpolator(vtkDataSet* data, vtkDataArray* values) : Values(values)
+  {
+    // A copy of its own: locators build caches in the data set that they search.
+    this->Data.TakeReference(data->NewInstance());
+    this->Data->ShallowCopy(data);
+    if (data->GetNumberOfCells() > 0)
+    {
+      this->Cells->SetDataSet(this->Data);
+      this->Cells->BuildLocator();
+    }
+    this->Points->SetDataSet(this->Data);
+    this->Points->BuildLocator();
+  }
+
+  double operator()(const cdm::Vec3& position)
+  {
+    const double x[3] = { position.X, position.Y, position.Z };
+    vtkIdType cellId = -1;
+    if (this->Data->GetNumberOfCells() > 0)
+    {
+      int subId = 0;
+      double distance2 = 0.0;
+      this->Cells->FindClosestPoint(x, this->Closest, this->Cell, cellId, subId, distance2);
+    }
+    if (cellId < 0)
+    {
+      return this->Values->GetComponent(this->Points->FindClosestPoint(x), 0);
+    }
+    this->Weights.resize(this->Cell->GetNumberOfPoints());
+    int subId = 0;
+    double parametric[3];
+    double distance2 = 0.0;
+    this->Cell->EvaluatePosition(
+      this->Closest, nullptr, subId, parametric, distance2, this->Weights.data());
+    double sum = 0.0;
+    double smallest = std::numeric_limits<double>::max();
+    double largest = 0.0;
+    for (std::size_t i = 0; i < this->Weights.size(); ++i)
+    {
+      const double value =
+        this->Values->GetComponent(this->Cell->GetPointId(static_cast<vtkIdType>(i)), 0);
+      sum += this->Weights[i] * value;
+      smallest = std::min(smallest, value);
+      largest = std::max(largest, value);
+    }
+    // A degenerate cell gives weights of any kind.
+    return std::isfinite(sum) ? std::min(std::max(sum, smallest), largest) : smallest;
+  }
+
+private:
+  vtkSmartPointer<vtkDataSet> Data;
+  vtkSmartPointer<vtkDataArray> Values;
+  vtkNew<vtkStaticCellLocator> Cells;
+  vtkNew<vtkStaticPointLocator> Points;
+  vtkNew<vtkGenericCell> Cell;
+  std::vector<double> Weights;
+  double Closest[3] = { 0.0, 0.0, 0.0 };
+};
+} // namespace
+
+namespace vtkCoreBridge
+{
+//--------------------------------------------------------------------------------------------------
+cdm::ExecutionContext MakeContext(vtkAlgorithm* filter)
+{
+  // Stages may call in inner loops; observers (a GUI redraws) hear of steps that can be seen.
+  constexpr double smallestStep = 0.005;
+  double last = -1.0;
+  std::string lastActivity;
+  auto progress = [filter, last, lastActivity](double fraction, const char* activity) mutable
+  {
+    if (std::abs(fraction - last) >= smallestStep || lastActivity != activity)
+    {
+      last = fraction;
+      lastActivity = activity;
+      filter->SetProgressText(activity);
+      filter->UpdateProgress(fraction);
+    }
+  };
+  return { progress,
+    [filter]() { return vtkConformingDelaunayCompatibility::CheckAbort(filter); } };
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status Guard(const std::function<cdm::Status()>& function)
+{
+  try
+  {
+    return function();
+  }
+  catch (const std::bad_alloc&)
+  {
+    return cdm::Status::InvalidInput("There is not enough memory for this input.");
+  }
+  catch (const std::length_error&)
+  {
+    return cdm::Status::InvalidInput("There is not enough memory for this input.");
+  }
+}
+
+//--------------------------------------------------------------------------------------------------
+int ReportFailure(
+  vtkAlgorithm* filter, vtkInformationVector* outputs, const cdm::Status& status, vtkDataSet* input)
+{
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    if (vtkDataObject* output = vtkDataObject::GetData(outputs, port))
+    {
+      output->Initialize();
+    }
+  }
+  if (status.IsAborted())
+  {
+    return 1;
+  }
+  const std::string text = Describe(status, input);
+  vtkErrorWithObjectMacro(filter, << text);
+  return 0;
+}
+
+//--------------------------------------------------------------------------------------------------
+std::string ListCells(std::vector<vtkIdType> cells)
+{
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return ListIds("Cells", cells, [](std::ostream&, vtkIdType) {});
+}
+
+//--------------------------------------------------------------------------------------------------
+bool IsIdleProcess(vtkDataSet* input, vtkInformationVector* outputs)
+{
+  vtkInformation* info = outputs->GetInformationObject(0);
+  const auto pieces = vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES();
+  return info->Has(pieces) && info->Get(pieces) > 1 && input->GetNumberOfCells() == 0;
+}
+
+//--------------------------------------------------------------------------------------------------
+void OffsetCells(cdm::Status& status, vtkIdType offset)
+{
+  DropNoId(status.Cells);
+  for (cdm::Id& cell : status.Cells)
+  {
+    cell = static_cast<cdm::Id>(cell + offset);
+  }
+}
+
+//--------------------------------------------------------------------------------------------------
+void MapCells(cdm::Status& status, const std::vector<vtkIdType>& cells)
+{
+  DropNoId(status.Cells);
+  for (cdm::Id& cell : status.Cells)
+  {
+    cell = static_cast<cdm::Id>(cells[cell]);
+  }
+  // The triangles of one strip are one cell.
+  status.Cells.erase(std::unique(status.Cells.begin(), status.Cells.end()), status.Cells.end());
+}
+
+//--------------------------------------------------------------------------------------------------
+vtkIdType GetFirstPolygon(vtkPolyData* surface)
+{
+  return surface->GetNumberOfVerts() + surface->GetNumberOfLines();
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToPolygonSoup(vtkPolyData* input, cdm::PolygonSoup& soup, std::vector<vtkIdType>& cells)
+{
+  cdm::Status status = CheckSurface(input);
+  const vtkIdType corners = input->GetPolys()->GetNumberOfConnectivityIds() +
+    3 * input->GetStrips()->GetNumberOfConnectivityIds();
+  if (status.IsOk() && corners > LargestId)
+  {
+    status = TooLarge("polygon corners", corners);
+  }
+  if (status.IsOk())
+  {
+    status = ToVectors(input->GetPoints(), soup.Points);
+  }
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  std::vector<cdm::Id> wrong;
+  vtkIdType cell = GetFirstPolygon(input);
+  vtkNew<vtkIdList> ids;
+  auto addCells = [&](vtkCellArray* array, auto addCell)
+  {
+    auto iterator = vtk::TakeSmartPointer(array->NewIterator());
+    for (iterator->GoToFirstCell(); !iterator->IsDoneWithTraversal(); iterator->GoToNextCell())
+    {
+      iterator->GetCurrentCell(ids);
+      if (UsesMissingPoints(ids->GetNumberOfIds(), ids->GetPointer(0), input->GetNumberOfPoints()))
+      {
+        wrong.push_back(static_cast<cdm::Id>(cell));
+      }
+      addCell(ids->GetNumberOfIds(), ids->GetPointer(0));
+      ++cell;
+    }
+  };
+  addCells(input->GetPolys(),
+    [&](vtkIdType size, const vtkIdType* polygon)
+    {
+      AddPolygon(soup, size, polygon);
+      cells.push_back(cell);
+    });
+  addCells(input->GetStrips(),
+    [&](vtkIdType size, const vtkIdType* strip)
+    {
+      for (vtkIdType i = 0; i + 2 < size; ++i)
+      {
+        const vtkIdType odd = i % 2;
+        const vtkIdType triangle[3] = { strip[i], strip[i + 1 + odd], strip[i + 2 - odd] };
+        AddPolygon(soup, 3, triangle);
+        cells.push_back(cell);
+      }
+    });
+  if (!wrong.empty())
+  {
+    return MissingPoints(std::move(wrong));
+  }
+  return ToLabels(input, cells, soup.Labels);
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToTriangleMesh(vtkPolyData* input, cdm::TriangleMesh& surface)
+{
+  cdm::Status status = CheckSurface(input);
+  if (status.IsOk())
+  {
+    status = ToVectors(input->GetPoints(), surface.Points);
+  }
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  std::vector<cdm::Id> notTriangles;
+  std::vector<cdm::Id> missingPoints;
+  std::vector<vtkIdType> cells;
+  vtkIdType cell = GetFirstPolygon(input);
+  vtkNew<vtkIdList> ids;
+  auto iterator = vtk::TakeSmartPointer(input->GetPolys()->NewIterator());
+  for (iterator->GoToFirstCell(); !iterator->IsDoneWithTraversal(); iterator->GoToNextCell())
+  {
+    iterator->GetCurrentCell(ids);
+    const vtkIdType* corner = ids->GetPointer(0);
+    if (ids->GetNumberOfIds() != 3)
+    {
+      notTriangles.push_back(static_cast<cdm::Id>(cell));
+    }
+    else if (UsesMissingPoints(3, corner, input->GetNumberOfPoints()))
+    {
+      missingPoints.push_back(static_cast<cdm::Id>(cell));
+    }
+    else
+    {
+      surface.Triangles.push_back({ static_cast<cdm::Id>(corner[0]),
+        static_cast<cdm::Id>(corner[1]), static_cast<cdm::Id>(corner[2]) });
+    }
+    cells.push_back(cell++);
+  }
+  for (vtkIdType strip = 0; strip < input->GetNumberOfStrips(); ++strip)
+  {
+    notTriangles.push_back(static_cast<cdm::Id>(cell++));
+  }
+  if (!notTriangles.empty())
+  {
+    return cdm::Status::InvalidInput("The surface has cells that are not triangles. Run "
+                                     "vtkBoundaryTriangulator first.",
+      std::move(notTriangles));
+  }
+  if (!missingPoints.empty())
+  {
+    return MissingPoints(std::move(missingPoints));
+  }
+  return ToLabels(input, cells, surface.Labels);
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToPoints(vtkPointSet* input, const char* name, std::vector<cdm::Vec3>& points)
+{
+  cdm::Status status = CheckArrays(input);
+  if (status.IsOk())
+  {
+    status = ToVectors(input->GetPoints(), points);
+  }
+  const auto wrong = std::find_if_not(points.begin(), points.end(), cdm::IsFinite);
+  if (status.IsOk() && wrong != points.end())
+  {
+    // Not in Status::Points, which are points of the surface.
+    status = cdm::Status::InvalidInput("Point " + std::to_string(wrong - points.begin()) +
+      " of the " + name + " has coordinates that are not finite: remove or correct it.");
+  }
+  return status;
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToSeeds(vtkPointSet* input, std::vector<cdm::RegionSeed>& seeds)
+{
+  std::vector<cdm::Vec3> points;
+  cdm::Status status = ToPoints(input, "seeds", points);
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  vtkDataArray* regions = input->GetPointData()->GetArray(RegionIdName);
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    cdm::RegionSeed seed{ points[i], static_cast<cdm::Id>(i) };
+    const double region =
+      regions ? regions->GetComponent(static_cast<vtkIdType>(i), 0) : static_cast<double>(i);
+    if (!ToRegion(region, seed.Region) || seed.Region < 0)
+    {
+      return cdm::Status::InvalidInput("The point array RegionId of the seeds must hold whole "
+                                       "numbers from 0 on; its value at seed " +
+        std::to_string(i) + " is " + std::to_string(region) + ".");
+    }
+    seeds.push_back(seed);
+  }
+  return {};
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh)
+{
+  const vtkIdType count = input->GetNumberOfCells();
+  if (count == 0)
+  {
+    return cdm::Status::InvalidInput("The input is empty: it has no cells.");
+  }
+  // Facet ids are four times as large as the ids of tetrahedra.
+  if (count > LargestId / 4)
+  {
+    return TooLarge("facets of tetrahedra", 4 * count);
+  }
+  cdm::Status status = CheckArrays(input);
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  vtkDataArray* regions = input->GetCellData()->GetArray(RegionIdName);
+  mesh.Tetrahedra.resize(count);
+  mesh.Regions.assign(count, 0);
+  std::vector<cdm::Id> notTetrahedra;
+  std::vector<cdm::Id> missingPoints;
+  std::vector<cdm::Id> wrongRegions;
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < count; ++cell)
+  {
+    const auto id = static_cast<cdm::Id>(cell);
+    if (input->GetCellType(cell) != VTK_TETRA)
+    {
+      notTetrahedra.push_back(id);
+      continue;
+    }
+    input->GetCellPoints(cell, ids);
+    if (UsesMissingPoints(4, ids->GetPointer(0), input->GetNumberOfPoints()))
+    {
+      missingPoints.push_back(id);
+      continue;
+    }
+    std::copy_n(ids->GetPointer(0), 4, mesh.Tetrahedra[cell].begin());
+    if (regions &&
+      (!ToRegion(regions->GetComponent(cell, 0), mesh.Regions[cell]) || mesh.Regions[cell] < 0))
+    {
+      wrongRegions.push_back(id);
+    }
+  }
+  if (!notTetrahedra.empty())
+  {
+    return cdm::Status::InvalidInput(
+      "The input has cells that are not linear tetrahedra (VTK_TETRA). Remove or split them.",
+      std::move(notTetrahedra));
+  }
+  if (!missingPoints.empty())
+  {
+    return MissingPoints(std::move(missingPoints));
+  }
+  if (!wrongRegions.empty())
+  {
+    return cdm::Status::InvalidInput(
+      "The cell array RegionId holds values that are no whole numbers from 0 on.",
+      std::move(wrongRegions));
+  }
+  status = ToVectors(input->GetPoints(), mesh.Points);
+  return status.IsOk() ? cdm::BuildNeighbors(mesh) : status;
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToSizing(vtkDataSet* input, std::function<double(const cdm::Vec3&)>& sizing)
+{
+  vtkDataArray* values = input->GetPointData()->GetArray(SizingName);
+  if (!values || values->GetNumberOfComponents() != 1 || values->GetNumberOfTuples() == 0)
+  {
+    return cdm::Status::InvalidInput("The sizing input needs a point array Sizing with one "
+                                     "component: the target edge length, in model units.");
+  }
+  for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i)
+  {
+    const double value = values->GetComponent(i, 0);
+    if (!(value > 0.0 && std::isfinite(value)))
+    {
+      return cdm::Status::InvalidInput("The point array Sizing must be positive and finite; its "
+                                       "value at point " +
+        std::to_string(i) + " of the sizing input is " + std::to_string(value) + ".");
+    }
+  }
+  auto interpolator = std::make_shared<SizingInterpolator>(input, values);
+  sizing = [interpolator](const cdm::Vec3& position) { return (*interpolator)(position); };
+  return {};
+}
+
+//--------------------------------------------------------------------------------------------------
+vtkSmartPointer<vtkPoints> FromPoints(const std::vector<cdm::Vec3>& points)
+{
+  auto output = vtkSmartPointer<vtkPoints>::New();
+  output->SetDataTypeToDouble();
+  output->SetNumberOfPoints(static_cast<vtkIdType>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    output->SetPoint(static_cast<vtkIdType>(i), points[i].X, points[i].Y, points[i].Z);
+  }
+  return output;
+}
+
+//--------------------------------------------------------------------------------------------------
+void FromTriangleMesh(const cdm::TriangleMesh& surface, vtkPolyData* output)
+{
+  output->SetPoints(FromPoints(surface.Points));
+  const auto count = static_cast<vtkIdType>(surface.Triangles.size());
+  vtkNew<vtkCellArray> cells;
+  cells->AllocateExact(count, 3 * count);
+  for (const cdm::TriangleIds& triangle : surface.Triangles)
+  {
+    const vtkIdType ids[3] = { triangle[0], triangle[1], triangle[2] };
+    cells->InsertNextCell(3, ids);
+  }
+  output->SetPolys(cells);
+  if (!surface.Labels.empty())
+  {
+    vtkNew<vtkIntArray> labels;
+    labels->SetName(BoundaryLabelsName);
+    labels->SetNumberOfComponents(2);
+    labels->SetNumberOfTuples(count);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      labels->SetTypedComponent(i, 0, surface.Labels[i].Front);
+      labels->SetTypedComponent(i, 1, surface.Labels[i].Back);
+    }
+    output->GetCellData()->AddArray(labels);
+  }
+}
+
+//--------------------------------------------------------------------------------------------------
+void FromTetMesh(const cdm::TetMesh& mesh, vtkUnstructuredGrid* output)
+{
+  output->SetPoints(FromPoints(mesh.Points));
+  const auto count = static_cast<vtkIdType>(mesh.Tetrahedra.size());
+  vtkNew<vtkCellArray> cells;
+  cells->AllocateExact(count, 4 * count);
+  vtkNew<vtkIntArray> regions;
+  regions->SetName(RegionIdName);
+  regions->SetNumberOfTuples(count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    const cdm::TetrahedronIds& tetrahedron = mesh.Tetrahedra[i];
+    const vtkIdType ids[4] = { tetrahedron[0], tetrahedron[1], tetrahedron[2], tetrahedron[3] };
+    cells->InsertNextCell(4, ids);
+    regions->SetValue(i, mesh.Regions[i]);
+  }
+  output->SetCells(VTK_TETRA, cells);
+  output->GetCellData()->AddArray(regions);
+}
+
+//--------------------------------------------------------------------------------------------------
+void FromStructuralEdges(
+  const std::vector<cdm::StructuralEdge>& edges, vtkPolyData* surface, vtkPolyData* output)
+{
+  const auto count = static_cast<vtkIdType>(edges.size());
+  vtkNew<vtkCellArray> lines;
+  lines->AllocateExact(count, 2 * count);
+  vtkNew<vtkIntArray> kinds;
+  kinds->SetName("Kind");
+  vtkNew<vtkDoubleArray> angles;
+  angles->SetName("DihedralAngle");
+  vtkNew<vtkIntArray> chains;
+  chains->SetName("ChainId");
+  PointSelection selection(surface->GetNumberOfPoints());
+  for (const cdm::StructuralEdge& edge : edges)
+  {
+    const vtkIdType ids[2] = { selection.Add(edge.Points[0]), selection.Add(edge.Points[1]) };
+    lines->InsertNextCell(2, ids);
+    kinds->InsertNextValue(static_cast<int>(edge.Kind));
+    angles->InsertNextValue(edge.DihedralAngle);
+    chains->InsertNextValue(edge.Chain);
+  }
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkIdTypeArray> surfacePoints;
+  surfacePoints->SetName(SurfacePointIdName);
+  for (vtkIdType source : selection.GetSources())
+  {
+    points->InsertNextPoint(surface->GetPoint(source));
+    surfacePoints->InsertNextValue(source);
+  }
+  output->SetPoints(points);
+  output->SetLines(lines);
+  for (vtkDataArray* array :
+    std::initializer_list<vtkDataArray*>{ kinds.Get(), angles.Get(), chains.Get() })
+  {
+    output->GetCellData()->AddArray(array);
+  }
+  CopyTuples(surface->GetPointData(), selection.GetSources(), output->GetPointData(),
+    { SurfacePointIdName });
+  output->GetPointData()->AddArray(surfacePoints);
+}
+
+//--------------------------------------------------------------------------------------------------
+void FromFront(const std::vector<cdm::TriangleIds>& front, const std::vector<cdm::Vec3>& points,
+  vtkPolyData* output)
+{
+  PointSelection selection(points.size());
+  vtkNew<vtkCellArray> cells;
+  for (const cdm::TriangleIds& triangle : front)
+  {
+    const vtkIdType ids[3] = { selection.Add(triangle[0]), selection.Add(triangle[1]),
+      selection.Add(triangle[2]) };
+    cells->InsertNextCell(3, ids);
+  }
+  std::vector<cdm::Vec3> used;
+  for (vtkIdType source : selection.GetSources())
+  {
+    used.push_back(points[source]);
+  }
+  output->SetPoints(FromPoints(used));
+  output->SetPolys(cells);
+}
+
+//--------------------------------------------------------------------------------------------------
+void FromKeptPoints(vtkPointSet* input, const std::vector<cdm::Id>& sources, vtkPolyData* output)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> vertices;
+  for (cdm::Id source : sources)
+  {
+    const vtkIdType id = points->InsertNextPoint(input->GetPoint(source));
+    vertices->InsertNextCell(1, &id);
+  }
+  output->SetPoints(points);
+  output->SetVerts(vertices);
+  if (input)
+  {
+    CopyTuples(input->GetPointData(), { sources.begin(), sources.end() }, output->GetPointData());
+  }
+}
+
+//--------------------------------------------------------------------------------------------------
+void CopyTuples(vtkDataSetAttributes* from, const std::vector<vtkIdType>& sources,
+  vtkDataSetAttributes* to, const std::vector<const char*>& except)
+{
+  // Apart from the output, which others would copy with the flags of CopyFieldOff().
+  vtkNew<vtkDataSetAttributes> copied;
+  for (const char* name : except)
+  {
+    copied->CopyFieldOff(name);
+  }
+  const auto count = static_cast<vtkIdType>(sources.size());
+  copied->CopyAllocate(from, count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    if (sources[i] >= 0)
+    {
+      copied->CopyData(from, sources[i], i);
+    }
+    else
+    {
+      copied->NullData(i);
+    }
+  }
+  to->PassData(copied);
+}
+
+//--------------------------------------------------------------------------------------------------
+void CopyCellTuples(vtkPolyData* from, const std::vector<vtkIdType>& sources, vtkPolyData* to)
+{
+  CopyTuples(from->GetCellData(), sources, to->GetCellData(), { BoundaryLabelsName });
+}
+
+//--------------------------------------------------------------------------------------------------
+void CopyTriangleTuples(vtkPolyData* from, const std::vector<cdm::Id>& sources, vtkPolyData* to)
+{
+  const vtkIdType first = GetFirstPolygon(from);
+  std::vector<vtkIdType> cells(sources.size());
+  std::transform(sources.begin(), sources.end(), cells.begin(),
+    [first](cdm::Id source) { return source == cdm::NoId ? -1 : first + source; });
+  CopyCellTuples(from, cells, to);
+}
+
+//--------------------------------------------------------------------------------------------------
+void InterpolateTuples(vtkDataSetAttributes* from, vtkIdType count,
+  const std::vector<cdm::PointParents>& newPoints, vtkDataSetAttributes* to)
+{
+  const vtkIdType total = count + static_cast<vtkIdType>(newPoints.size());
+  vtkNew<vtkIdList> ids;
+  for (int i = 0; i < from->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* source = from->GetAbstractArray(i);
+    const int attribute = from->IsArrayAnAttribute(i);
+    if (attribute == vtkDataSetAttributes::GLOBALIDS ||
+      attribute == vtkDataSetAttributes::PEDIGREEIDS)
+    {
+      continue; // there is no id between two ids
+    }
+    auto target = vtk::TakeSmartPointer(source->NewInstance());
+    target->SetName(source->GetName());
+    target->SetNumberOfComponents(source->GetNumberOfComponents());
+    target->CopyComponentNames(source);
+    target->SetNumberOfTuples(total);
+    target->InsertTuples(0, count, 0, source);
+    for (std::size_t j = 0; j < newPoints.size(); ++j)
+    {
+      const cdm::PointParents& parents = newPoints[j];
+      const auto number = std::count_if(
+        parents.Ids.begin(), parents.Ids.end(), [](cdm::Id id) { return id != cdm::NoId; });
+      ids->SetNumberOfIds(number);
+      std::copy_n(parents.Ids.begin(), number, ids->GetPointer(0));
+      // The parents may be new points themselves, so the array is its own source.
+      target->InterpolateTuple(count + static_cast<vtkIdType>(j), ids, target,
+        const_cast<double*>(parents.Weights.data()));
+    }
+    const int index = to->AddArray(target);
+    if (attribute >= 0)
+    {
+      to->SetActiveAttribute(index, attribute);
+    }
+  }
+}
+
+//--------------------------------------------------------------------------------------------------
+void AppendTuples(vtkDataSetAttributes* first, vtkDataSetAttributes* second,
+  const std::vector<cdm::Id>& sources, vtkDataSetAttributes* to)
+{
+  const bool hasSecond = second && !sources.empty();
+  vtkDataSetAttributes::FieldList fields;
+  fields.IntersectFieldList(first);
+  if (hasSecond)
+  {
+    fields.IntersectFieldList(second);
+  }
+  const vtkIdType count = first->GetNumberOfTuples();
+  fields.CopyAllocate(
+    to, vtkDataSetAttributes::COPYTUPLE, count + static_cast<vtkIdType>(sources.size()), 0);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    fields.CopyData(0, first, i, to, i);
+  }
+  for (std::size_t i = 0; hasSecond && i < sources.size(); ++i)
+  {
+    fields.CopyData(1, second, sources[i], to, count + static_cast<vtkIdType>(i));
+  }
+}
+} // namespace vtkCoreBridge

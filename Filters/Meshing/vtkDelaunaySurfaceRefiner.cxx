@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDelaunaySurfaceRefiner.h"
+
+#include "vtkCoreBridge.h"
+
+#include "Core/DelaunaySurfaceRefiner.h"
+
+#include <vtkCellData.h>
+#include <vtkDataSet.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkUnsignedCharArray.h>
+
+vtkStandardNewMacro(vtkDelaunaySurfaceRefiner);
+
+namespace
+{
+void AddUnresolvedArray(const std::vector<cdm::Id>& triangles, vtkPolyData* output)
+{
+  vtkNew<vtkUnsignedCharArray> unresolved;
+  unresolved->SetName("Unresolved");
+  unresolved->SetNumberOfTuples(output->GetNumberOfPolys());
+  unresolved->FillValue(0);
+  for (cdm::Id triangle : triangles)
+  {
+    unresolved->SetValue(triangle, 1);
+  }
+  output->GetCellData()->AddArray(unresolved);
+}
+} // namespace
+
+//--------------------------------------------------------------------------------------------------
+vtkDelaunaySurfaceRefiner::vtkDelaunaySurfaceRefiner()
+{
+  this->SetNumberOfInputPorts(3);
+  this->SetNumberOfOutputPorts(3);
+}
+
+//--------------------------------------------------------------------------------------------------
+int vtkDelaunaySurfaceRefiner::FillInputPortInformation(int port, vtkInformation* info)
+{
+  if (port == 0)
+  {
+    return this->Superclass::FillInputPortInformation(port, info);
+  }
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 1 ? "vtkPointSet" : "vtkDataSet");
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+//--------------------------------------------------------------------------------------------------
+int vtkDelaunaySurfaceRefiner::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
+  vtkPointSet* pointInput = vtkPointSet::GetData(inputVector[1]);
+  vtkDataSet* sizingInput = vtkDataSet::GetData(inputVector[2]);
+  if (vtkCoreBridge::IsIdleProcess(input, outputVector))
+  {
+    return 1;
+  }
+
+  cdm::TriangleMesh surface;
+  std::vector<cdm::Vec3> meshPoints;
+  cdm::DelaunaySurfaceRefinerInput engineInput{ &surface, &meshPoints, {} };
+  cdm::DelaunaySurfaceRefinerOutput result;
+  const cdm::Status status = vtkCoreBridge::Guard(
+    [&]
+    {
+      cdm::Status step = vtkCoreBridge::ToTriangleMesh(input, surface);
+      if (step.IsOk() && pointInput)
+      {
+        step = vtkCoreBridge::ToPoints(pointInput, "mesh points", meshPoints);
+      }
+      if (step.IsOk() && sizingInput)
+      {
+        step = vtkCoreBridge::ToSizing(sizingInput, engineInput.Sizing);
+      }
+      if (step.IsOk())
+      {
+        cdm::DelaunaySurfaceRefinerOptions options;
+        options.Criterion = static_cast<cdm::SurfaceCriterion>(this->Criterion);
+        options.StructuralEdges.AccuracyAngle = this->AccuracyAngle;
+        options.StructuralEdges.FlatnessRatio = this->FlatnessRatio;
+        options.MinimumAngle = this->MinimumAngle;
+        options.MaximumArea = this->MaximumArea;
+        options.MaximumEdgeLength = this->MaximumEdgeLength;
+        options.MeshPointClearanceRatio = this->MeshPointClearanceRatio;
+        options.MinimumEdgeRatio = this->MinimumEdgeRatio;
+        options.MaximumNewPoints = this->MaximumNewPoints;
+        step = cdm::RefineDelaunaySurface(
+          engineInput, options, vtkCoreBridge::MakeContext(this), result);
+        vtkCoreBridge::OffsetCells(step, vtkCoreBridge::GetFirstPolygon(input));
+      }
+      return step;
+    });
+  this->NumberOfEdgePoints = result.Report.EdgePoints;
+  this->NumberOfFacetPoints = result.Report.FacetPoints;
+  this->NumberOfFlips = result.Report.Flips;
+  this->NumberOfDroppedMeshPoints = result.Report.DroppedMeshPoints;
+  this->NumberOfUnresolvedTriangles = static_cast<vtkIdType>(result.UnresolvedTriangles.size());
+  if (!status.IsOk())
+  {
+    return vtkCoreBridge::ReportFailure(this, outputVector, status, input);
+  }
+
+  vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
+  vtkCoreBridge::FromTriangleMesh(result.Surface, output);
+  vtkCoreBridge::CopyTriangleTuples(input, result.Surface.SourceCells, output);
+  vtkCoreBridge::InterpolateTuples(
+    input->GetPointData(), input->GetNumberOfPoints(), result.NewPoints, output->GetPointData());
+  vtkCoreBridge::FromStructuralEdges(
+    result.StructuralEdges, output, vtkPolyData::GetData(outputVector, 1));
+  vtkCoreBridge::FromKeptPoints(
+    pointInput, result.KeptMeshPoints, vtkPolyData::GetData(outputVector, 2));
+  if (this->NumberOfUnresolvedTriangles > 0)
+  {
+    AddUnresolvedArray(result.UnresolvedTriangles, output);
+    vtkWarningMacro(<< this->NumberOfUnresolvedTriangles
+                    << " triangles do not fulfil the criterion within the limits "
+                       "(MinimumEdgeRatio, MaximumNewPoints): see the cell array Unresolved.");
+  }
+  if (this->NumberOfDroppedMeshPoints > 0)
+  {
+    vtkWarningMacro("Dropped " << this->NumberOfDroppedMeshPoints
+                               << " mesh points that lie on the surface or closer to it than "
+                                  "MeshPointClearanceRatio, or repeat others.");
+  }
+  return 1;
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkDelaunaySurfaceRefiner::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Criterion: " << this->Criterion << "\n";
+  os << indent << "AccuracyAngle: " << this->AccuracyAngle << "\n";
+  os << indent << "FlatnessRatio: " << this->FlatnessRatio << "\n";
+  os << indent << "MinimumAngle: " << this->MinimumAngle << "\n";
+  os << indent << "MaximumArea: " << this->MaximumArea << "\n";
+  os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
+  os << indent << "MeshPointClearanceRatio: " << this->MeshPointClearanceRatio << "\n";
+  os << indent << "MinimumEdgeRatio: " << this->MinimumEdgeRatio << "\n";
+  os << indent << "MaximumNewPoints: " << this->MaximumNewPoints << "\n";
+  os << indent << "NumberOfEdgePoints: " << this->NumberOfEdgePoints << "\n";
+  os << indent << "NumberOfFacetPoints: " << this->NumberOfFacetPoints << "\n";
+  os << indent << "NumberOfFlips: " << this->NumberOfFlips << "\n";
+  os << indent << "NumberOfDroppedMeshPoints: " << this->NumberOfDroppedMeshPoints << "\n";
+  os << indent << "NumberOfUnresolvedTriangles: " << this->NumberOfUnresolvedTriangles << "\n";
+}

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSliverRemover.h"
+
+#include "vtkCoreBridge.h"
+
+#include "Core/SliverRemover.h"
+
+#include <vtkCellData.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkIntArray.h>
+#include <vtkObjectFactory.h>
+#include <vtkPointData.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <algorithm>
+
+vtkStandardNewMacro(vtkSliverRemover);
+
+namespace
+{
+using SortedTetrahedra = std::vector<std::pair<cdm::TetrahedronIds, vtkIdType>>;
+
+SortedTetrahedra Sort(const std::vector<cdm::TetrahedronIds>& tetrahedra)
+{
+  SortedTetrahedra sorted;
+  sorted.reserve(tetrahedra.size());
+  for (cdm::TetrahedronIds ids : tetrahedra)
+  {
+    std::sort(ids.begin(), ids.end());
+    sorted.emplace_back(ids, static_cast<vtkIdType>(sorted.size()));
+  }
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
+
+/** For each tetrahedron the one with the same points before, or -1. */
+std::vector<vtkIdType> FindSurvivors(
+  const std::vector<cdm::TetrahedronIds>& before, const std::vector<cdm::TetrahedronIds>& after)
+{
+  const SortedTetrahedra sorted = Sort(before);
+  std::vector<vtkIdType> sources(after.size(), -1);
+  for (std::size_t i = 0; i < after.size(); ++i)
+  {
+    // Most tetrahedra stay where they are.
+    if (i < before.size() && before[i] == after[i])
+    {
+      sources[i] = static_cast<vtkIdType>(i);
+      continue;
+    }
+    cdm::TetrahedronIds ids = after[i];
+    std::sort(ids.begin(), ids.end());
+    const auto found =
+      std::lower_bound(sorted.begin(), sorted.end(), std::make_pair(ids, vtkIdType(-1)));
+    if (found != sorted.end() && found->first == ids)
+    {
+      sources[i] = found->second;
+    }
+  }
+  return sources;
+}
+} // namespace
+
+//--------------------------------------------------------------------------------------------------
+int vtkSliverRemover::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
+  return 1;
+}
+
+//--------------------------------------------------------------------------------------------------
+int vtkSliverRemover::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkUnstructuredGrid* input = vtkUnstructuredGrid::GetData(inputVector[0]);
+  if (vtkCoreBridge::IsIdleProcess(input, outputVector))
+  {
+    return 1;
+  }
+
+  cdm::TetMesh mesh;
+  std::vector<cdm::TetrahedronIds> before;
+  cdm::SliverRemoverReport report;
+  const cdm::Status status = vtkCoreBridge::Guard(
+    [&]
+    {
+      cdm::Status step = vtkCoreBridge::ToTetMesh(input, mesh);
+      if (step.IsOk())
+      {
+        before = mesh.Tetrahedra;
+        cdm::SliverRemoverOptions options;
+        options.DihedralAngleTarget = this->DihedralAngleTarget;
+        options.FlatnessRatio = this->FlatnessRatio;
+        step = cdm::RemoveSlivers(mesh, options, vtkCoreBridge::MakeContext(this), report);
+      }
+      return step;
+    });
+  this->NumberOfPeeledTetrahedra = report.PeeledTetrahedra;
+  this->NumberOfFlips = report.Flips;
+  this->SmallestDihedralAngleBefore = report.SmallestDihedralAngleBefore;
+  this->SmallestDihedralAngleAfter = report.SmallestDihedralAngleAfter;
+  if (!status.IsOk())
+  {
+    return vtkCoreBridge::ReportFailure(this, outputVector, status, input);
+  }
+
+  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector, 0);
+  vtkCoreBridge::CopyTuples(input->GetCellData(), FindSurvivors(before, mesh.Tetrahedra),
+    output->GetCellData(), { vtkCoreBridge::RegionIdName });
+  vtkCoreBridge::FromTetMesh(mesh, output);
+  output->GetPointData()->PassData(input->GetPointData());
+  return 1;
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkSliverRemover::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "DihedralAngleTarget: " << this->DihedralAngleTarget << "\n";
+  os << indent << "FlatnessRatio: " << this->FlatnessRatio << "\n";
+  os << indent << "NumberOfPeeledTetrahedra: " << this->NumberOfPeeledTetrahedra << "\n";
+  os << indent << "NumberOfFlips: " << this->NumberOfFlips << "\n";
+  os << indent << "SmallestDihedralAngleBefore: " << this->SmallestDihedralAngleBefore << "\n";
+  os << indent << "SmallestDihedralAngleAfter: " << this->SmallestDihedralAngleAfter << "\n";
+}

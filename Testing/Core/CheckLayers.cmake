@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Core knows no VTK, Meshing knows no ParaView, CGAL is seen by one file only.
+#   cmake -D SOURCE_DIR=<folder of the project> -P CheckLayers.cmake
+file(GLOB core "${SOURCE_DIR}/Filters/Core/*.h" "${SOURCE_DIR}/Filters/Core/*.cxx")
+file(GLOB meshing "${SOURCE_DIR}/Filters/Meshing/*.h" "${SOURCE_DIR}/Filters/Meshing/*.cxx")
+set(problems 0)
+
+function (forbid pattern what)
+  foreach (path IN LISTS ARGN)
+    file(STRINGS "${path}" lines REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]${pattern}")
+    foreach (line IN LISTS lines)
+      message("${path}: ${line}: ${what}")
+      math(EXPR problems "${problems} + 1")
+    endforeach ()
+  endforeach ()
+  set(problems "${problems}" PARENT_SCOPE)
+endfunction ()
+
+forbid("vtk" "the engine knows no VTK" ${core})
+forbid("(vtkPV|vtkSM|vtkSI|pq)" "the filters know no ParaView" ${meshing})
+forbid("CGAL/" "the filters know no CGAL" ${meshing})
+list(FILTER core EXCLUDE REGEX "/Predicates\\.cxx$")
+forbid("CGAL/" "CGAL belongs into Predicates.cxx" ${core})
+
+if (problems GREATER 0)
+  message(FATAL_ERROR "${problems} includes across the layers")
+endif ()

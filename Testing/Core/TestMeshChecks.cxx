@@ -1,0 +1,579 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "EmptySphereSearch.h"
+#include "MeshChecks.h"
+#include "Predicates.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+#include <utility>
+
+using namespace cdm;
+
+namespace
+{
+struct Model
+{
+  TetMesh Mesh;
+  TriangleMesh Boundary;
+};
+
+/**
+ * Unit cube cut by the plane z = y through four of its corners: two prisms, regions 3 and 7, of
+ * three tetrahedra each; with labels. x is the lowest bit of a point's number.
+ */
+Model MakeTwoPrisms()
+{
+  Model model;
+  for (int i = 0; i < 8; ++i)
+  {
+    model.Mesh.Points.push_back({ double(i & 1), double((i >> 1) & 1), double(i >> 2) });
+  }
+  // Below the plane: the prism (0, 2, 6), (1, 3, 7); above: (0, 6, 4), (1, 7, 5). Each quadrilateral
+  // has the diagonal from its point with the smallest id.
+  model.Mesh.Tetrahedra = { { 0, 2, 6, 7 }, { 0, 3, 2, 7 }, { 0, 1, 3, 7 }, { 0, 6, 4, 7 },
+    { 0, 4, 5, 7 }, { 0, 5, 1, 7 } };
+  for (TetrahedronIds& tetrahedron : model.Mesh.Tetrahedra)
+  {
+    const std::vector<Vec3>& p = model.Mesh.Points;
+    if (Orientation(p[tetrahedron[0]], p[tetrahedron[1]], p[tetrahedron[2]], p[tetrahedron[3]]) < 0)
+    {
+      std::swap(tetrahedron[0], tetrahedron[1]);
+    }
+  }
+  model.Mesh.Regions = { 3, 3, 3, 7, 7, 7 };
+  EXPECT_TRUE(BuildNeighbors(model.Mesh).IsOk());
+
+  model.Boundary.Points = model.Mesh.Points;
+  const auto add = [&](const TriangleIds& triangle, Id front, Id back)
+  {
+    model.Boundary.Triangles.push_back(triangle);
+    model.Boundary.Labels.push_back({ front, back });
+  };
+  add({ 0, 2, 3 }, OutsideRegion, 3); // z = 0
+  add({ 0, 3, 1 }, OutsideRegion, 3);
+  add({ 4, 5, 7 }, OutsideRegion, 7); // z = 1
+  add({ 4, 7, 6 }, OutsideRegion, 7);
+  add({ 0, 1, 5 }, OutsideRegion, 7); // y = 0
+  add({ 0, 5, 4 }, OutsideRegion, 7);
+  add({ 2, 6, 7 }, OutsideRegion, 3); // y = 1
+  add({ 2, 7, 3 }, OutsideRegion, 3);
+  add({ 0, 4, 6 }, OutsideRegion, 7); // x = 0
+  add({ 0, 6, 2 }, OutsideRegion, 3);
+  add({ 1, 3, 7 }, OutsideRegion, 3); // x = 1
+  add({ 1, 7, 5 }, OutsideRegion, 7);
+  add({ 0, 1, 7 }, 7, 3); // y = z, the normal looks up
+  add({ 0, 7, 6 }, 7, 3);
+  return model;
+}
+
+MeshCheckReport Check(const Model& model, bool withBoundary = true)
+{
+  MeshCheckReport report;
+  const Status status =
+    CheckTetMesh(model.Mesh, withBoundary ? &model.Boundary : nullptr, {}, report);
+  EXPECT_TRUE(status.IsOk()) << status.Message;
+  return report;
+}
+
+void RemoveTetrahedron(TetMesh& mesh, std::size_t tetrahedron)
+{
+  mesh.Tetrahedra.erase(mesh.Tetrahedra.begin() + tetrahedron);
+  mesh.Regions.erase(mesh.Regions.begin() + tetrahedron);
+  EXPECT_TRUE(BuildNeighbors(mesh).IsOk());
+}
+} // namespace
+
+TEST(MeshChecks, ValidMeshIsValid)
+{
+  const Model model = MakeTwoPrisms();
+  const MeshCheckReport report = Check(model);
+  EXPECT_TRUE(report.IsValid()) << report.GetSummary();
+  EXPECT_EQ(6, report.Tetrahedra);
+  EXPECT_EQ(8, report.Points);
+  EXPECT_EQ(0, report.UnusedPoints);
+  ASSERT_EQ(2u, report.Regions.size());
+  EXPECT_EQ(3, report.Regions[0].Region);
+  EXPECT_EQ(7, report.Regions[1].Region);
+  for (const RegionVolume& region : report.Regions)
+  {
+    EXPECT_EQ(3, region.Tetrahedra);
+    EXPECT_NEAR(0.5, region.Volume, 1e-16);
+    EXPECT_NEAR(0.5, region.EnclosedVolume, 1e-16);
+  }
+  // The fans from the corners 0 and 7 make Kuhn's tetrahedra.
+  EXPECT_NEAR(45.0, report.SmallestDihedralAngle, 1e-12);
+  EXPECT_NEAR(90.0, report.LargestDihedralAngle, 1e-12);
+  EXPECT_TRUE(report.Examples.empty());
+  EXPECT_EQ("6 tetrahedra, 8 points, 2 regions: 0 inverted, 0 flat, 0 non-Delaunay, "
+            "0 boundary faults, volume error 0, dihedral angles 45.0 to 90.0 degrees: valid",
+    report.GetSummary());
+}
+
+TEST(MeshChecks, WithoutLabelsTheMeshTellsTheSides)
+{
+  Model model = MakeTwoPrisms();
+  model.Boundary.Labels.clear();
+  const MeshCheckReport report = Check(model);
+  EXPECT_TRUE(report.IsValid()) << report.GetSummary();
+  EXPECT_NEAR(0.5, report.Regions[0].EnclosedVolume, 1e-16);
+
+  // The orientation of a triangle without labels means nothing.
+  std::swap(model.Boundary.Triangles[2][0], model.Boundary.Triangles[2][1]);
+  std::swap(model.Boundary.Triangles[13][0], model.Boundary.Triangles[13][1]);
+  EXPECT_TRUE(Check(model).IsValid());
+}
+
+TEST(MeshChecks, RegionsLeftOutAreToldByTheirPoints)
+{
+  Model model = MakeTwoPrisms();
+  for (int i = 0; i < 3; ++i)
+  {
+    RemoveTetrahedron(model.Mesh, 3);
+  }
+  EXPECT_FALSE(Check(model).IsValid());
+  model.Boundary.Labels.clear();
+  const MeshCheckReport report = Check(model);
+  EXPECT_TRUE(report.IsValid()) << report.GetSummary();
+  EXPECT_EQ(2, report.UnusedPoints);
+}
+
+TEST(MeshChecks, BoundaryPointsAreFoundByTheirCoordinates)
+{
+  Model model = MakeTwoPrisms();
+  std::reverse(model.Boundary.Points.begin(), model.Boundary.Points.end());
+  for (TriangleIds& triangle : model.Boundary.Triangles)
+  {
+    for (Id& point : triangle)
+    {
+      point = 7 - point;
+    }
+  }
+  EXPECT_TRUE(Check(model).IsValid());
+}
+
+TEST(MeshChecks, WithoutBoundaryNothingIsCompared)
+{
+  const MeshCheckReport report = Check(MakeTwoPrisms(), false);
+  EXPECT_TRUE(report.IsValid());
+  EXPECT_EQ(std::string::npos, report.GetSummary().find("boundary"));
+}
+
+TEST(MeshChecks, InvertedTetrahedronIsCounted)
+{
+  Model model = MakeTwoPrisms();
+  std::swap(model.Mesh.Tetrahedra[4][0], model.Mesh.Tetrahedra[4][1]);
+  EXPECT_TRUE(BuildNeighbors(model.Mesh).IsOk());
+  const MeshCheckReport report = Check(model);
+  EXPECT_EQ(1, report.InvertedTetrahedra);
+  EXPECT_EQ(0, report.OverfullFacets);
+  EXPECT_EQ(0, report.UnboundFacets + report.MissingBoundaryTriangles);
+  EXPECT_NEAR(2.0 / 3.0, report.LargestVolumeError, 1e-15);
+  EXPECT_EQ((std::vector<Id>{ 4 }), report.Examples);
+  EXPECT_FALSE(report.IsValid());
+  EXPECT_NE(std::string::npos, report.GetSummary().find("1 inverted"));
+  EXPECT_NE(std::string::npos, report.GetSummary().find(": not valid"));
+}
+
+TEST(MeshChecks, FlatTetrahedronIsCounted)
+{
+  Model model = MakeTwoPrisms();
+  model.Mesh.Tetrahedra.push_back({ 0, 1, 2, 3 });
+  model.Mesh.Regions.push_back(3);
+  EXPECT_TRUE(BuildNeighbors(model.Mesh).IsOk());
+  const MeshCheckReport report = Check(model);
+  EXPECT_EQ(1, report.FlatTetrahedra);
+  EXPECT_EQ(0, report.InvertedTetrahedra);
+  EXPECT_EQ(0.0, report.SmallestDihedralAngle);
+  EXPECT_FALSE(report.IsValid());
+}
+
+TEST(MeshChecks, ExactlyFlatIsNotNearlyFlat)
+{
+  Model model;
+  model.Mesh.Points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 1e-300 } };
+  model.Mesh.Tetrahedra = { { 0, 1, 2, 3 } };
+  model.Mesh.Regions = { 0 };
+  EXPECT_TRUE(BuildNeighbors(model.Mesh).IsOk());
+  EXPECT_EQ(0, Check(model, false).FlatTetrahedra);
+  EXPECT_TRUE(Check(model, false).IsValid());
+}
+
+TEST(MeshChecks, NonDelaunayTetrahedraAreCounted)
+{
+  // Two tetrahedra on both sides of a triangle; the lower the apices, the more they disturb.
+  Model model;
+  model.Mesh.Points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0.3, 0.3, 0.2 },
+    { 0.3, 0.3, -0.2 } };
+  model.Mesh.Tetrahedra = { { 0, 1, 2, 3 }, { 0, 2, 1, 4 } };
+  model.Mesh.Regions = { 0, 0 };
+  EXPECT_TRUE(BuildNeighbors(model.Mesh).IsOk());
+  EXPECT_EQ(2, Check(model, false).NonDelaunayTetrahedra);
+  EXPECT_EQ((std::vector<Id>{ 0, 1 }), Check(model, false).Examples);
+
+  // A point of no tetrahedron counts as well, however far from the tetrahedra's own neighbours.
+  Model prisms = MakeTwoPrisms();
+  prisms.Mesh.Points.push_back({ 0.5, 0.5, 0.5 });
+  const MeshCheckReport report = Check(prisms);
+  EXPECT_EQ(6, report.NonDelaunayTetrahedra);
+  EXPECT_EQ(1, report.UnusedPoints);
+  // On the sphere, and just outside of it.
+  const double radius = std::sqrt(0.75);
+  prisms.Mesh.Points[8] = { 0.5, 0.5, 0.5 + radius + 1e-15 };
+  EXPECT_TRUE(Check(prisms).IsValid());
+}
+
+TEST(MeshChecks, EqualPointsOnOneSphereAreDelaunay)
+{
+  Model model = MakeTwoPrisms();
+  model.Mesh.Points.push_back({ 0.5, 0.5, 0.5 });
+  model.Mesh.Points[8] = model.Mesh.Points[7];
+  EXPECT_EQ(0, Check(model).NonDelaunayTetrahedra);
+  EXPECT_EQ(0, Check(model).CoincidentPoints) << "the second point is not used";
+  model.Mesh.Tetrahedra[0] = { 2, 0, 6, 8 };
+  const MeshCheckReport report = Check(model);
+  EXPECT_EQ(1, report.CoincidentPoints);
+  EXPECT_FALSE(report.IsValid());
+}
+
+TEST(MeshChecks, OverfullFacetsAreCounted)
+{
+  Model model = MakeTwoPrisms();
+  model.Mesh.Tetrahedra.push_back(model.Mesh.Tetrahedra[2]);
+  model.Mesh.Regions.push_back(3);
+  const Status status = BuildNeighbors(model.Mesh);
+  EXPECT_EQ(StatusCode::InvalidInput, status.Code);
+  EXPECT_FALSE(status.Cells.empty());
+  const MeshCheckReport report = Check(model);
+  EXPECT_EQ(4, report.OverfullFacets);
+  EXPECT_FALSE(report.IsValid());
+}
+
+TEST(MeshChecks, TetrahedraOnOneSideOfAFacetAreCounted)
+{
+  Model model;
+  model.Mesh.Points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 0, 0, 2 } };
+  model.Mesh.Tetrahedra = { { 0, 1, 2, 3 }, { 0, 1, 2, 4 } };
+  model.Mesh.Regions = { 0, 0 };
+  EXPECT_TRUE(BuildNeighbors(model.Mesh).IsOk());
+  EXPECT_EQ(1, Check(model, false).OverfullFacets);
+}
+
+TEST(MeshChecks, WrongNeighborsAreCounted)
+{
+  Model model = MakeTwoPrisms();
+  int facet = 0;
+  while (model.Mesh.Neighbors[1][facet] == NoId)
+  {
+    ++facet;
+  }
+  model.Mesh.Neighbors[1][facet] = NoId;
+  EXPECT_EQ(1, Check(model).WrongNeighbors);
+  model.Mesh.Neighbors[1][facet] = std::numeric_limits<Id>::max();
+  EXPECT_EQ(1, Check(model).WrongNeighbors);
+  EXPECT_FALSE(Check(model).IsValid());
+  EXPECT_NE(std::string::npos, Check(model).GetSummary().find("1 wrong neighbour,"));
+}
+
+TEST(MeshChecks, MissingTetrahedronIsFound)
+{
+  Model model = MakeTwoPrisms();
+  RemoveTetrahedron(model.Mesh, 1);
+  const MeshCheckReport report = Check(model);
+  // It had two facets at the outside and two inside.
+  EXPECT_EQ(2, report.UnboundFacets);
+  EXPECT_EQ(2, report.MissingBoundaryTriangles);
+  EXPECT_NEAR(1.0 / 3.0, report.LargestVolumeError, 1e-15);
+  EXPECT_FALSE(report.IsValid());
+}
+
+TEST(MeshChecks, WrongRegionIsFound)
+{
+  Model model = MakeTwoPrisms();
+  model.Mesh.Regions[1] = 7;
+  const MeshCheckReport report = Check(model);
+  EXPECT_EQ(2, report.UnboundFacets);
+  EXPECT_EQ(2, report.MissingBoundaryTriangles);
+  EXPECT_NEAR(1.0 / 3.0, report.LargestVolumeError, 1e-15);
+
+  // All of one region under another name: every label differs, no volume has a boundary.
+  model = MakeTwoPrisms();
+  for (int i = 0; i < 3; ++i)
+  {
+    model.Mesh.Regions[i] = 5;
+  }
+  EXPECT_EQ(8, Check(model).MissingBoundaryTriangles);
+  EXPECT_EQ(3u, Check(model).Regions.size());
+  EXPECT_TRUE(std::isinf(Check(model).LargestVolumeError));
+  EXPECT_FALSE(Check(model).IsValid(1e300));
+}
+
+TEST(MeshChecks, WrongBoundaryIsFound)
+{
+  // A label turned round.
+  Model model = MakeTwoPrisms();
+  std::swap(model.Boundary.Labels[13].Front, model.Boundary.Labels[13].Back);
+  EXPECT_EQ(1, Check(model).MissingBoundaryTriangles);
+  EXPECT_FALSE(Check(model).IsValid());
+
+  // The other diagonal of a side.
+  model = MakeTwoPrisms();
+  model.Boundary.Triangles[0] = { 0, 2, 1 };
+  model.Boundary.Triangles[1] = { 1, 2, 3 };
+  EXPECT_EQ(2, Check(model).MissingBoundaryTriangles);
+  EXPECT_EQ(2, Check(model).UnboundFacets);
+  EXPECT_EQ(0.0, Check(model).LargestVolumeError);
+  model.Boundary.Labels.clear();
+  EXPECT_EQ(2, Check(model).MissingBoundaryTriangles);
+
+  // A triangle that the boundary lacks.
+  model = MakeTwoPrisms();
+  model.Boundary.Triangles.pop_back();
+  model.Boundary.Labels.pop_back();
+  EXPECT_EQ(1, Check(model).UnboundFacets);
+  EXPECT_EQ(0, Check(model).MissingBoundaryTriangles);
+
+  // A point that the mesh lacks.
+  model = MakeTwoPrisms();
+  model.Boundary.Points[5] = { 1, 0, 1.5 };
+  EXPECT_EQ(4, Check(model).MissingBoundaryTriangles);
+  EXPECT_EQ(4, Check(model).UnboundFacets);
+}
+
+TEST(MeshChecks, InnerSheetsBelongToTheBoundary)
+{
+  // The interface between two halves of one region is still to be kept.
+  Model model = MakeTwoPrisms();
+  model.Mesh.Regions.assign(6, 3);
+  for (RegionPair& label : model.Boundary.Labels)
+  {
+    label.Front = label.Front == 7 ? 3 : label.Front;
+    label.Back = 3;
+  }
+  EXPECT_TRUE(Check(model).IsValid()) << Check(model).GetSummary();
+  EXPECT_DOUBLE_EQ(1.0, Check(model).Regions[0].EnclosedVolume);
+  model.Boundary.Triangles[12] = { 0, 1, 6 };
+  EXPECT_EQ(1, Check(model).MissingBoundaryTriangles);
+}
+
+TEST(MeshChecks, CriteriaForBoundariesAreCounted)
+{
+  // Right angles everywhere: the other points lie on the smallest spheres or outside of them.
+  EXPECT_EQ(0, Check(MakeTwoPrisms()).SmallestSphereViolations);
+  EXPECT_EQ(0, Check(MakeTwoPrisms()).EdgeSphereViolations);
+
+  // A single flat tetrahedron: its apex lies in the smallest spheres of the base and of all of the
+  // base's edges, the base's third point in those of two obtuse sides.
+  Model model;
+  model.Mesh.Points = { { -1, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0.3, 0.1 } };
+  model.Mesh.Tetrahedra = { { 0, 1, 2, 3 } };
+  model.Mesh.Regions = { 0 };
+  EXPECT_TRUE(BuildNeighbors(model.Mesh).IsOk());
+  Id spheres = 0;
+  Id edges = 0;
+  const std::vector<Vec3>& p = model.Mesh.Points;
+  for (int i = 0; i < 4; ++i)
+  {
+    const int* ids = FacetVertices[i];
+    spheres += InEquatorialSphere(p[ids[0]], p[ids[1]], p[ids[2]], p[i]) > 0;
+    for (int j = i + 1; j < 4; ++j)
+    {
+      bool isDisturbed = false;
+      for (int k = 0; k < 4; ++k)
+      {
+        isDisturbed = isDisturbed || (k != i && k != j && InDiametralSphere(p[i], p[j], p[k]) > 0);
+      }
+      edges += isDisturbed;
+    }
+  }
+  EXPECT_GT(spheres, 0);
+  EXPECT_GT(edges, 0);
+  EXPECT_EQ(spheres, Check(model, false).SmallestSphereViolations);
+  EXPECT_EQ(edges, Check(model, false).EdgeSphereViolations);
+  EXPECT_TRUE(Check(model, false).IsValid()) << "these criteria are no condition for a valid mesh";
+}
+
+TEST(MeshChecks, VolumesAreCompensated)
+{
+  // A long way from the origin, a thin layer: both volumes have to agree far below the tolerance.
+  Model model = MakeTwoPrisms();
+  for (std::vector<Vec3>* points : { &model.Mesh.Points, &model.Boundary.Points })
+  {
+    for (Vec3& point : *points)
+    {
+      const double angle = 0.3;
+      const Vec3 layer{ 100.0 * point.X, 100.0 * point.Y, 1e-3 * point.Z };
+      point = { 1e4 + std::cos(angle) * layer.X - std::sin(angle) * layer.Z, 2e4 + layer.Y,
+        std::sin(angle) * layer.X + std::cos(angle) * layer.Z };
+    }
+  }
+  EXPECT_LT(Check(model).LargestVolumeError, 1e-14);
+}
+
+TEST(MeshChecks, BadInputIsRefused)
+{
+  MeshCheckReport report;
+  Model model = MakeTwoPrisms();
+  model.Mesh.Tetrahedra[2][1] = 8;
+  Status status = CheckTetMesh(model.Mesh, nullptr, {}, report);
+  EXPECT_EQ(StatusCode::InvalidInput, status.Code);
+  EXPECT_EQ((std::vector<Id>{ 2 }), status.Cells);
+  EXPECT_EQ(StatusCode::InvalidInput, BuildNeighbors(model.Mesh).Code);
+
+  model = MakeTwoPrisms();
+  model.Mesh.Neighbors.clear();
+  EXPECT_EQ(StatusCode::InvalidInput, CheckTetMesh(model.Mesh, nullptr, {}, report).Code);
+
+  model = MakeTwoPrisms();
+  model.Mesh.Points[3].Z = std::numeric_limits<double>::infinity();
+  status = CheckTetMesh(model.Mesh, nullptr, {}, report);
+  EXPECT_EQ(StatusCode::InvalidInput, status.Code);
+  EXPECT_EQ((std::vector<Id>{ 3 }), status.Points);
+
+  model = MakeTwoPrisms();
+  model.Boundary.Triangles[1][0] = -1;
+  status = CheckTetMesh(model.Mesh, &model.Boundary, {}, report);
+  EXPECT_EQ(StatusCode::InvalidInput, status.Code);
+  EXPECT_EQ((std::vector<Id>{ 1 }), status.Cells);
+
+  model = MakeTwoPrisms();
+  model.Boundary.Labels.pop_back();
+  EXPECT_EQ(StatusCode::InvalidInput, CheckTetMesh(model.Mesh, &model.Boundary, {}, report).Code);
+}
+
+TEST(MeshChecks, EmptyMeshHasNoBoundary)
+{
+  Model model;
+  EXPECT_TRUE(Check(model).IsValid());
+  EXPECT_NE(std::string::npos, Check(model).GetSummary().find("empty"));
+  model.Boundary = MakeTwoPrisms().Boundary;
+  EXPECT_EQ(14, Check(model).MissingBoundaryTriangles);
+  EXPECT_FALSE(Check(model).IsValid());
+}
+
+TEST(MeshChecks, AbortIsHonoured)
+{
+  const Model model = MakeTwoPrisms();
+  for (int patience = 0; patience < 5; ++patience)
+  {
+    int calls = 0;
+    MeshCheckReport report;
+    const ExecutionContext context({}, [&] { return calls++ >= patience; });
+    EXPECT_TRUE(CheckTetMesh(model.Mesh, &model.Boundary, context, report).IsAborted());
+  }
+}
+
+namespace
+{
+/** Points found by the search must hold all points that the exact predicate finds. */
+void CompareWithAllPoints(const std::vector<Vec3>& points, const TetrahedronIds& ids)
+{
+  const Vec3& a = points[ids[0]];
+  const Vec3& b = points[ids[1]];
+  const Vec3& c = points[ids[2]];
+  const Vec3& d = points[ids[3]];
+  const EmptySphereSearch search(points);
+  if (Orientation(a, b, c, d) > 0)
+  {
+    std::set<Id> candidates;
+    search.FindInside(SphereForm(a, b, c, d),
+      [&](Id point)
+      {
+        candidates.insert(point);
+        return false;
+      });
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      EXPECT_TRUE(InSphere(a, b, c, d, points[i]) < 0 || candidates.count(static_cast<Id>(i)) == 1)
+        << i;
+    }
+  }
+  std::set<Id> candidates;
+  search.FindInside(SphereForm(a, b, c),
+    [&](Id point)
+    {
+      candidates.insert(point);
+      return false;
+    });
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    EXPECT_TRUE(AreCollinear(a, b, c) || InEquatorialSphere(a, b, c, points[i]) < 0 ||
+      candidates.count(static_cast<Id>(i)) == 1)
+      << i;
+  }
+}
+} // namespace
+
+TEST(EmptySphereSearch, FindsWhatTheExactPredicatesFind)
+{
+  std::mt19937 random(7);
+  const auto uniform = [&] { return random() / 4294967296.0; };
+  for (const double flatness : { 1.0, 1e-8, 1e-15, 0.0 })
+  {
+    for (const double scale : { 1e-30, 1.0, 1e30 })
+    {
+      std::vector<Vec3> points;
+      for (int i = 0; i < 200; ++i)
+      {
+        // Slanted layers, so that rounding makes them thick where they are not.
+        const double x = std::floor(uniform() * 6.0);
+        const double y = std::floor(uniform() * 6.0);
+        const double z = flatness * uniform();
+        points.push_back(scale * Vec3{ 0.1 * x - 0.3 * z, 0.1 * y + 0.1 * x, z + 0.03 * x + 7.0 });
+      }
+      for (int i = 0; i < 20; ++i)
+      {
+        TetrahedronIds ids{ static_cast<Id>(random() % 200), static_cast<Id>(random() % 200),
+          static_cast<Id>(random() % 200), static_cast<Id>(random() % 200) };
+        CompareWithAllPoints(points, ids);
+        std::swap(ids[0], ids[1]);
+        CompareWithAllPoints(points, ids);
+      }
+    }
+  }
+}
+
+TEST(EmptySphereSearch, SpheresOfFlatTetrahedraStayNarrow)
+{
+  // A slanted square layer of points, flat but for rounding, below a block of random points: the
+  // sphere through four points of the layer is a half space in effect. On the empty side only the
+  // layer's own points may be looked at.
+  std::mt19937 random(11);
+  const auto uniform = [&] { return random() / 4294967296.0; };
+  std::vector<Vec3> points;
+  for (int i = 0; i < 100; ++i)
+  {
+    const double x = uniform();
+    const double y = uniform();
+    points.push_back({ x, y, (x + y) / 3.0 });
+  }
+  for (int i = 0; i < 10000; ++i)
+  {
+    const double x = uniform();
+    const double y = uniform();
+    points.push_back({ x, y, (x + y) / 3.0 + 1e-6 + uniform() });
+  }
+  const EmptySphereSearch search(points);
+  int tetrahedra = 0;
+  for (int i = 0; i + 3 < 100; ++i)
+  {
+    if (Orientation(points[i], points[i + 1], points[i + 2], points[i + 3]) <= 0)
+    {
+      continue;
+    }
+    ++tetrahedra;
+    // Whichever side the sphere lies on, candidates above the layer are truly inside.
+    search.FindInside(SphereForm(points[i], points[i + 1], points[i + 2], points[i + 3]),
+      [&](Id point)
+      {
+        EXPECT_TRUE(point < 100 ||
+          InSphere(points[i], points[i + 1], points[i + 2], points[i + 3], points[point]) > 0);
+        return false;
+      });
+  }
+  EXPECT_GT(tetrahedra, 5);
+}

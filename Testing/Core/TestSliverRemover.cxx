@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Measures.h"
+#include "MeshChecks.h"
+#include "Predicates.h"
+#include "SliverRemover.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+using namespace cdm;
+
+namespace
+{
+constexpr double Degrees = 57.29577951308232;
+
+void AddTetrahedron(TetMesh& mesh, TetrahedronIds ids, Id region)
+{
+  const std::vector<Vec3>& p = mesh.Points;
+  if (Orientation(p[ids[0]], p[ids[1]], p[ids[2]], p[ids[3]]) < 0)
+  {
+    std::swap(ids[2], ids[3]);
+  }
+  mesh.Tetrahedra.push_back(ids);
+  mesh.Regions.push_back(region);
+}
+
+enum class Numbering
+{
+  /** Points of even parity first: T6 with its slivers, one flip away from T5. */
+  Parity,
+  /** All kinds of cells. */
+  Random
+};
+
+/**
+ * A grid of size^3 unit cubes, each pulled from its lowest numbered corner: six tetrahedra, or five.
+ * The cubes below the middle are region 0, the others region 1.
+ */
+TetMesh MakeGrid(int size, Numbering numbering)
+{
+  const int side = size + 1;
+  std::vector<int> order(side * side * side);
+  std::iota(order.begin(), order.end(), 0);
+  if (numbering == Numbering::Parity)
+  {
+    std::stable_partition(order.begin(), order.end(),
+      [=](int i) { return (i % side + i / side % side + i / side / side) % 2 == 0; });
+  }
+  else
+  {
+    // The standard fixes what the engine returns, not what std::shuffle makes of it.
+    std::mt19937 random(5);
+    for (std::size_t i = order.size() - 1; i > 0; --i)
+    {
+      std::swap(order[i], order[random() % (i + 1)]);
+    }
+  }
+  TetMesh mesh;
+  std::vector<Id> ids(order.size());
+  for (const int i : order)
+  {
+    ids[i] = static_cast<Id>(mesh.Points.size());
+    mesh.Points.push_back({ double(i % side), double(i / side % side), double(i / side / side) });
+  }
+  // Corners of the sides of a cube, in the order round each.
+  constexpr int sides[6][4] = { { 0, 1, 3, 2 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 }, { 2, 3, 7, 6 },
+    { 0, 2, 6, 4 }, { 1, 3, 7, 5 } };
+  for (int cube = 0; cube < size * size * size; ++cube)
+  {
+    const int x = cube % size;
+    const int y = cube / size % size;
+    const int z = cube / size / size;
+    std::array<Id, 8> corners;
+    for (int i = 0; i < 8; ++i)
+    {
+      corners[i] = ids[x + (i & 1) + side * (y + (i >> 1 & 1) + side * (z + (i >> 2)))];
+    }
+    const Id apex = *std::min_element(corners.begin(), corners.end());
+    for (const int(&face)[4] : sides)
+    {
+      std::array<Id, 4> outline{ corners[face[0]], corners[face[1]], corners[face[2]],
+        corners[face[3]] };
+      std::rotate(outline.begin(), std::min_element(outline.begin(), outline.end()), outline.end());
+      if (outline[0] != apex)
+      {
+        AddTetrahedron(mesh, { apex, outline[0], outline[1], outline[2] }, 2 * z >= size);
+        AddTetrahedron(mesh, { apex, outline[0], outline[2], outline[3] }, 2 * z >= size);
+      }
+    }
+  }
+  EXPECT_TRUE(BuildNeighbors(mesh).IsOk());
+  return mesh;
+}
+
+/** The outer and interface facets of a mesh, with labels. */
+TriangleMesh MakeBoundary(const TetMesh& mesh)
+{
+  TriangleMesh boundary;
+  boundary.Points = mesh.Points;
+  for (Id tetrahedron = 0; tetrahedron < static_cast<Id>(mesh.Tetrahedra.size()); ++tetrahedron)
+  {
+    for (int facet = 0; facet < 4; ++facet)
+    {
+      const Id neighbor = mesh.Neighbors[tetrahedron][facet];
+      const Id front = neighbor == NoId ? OutsideRegion : mesh.Regions[neighbor / 4];
+      if (front < mesh.Regions[tetrahedron])
+      {
+        boundary.Triangles.push_back(GetFacet(mesh.Tetrahedra[tetrahedron], facet));
+        boundary.Labels.push_back({ front, mesh.Regions[tetrahedron] });
+      }
+    }
+  }
+  return boundary;
+}
+
+MeshCheckReport Check(const TetMesh& mesh, const TriangleMesh* boundary = nullptr)
+{
+  MeshCheckReport report;
+  EXPECT_TRUE(CheckTetMesh(mesh, boundary, {}, report).IsOk());
+  return report;
+}
+
+SliverRemoverReport Remove(TetMesh& mesh, double target, double flatness = 1e-9)
+{
+  SliverRemoverOptions options;
+  options.DihedralAngleTarget = target;
+  options.FlatnessRatio = flatness;
+  SliverRemoverReport report;
+  const Status status = RemoveSlivers(mesh, options, {}, report);
+  EXPECT_TRUE(status.IsOk()) << status.Message;
+  return report;
+}
+
+/**
+ * Two regions that meet in four points, coplanar but for a millionth: region 0 above has a flat
+ * tetrahedron with two facets on the interface. All points but the uppermost lie on one sphere,
+ * exactly.
+ */
+TetMesh MakeInterfaceSliver()
+{
+  TetMesh mesh;
+  // h^2 + (h + 1)^2 is the square of the radius.
+  const double h = 1e6;
+  mesh.Points = { { h + 1, 0, h }, { -(h + 1), 0, h }, { 0, h, h + 1 }, { 0, -h, h + 1 },
+    { 0, 0, 4 * h }, { h, 0, -(h + 1) } };
+  AddTetrahedron(mesh, { 0, 1, 2, 3 }, 0);
+  AddTetrahedron(mesh, { 2, 3, 0, 4 }, 0);
+  AddTetrahedron(mesh, { 2, 3, 1, 4 }, 0);
+  AddTetrahedron(mesh, { 0, 1, 2, 5 }, 1);
+  AddTetrahedron(mesh, { 0, 1, 3, 5 }, 1);
+  EXPECT_TRUE(BuildNeighbors(mesh).IsOk());
+  return mesh;
+}
+} // namespace
+
+TEST(SliverRemover, GridOfT6BecomesT5)
+{
+  for (const int size : { 1, 2, 5 })
+  {
+    TetMesh mesh = MakeGrid(size, Numbering::Parity);
+    const TriangleMesh boundary = MakeBoundary(mesh);
+    const MeshCheckReport before = Check(mesh, &boundary);
+    ASSERT_TRUE(before.IsValid()) << before.GetSummary();
+    ASSERT_EQ(6 * size * size * size, before.Tetrahedra);
+    EXPECT_NEAR(std::atan(std::sqrt(0.5)) * Degrees, before.SmallestDihedralAngle, 1e-12);
+
+    const SliverRemoverReport report = Remove(mesh, 70.0);
+    EXPECT_EQ(size * size * size, report.Flips);
+    EXPECT_EQ(0, report.PeeledTetrahedra);
+    EXPECT_EQ(before.SmallestDihedralAngle, report.SmallestDihedralAngleBefore);
+
+    // The boundary and the interface are as they were.
+    const MeshCheckReport after = Check(mesh, &boundary);
+    EXPECT_TRUE(after.IsValid()) << after.GetSummary();
+    EXPECT_EQ(5 * size * size * size, after.Tetrahedra);
+    EXPECT_NEAR(std::atan(std::sqrt(2.0)) * Degrees, after.SmallestDihedralAngle, 1e-12);
+    EXPECT_NEAR(after.SmallestDihedralAngle, report.SmallestDihedralAngleAfter, 1e-12);
+    EXPECT_LE(after.LargestDihedralAngle, 90.0 + 1e-12);
+    for (std::size_t i = 0; i < after.Regions.size(); ++i)
+    {
+      EXPECT_EQ(before.Regions[i].Region, after.Regions[i].Region);
+      EXPECT_DOUBLE_EQ(before.Regions[i].Volume, after.Regions[i].Volume);
+    }
+    // Nothing is left to be done.
+    EXPECT_EQ(0, Remove(mesh, 70.0).Flips);
+  }
+}
+
+TEST(SliverRemover, MixedCellsImproveAndStayDelaunay)
+{
+  TetMesh mesh = MakeGrid(6, Numbering::Random);
+  const TriangleMesh boundary = MakeBoundary(mesh);
+  const MeshCheckReport before = Check(mesh, &boundary);
+  ASSERT_TRUE(before.IsValid()) << before.GetSummary();
+  const auto countBad = [](const TetMesh& m)
+  {
+    return std::count_if(m.Tetrahedra.begin(), m.Tetrahedra.end(),
+      [&](const TetrahedronIds& ids)
+      {
+        return GetSmallestDihedralAngle(
+                 m.Points[ids[0]], m.Points[ids[1]], m.Points[ids[2]], m.Points[ids[3]]) < 44.0;
+      });
+  };
+  const auto badBefore = countBad(mesh);
+  TetMesh again = mesh;
+  const SliverRemoverReport report = Remove(mesh, 50.0);
+  EXPECT_GT(report.Flips, 0);
+  EXPECT_GE(report.SmallestDihedralAngleAfter, report.SmallestDihedralAngleBefore);
+  const MeshCheckReport after = Check(mesh, &boundary);
+  EXPECT_TRUE(after.IsValid()) << after.GetSummary();
+  EXPECT_LT(2 * countBad(mesh), badBefore);
+
+  // The same input gives the same mesh.
+  Remove(again, 50.0);
+  EXPECT_EQ(again.Tetrahedra, mesh.Tetrahedra);
+  EXPECT_EQ(again.Neighbors, mesh.Neighbors);
+  EXPECT_EQ(again.Regions, mesh.Regions);
+}
+
+TEST(SliverRemover, TetrahedraAboveTheTargetAreLeftAlone)
+{
+  TetMesh mesh = MakeGrid(2, Numbering::Parity);
+  const TetMesh before = mesh;
+  EXPECT_EQ(0, Remove(mesh, 35.0).Flips);
+  EXPECT_EQ(before.Tetrahedra, mesh.Tetrahedra);
+  EXPECT_EQ(before.Neighbors, mesh.Neighbors);
+  EXPECT_EQ(48, Remove(mesh, 36.0).Flips * 6);
+}
+
+TEST(SliverRemover, RegionsAreNotMixed)
+{
+  // The two outer tetrahedra of the three around the diagonal are another region: no flip.
+  TetMesh mesh = MakeGrid(1, Numbering::Parity);
+  for (std::size_t i = 0; i < mesh.Tetrahedra.size(); ++i)
+  {
+    mesh.Regions[i] = static_cast<Id>(i);
+  }
+  EXPECT_EQ(0, Remove(mesh, 70.0).Flips);
+  EXPECT_EQ(6u, mesh.Tetrahedra.size());
+}
+
+TEST(SliverRemover, OnlyCosphericalSetsAreFlipped)
+{
+  // Three tetrahedra around an edge, better replaced by two: all points on one sphere, or the edge
+  // a little shorter, so that the three are the only Delaunay tetrahedralization.
+  for (const double z : { -3.0, -2.99 })
+  {
+    TetMesh mesh;
+    mesh.Points = { { 0, 0, z }, { 0, 0, 3 }, { 3, 0, 0 }, { -1, 2, 2 }, { -2, -2, 1 } };
+    AddTetrahedron(mesh, { 0, 1, 2, 3 }, 0);
+    AddTetrahedron(mesh, { 0, 1, 3, 4 }, 0);
+    AddTetrahedron(mesh, { 0, 1, 4, 2 }, 0);
+    ASSERT_TRUE(BuildNeighbors(mesh).IsOk());
+    const TriangleMesh boundary = MakeBoundary(mesh);
+    ASSERT_TRUE(Check(mesh, &boundary).IsValid());
+    const SliverRemoverReport report = Remove(mesh, 70.0);
+    EXPECT_EQ(z == -3.0 ? 1 : 0, report.Flips);
+    EXPECT_EQ(z == -3.0 ? 2u : 3u, mesh.Tetrahedra.size());
+    EXPECT_TRUE(Check(mesh, &boundary).IsValid());
+  }
+}
+
+TEST(SliverRemover, FlatTetrahedronOnTheOutsideIsPeeledOff)
+{
+  TetMesh mesh = MakeInterfaceSliver();
+  mesh.Tetrahedra.resize(3);
+  mesh.Regions.resize(3);
+  ASSERT_TRUE(BuildNeighbors(mesh).IsOk());
+  EXPECT_LT(Check(mesh).SmallestDihedralAngle, 1e-3);
+
+  // A stricter flatness, or a target that asks for less, leave it.
+  TetMesh same = mesh;
+  EXPECT_EQ(0, Remove(same, 15.0, 1e-9).PeeledTetrahedra);
+  EXPECT_EQ(0, Remove(same, 0.0, 1e-6).PeeledTetrahedra);
+  EXPECT_EQ(3u, same.Tetrahedra.size());
+
+  const SliverRemoverReport report = Remove(mesh, 15.0, 1e-6);
+  EXPECT_EQ(1, report.PeeledTetrahedra);
+  EXPECT_EQ(0, report.Flips);
+  const MeshCheckReport check = Check(mesh);
+  EXPECT_EQ(2, check.Tetrahedra);
+  EXPECT_EQ(0, check.WrongNeighbors + check.InvertedTetrahedra + check.FlatTetrahedra);
+  EXPECT_EQ(0, check.NonDelaunayTetrahedra);
+  EXPECT_EQ(1, check.UnusedPoints) << "the lowest point, which had no tetrahedron before either";
+  EXPECT_GT(check.SmallestDihedralAngle, 15.0);
+}
+
+TEST(SliverRemover, PeelingLeavesNoGapAndNoPinch)
+{
+  // Another tetrahedron at the outer edge, on the far side of the outside: a gap would open.
+  TetMesh mesh = MakeInterfaceSliver();
+  mesh.Tetrahedra.resize(3);
+  mesh.Regions.resize(3);
+  mesh.Points.push_back({ 0, 1e6, -1e6 });
+  mesh.Points.push_back({ 0, -1e6, -1e6 });
+  AddTetrahedron(mesh, { 0, 1, 6, 7 }, 0);
+  ASSERT_TRUE(BuildNeighbors(mesh).IsOk());
+  EXPECT_EQ(0, Remove(mesh, 15.0, 1e-6).PeeledTetrahedra);
+
+  // The inner edge on the border too: the border would touch itself.
+  mesh = MakeInterfaceSliver();
+  mesh.Tetrahedra.resize(2);
+  mesh.Regions.resize(2);
+  ASSERT_TRUE(BuildNeighbors(mesh).IsOk());
+  EXPECT_EQ(0, Remove(mesh, 15.0, 1e-6).PeeledTetrahedra);
+}
+
+TEST(SliverRemover, FlatTetrahedronOnAnInterfaceVanishesInTheOtherRegion)
+{
+  TetMesh mesh = MakeInterfaceSliver();
+  const MeshCheckReport before = Check(mesh);
+  ASSERT_TRUE(before.IsValid()) << before.GetSummary();
+  EXPECT_LT(before.SmallestDihedralAngle, 1e-3);
+  const SliverRemoverReport report = Remove(mesh, 15.0, 1e-6);
+  EXPECT_EQ(1, report.PeeledTetrahedra);
+  EXPECT_EQ(1, report.Flips);
+  const MeshCheckReport after = Check(mesh);
+  EXPECT_TRUE(after.IsValid()) << after.GetSummary();
+  EXPECT_EQ(4, after.Tetrahedra);
+  EXPECT_GT(after.SmallestDihedralAngle, 15.0);
+  EXPECT_EQ((std::vector<Id>{ 0, 0, 1, 1 }),
+    [&]
+    {
+      std::vector<Id> regions = mesh.Regions;
+      std::sort(regions.begin(), regions.end());
+      return regions;
+    }());
+  const double total = before.Regions[0].Volume + before.Regions[1].Volume;
+  EXPECT_NEAR(1.0, (after.Regions[0].Volume + after.Regions[1].Volume) / total, 1e-14);
+  EXPECT_NEAR(1.0, after.Regions[1].Volume / before.Regions[1].Volume, 1e-5);
+
+  // Where no flip makes it vanish it stays with its region: the lowest point off the sphere.
+  mesh = MakeInterfaceSliver();
+  mesh.Points[5] = { 1e6, 0, -1.1e6 };
+  const TetMesh same = mesh;
+  EXPECT_EQ(0, Remove(mesh, 15.0, 1e-6).PeeledTetrahedra);
+  EXPECT_EQ(same.Regions, mesh.Regions);
+  EXPECT_EQ(same.Tetrahedra, mesh.Tetrahedra);
+}
+
+TEST(SliverRemover, BadInputIsNamedAndLeftAlone)
+{
+  TetMesh mesh = MakeGrid(1, Numbering::Parity);
+  std::swap(mesh.Tetrahedra[2][0], mesh.Tetrahedra[2][1]);
+  ASSERT_TRUE(BuildNeighbors(mesh).IsOk());
+  const TetMesh before = mesh;
+  SliverRemoverReport report;
+  Status status = RemoveSlivers(mesh, {}, {}, report);
+  EXPECT_EQ(StatusCode::InvalidInput, status.Code);
+  EXPECT_EQ((std::vector<Id>{ 2 }), status.Cells);
+  EXPECT_EQ(before.Tetrahedra, mesh.Tetrahedra);
+
+  mesh = MakeGrid(1, Numbering::Parity);
+  mesh.Neighbors.pop_back();
+  EXPECT_EQ(StatusCode::InvalidInput, RemoveSlivers(mesh, {}, {}, report).Code);
+
+  mesh = MakeGrid(1, Numbering::Parity);
+  mesh.Neighbors[3] = { 1, 2, 3, 99 };
+  EXPECT_EQ(StatusCode::InvalidInput, RemoveSlivers(mesh, {}, {}, report).Code);
+}
+
+TEST(SliverRemover, EmptyMeshAndAbort)
+{
+  TetMesh mesh;
+  const SliverRemoverReport empty = Remove(mesh, 15.0);
+  EXPECT_EQ(0.0, empty.SmallestDihedralAngleBefore);
+  EXPECT_EQ(0.0, empty.SmallestDihedralAngleAfter);
+
+  mesh = MakeGrid(8, Numbering::Parity);
+  const TriangleMesh boundary = MakeBoundary(mesh);
+  SliverRemoverOptions options;
+  options.DihedralAngleTarget = 70.0;
+  for (int patience = 0; patience < 5; ++patience)
+  {
+    int calls = 0;
+    SliverRemoverReport report;
+    const ExecutionContext context({}, [&] { return calls++ >= patience; });
+    EXPECT_TRUE(RemoveSlivers(mesh, options, context, report).IsAborted());
+    EXPECT_TRUE(Check(mesh, &boundary).IsValid());
+  }
+}

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilterTesting.h"
+
+#include <vtkConformingDelaunayMesher.h>
+#include <vtkFieldData.h>
+#include <vtkSphereSource.h>
+#include <vtkStringArray.h>
+
+#include <cmath>
+
+using namespace testing_filters;
+
+namespace
+{
+vtkPolyData* GetSurface(vtkConformingDelaunayMesher* filter, int port)
+{
+  return vtkPolyData::SafeDownCast(filter->GetOutputDataObject(port));
+}
+
+std::string GetCertificate(vtkUnstructuredGrid* mesh)
+{
+  auto array = vtkStringArray::SafeDownCast(mesh->GetFieldData()->GetAbstractArray("Certificate"));
+  EXPECT_NE(array, nullptr);
+  return array && array->GetNumberOfValues() == 1 ? array->GetValue(0) : std::string();
+}
+
+/** The cube turned about an odd axis: cospherical and coplanar up to rounding only. */
+vtkSmartPointer<vtkPolyData> MakeTurnedBoxes()
+{
+  auto boxes = MakeTwoBoxes(true);
+  const double c = std::cos(0.3);
+  const double s = std::sin(0.3);
+  for (vtkIdType i = 0; i < boxes->GetNumberOfPoints(); ++i)
+  {
+    double x[3];
+    boxes->GetPoint(i, x);
+    const double y[3] = { c * x[0] - s * x[1], s * x[0] + c * x[1], x[2] };
+    boxes->GetPoints()->SetPoint(i, y[0], c * y[1] - s * y[2], s * y[1] + c * y[2]);
+  }
+  return boxes;
+}
+} // namespace
+
+TEST(ConformingDelaunayMesherFilter, MeshesTwoMaterials)
+{
+  vtkNew<vtkConformingDelaunayMesher> filter;
+  filter->SetInputData(MakeTwoBoxes(true));
+  filter->SetMaximumEdgeLength(0.4);
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->Update();
+  EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+  vtkUnstructuredGrid* mesh = filter->GetOutput();
+  EXPECT_NEAR(GetVolume(mesh, 3), 1.0, 1e-12);
+  EXPECT_NEAR(GetVolume(mesh, 7), 2.0, 1e-12);
+  EXPECT_NE(GetCertificate(mesh), "");
+  ExpectLinear(mesh);
+  FindArray(mesh->GetCellData(), "RegionId", 1, VTK_INT);
+  EXPECT_EQ(mesh->GetCellData()->GetNumberOfArrays(), 1);
+  EXPECT_EQ(mesh->GetPointData()->GetNumberOfArrays(), 1);
+
+  vtkPolyData* boundary = GetSurface(filter, 1);
+  EXPECT_NEAR(GetArea(boundary, 3, 7), 1.0, 1e-12);
+  EXPECT_NEAR(GetArea(boundary, -1, 3), 5.0, 1e-12);
+  EXPECT_NEAR(GetArea(boundary, -1, 7), 9.0, 1e-12);
+  FindArray(boundary->GetCellData(), "PolygonId", 1, VTK_INT);
+  EXPECT_EQ(boundary->GetCellData()->GetNumberOfArrays(), 2);
+  EXPECT_EQ(GetSurface(filter, 2)->GetNumberOfCells(), 0);
+  FindArray(GetSurface(filter, 2)->GetCellData(), "ProblemKind", 1, VTK_INT);
+}
+
+TEST(ConformingDelaunayMesherFilter, MeshesTurnedBoxes)
+{
+  vtkNew<vtkConformingDelaunayMesher> filter;
+  filter->SetInputData(MakeTurnedBoxes());
+  filter->SetMaximumEdgeLength(0.4);
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->Update();
+  EXPECT_EQ(recorder->Errors + recorder->Warnings, "") << GetCertificate(filter->GetOutput());
+  EXPECT_NEAR(GetVolume(filter->GetOutput(), 3), 1.0, 1e-12);
+  EXPECT_NEAR(GetVolume(filter->GetOutput(), 7), 2.0, 1e-12);
+  // Also where tetrahedra were peeled off, the boundary is whole and knows its polygons.
+  vtkPolyData* boundary = GetSurface(filter, 1);
+  EXPECT_NEAR(GetArea(boundary, 3, 7), 1.0, 1e-12);
+  EXPECT_NEAR(GetArea(boundary, -1, 3), 5.0, 1e-12);
+  EXPECT_NEAR(GetArea(boundary, -1, 7), 9.0, 1e-12);
+  vtkDataArray* ids = FindArray(boundary->GetCellData(), "PolygonId", 1, VTK_INT);
+  vtkDataArray* labels = boundary->GetCellData()->GetArray("BoundaryLabels");
+  ASSERT_NE(ids, nullptr);
+  for (vtkIdType i = 0; i < boundary->GetNumberOfCells(); ++i)
+  {
+    const bool isInterface = labels->GetComponent(i, 0) != -1 && labels->GetComponent(i, 1) != -1;
+    EXPECT_EQ(ids->GetComponent(i, 0) == 5, isInterface);
+  }
+}
+
+TEST(ConformingDelaunayMesherFilter, WorksWithoutSliverRemoval)
+{
+  vtkNew<vtkConformingDelaunayMesher> filter;
+  filter->SetInputData(MakeCubeWithCavity());
+  filter->RemoveSliversOff();
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->Update();
+  EXPECT_EQ(recorder->Errors, "");
+  EXPECT_NEAR(GetVolume(filter->GetOutput(), 0), 26.0, 1e-11);
+  EXPECT_NE(GetCertificate(filter->GetOutput()), "");
+}
+
+TEST(ConformingDelaunayMesherFilter, FulfilsCriteriaAndUsesItsOtherInputs)
+{
+  auto sizing = MakePoints({ { 0.5, 0.5, 0.5 } });
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("Sizing");
+  values->InsertNextValue(0.35);
+  sizing->GetPointData()->AddArray(values);
+  for (int criterion = 0; criterion < 3; ++criterion)
+  {
+    vtkNew<vtkConformingDelaunayMesher> filter;
+    filter->SetInputData(MakeCube());
+    filter->SetInputData(1, MakePoints({ { 0.5, 0.4, 0.6 }, { 0.2, 0.3, 0.4 } }));
+    filter->SetInputData(2, sizing);
+    filter->SetCriterion(criterion);
+    vtkNew<EventRecorder> recorder;
+    recorder->Watch(filter);
+    filter->Update();
+    EXPECT_EQ(recorder->Errors + recorder->Warnings, "") << criterion;
+    EXPECT_NEAR(GetVolume(filter->GetOutput(), 0), 1.0, 1e-12);
+    EXPECT_GT(filter->GetOutput()->GetNumberOfPoints(), 60);
+    ExpectLinear(filter->GetOutput());
+  }
+}
+
+TEST(ConformingDelaunayMesherFilter, RefusesBadInputAndNamesItsOwnCells)
+{
+  vtkNew<vtkConformingDelaunayMesher> filter;
+  vtkNew<vtkPolyData> nothing;
+  filter->SetInputData(nothing);
+  ExpectFailure(filter, { "vtkConformingDelaunayMesher", "empty" });
+  filter->SetInputData(MakeCubeWithNaN());
+  ExpectFailure(filter, { "not finite", "Points: 6 (0, nan, 1)" });
+  filter->SetInputData(MakeCrossingBoxes());
+  ExpectFailure(filter, { "Cells: 5, " }, 3);
+  ExpectEmptyOutputs(filter, 3);
+  EXPECT_EQ(filter->GetOutput()->GetNumberOfCells(), 0);
+  EXPECT_EQ(GetSurface(filter, 1)->GetNumberOfCells(), 0);
+  EXPECT_GT(GetSurface(filter, 2)->GetNumberOfCells(), 0);
+
+  // Squares 6 to 8 stand apart from the cube; only their polygons have open edges.
+  SurfaceBuilder builder;
+  for (int i = 0; i < 3; ++i)
+  {
+    const vtkIdType first = builder.AddPoint(0, 0, i);
+    builder.AddPoint(1, 0, i);
+    builder.AddPoint(1, 1, i);
+    builder.AddPoint(0, 1, i);
+    builder.AddPolygon({ first, first + 1, first + 2, first + 3 });
+  }
+  filter->SetInputData(builder.Build());
+  ExpectFailure(filter, { "encloses nothing", "Cells: 0, 1, 2 (3 in all)" }, 3);
+  EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 0);
+  EXPECT_EQ(GetSurface(filter, 1)->GetNumberOfPoints(), 0);
+
+  filter->SetInputData(MakeCube());
+  filter->Update();
+  EXPECT_NEAR(GetVolume(filter->GetOutput()), 1.0, 1e-13);
+}
+
+TEST(ConformingDelaunayMesherFilter, RepairsPolygonsWithRepeatedPoints)
+{
+  SurfaceBuilder builder;
+  builder.AddBox({ 0, 0, 0 }, { 1, 1, 1 });
+  builder.AddPolygon({ 0, 1, 1, 0 });
+  vtkNew<vtkConformingDelaunayMesher> filter;
+  filter->SetInputData(builder.Build());
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->Update();
+  EXPECT_EQ(recorder->Errors, "");
+  EXPECT_TRUE(Contains(recorder->Warnings, "Cells: 6 (1 in all)")) << recorder->Warnings;
+  EXPECT_NEAR(GetVolume(filter->GetOutput()), 1.0, 1e-13);
+}
+
+TEST(ConformingDelaunayMesherFilter, ClosesGapsAndOpenBoundaries)
+{
+  SurfaceBuilder builder;
+  builder.AddBox({ 0, 0, 0 }, { 1, 1, 1 }, -1, 0, 1);
+  vtkNew<vtkConformingDelaunayMesher> filter;
+  filter->SetInputData(builder.Build());
+  ExpectFailure(filter, { "Cells: " }, 3);
+  filter->SetMaximumGapEdges(4);
+  filter->Update();
+  EXPECT_NEAR(GetVolume(filter->GetOutput()), 1.0, 1e-13);
+  filter->SetMaximumGapEdges(0);
+  filter->CloseOpenBoundaryOn();
+  filter->Update();
+  EXPECT_NEAR(GetVolume(filter->GetOutput()), 1.0, 1e-13);
+}
+
+TEST(ConformingDelaunayMesherFilter, IsDeterministic)
+{
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetThetaResolution(12);
+  sphere->SetPhiResolution(12);
+  vtkNew<vtkConformingDelaunayMesher> first;
+  vtkNew<vtkConformingDelaunayMesher> second;
+  for (vtkConformingDelaunayMesher* filter : { first.Get(), second.Get() })
+  {
+    filter->SetInputConnection(sphere->GetOutputPort());
+    filter->Update();
+  }
+  ASSERT_EQ(first->GetOutput()->GetNumberOfCells(), second->GetOutput()->GetNumberOfCells());
+  ASSERT_GT(first->GetOutput()->GetNumberOfCells(), 0);
+  for (vtkIdType cell = 0; cell < first->GetOutput()->GetNumberOfCells(); ++cell)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      EXPECT_EQ(first->GetOutput()->GetCell(cell)->GetPointId(i),
+        second->GetOutput()->GetCell(cell)->GetPointId(i));
+    }
+  }
+}
+
+TEST(ConformingDelaunayMesherFilter, ReportsProgressOfItsStagesAndAborts)
+{
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetThetaResolution(40);
+  sphere->SetPhiResolution(40);
+  vtkNew<vtkConformingDelaunayMesher> filter;
+  filter->SetInputConnection(sphere->GetOutputPort());
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->Update();
+  EXPECT_EQ(recorder->Errors, "");
+  ExpectProgress(recorder);
+  for (const char* stage :
+    { "Boundary triangulation", "Surface refinement", "Tetrahedralization", "Sliver removal" })
+  {
+    EXPECT_TRUE(std::any_of(recorder->Texts.begin(), recorder->Texts.end(),
+      [stage](const std::string& text) { return Contains(text, stage); }))
+      << stage;
+  }
+  for (double abortAt : { 0.02, 0.3, 0.7 })
+  {
+    recorder->AbortAt = abortAt;
+    filter->SetAbortExecute(0);
+    filter->Modified();
+    filter->Update();
+    EXPECT_EQ(recorder->Errors, "");
+    ExpectEmptyOutputs(filter);
+  }
+  recorder->AbortAt = 2.0;
+  filter->SetAbortExecute(0);
+  filter->Modified();
+  filter->Update();
+  EXPECT_GT(filter->GetOutput()->GetNumberOfCells(), 0);
+}

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilterTesting.h"
+
+#include <vtkAdvancingFrontTetrahedralizer.h>
+#include <vtkBoundaryTriangulator.h>
+#include <vtkDelaunaySurfaceRefiner.h>
+#include <vtkSliverRemover.h>
+
+#include <algorithm>
+
+using namespace testing_filters;
+
+namespace
+{
+/** A block of n x n x n unit cubes of mesh points inside of a box, meshed up to stage 3. */
+vtkSmartPointer<vtkUnstructuredGrid> MakeGridMesh(int n)
+{
+  SurfaceBuilder builder;
+  builder.AddBox({ 0, 0, 0 }, { double(n), double(n), double(n) });
+  std::vector<Point> points;
+  for (int i = 1; i < n; ++i)
+  {
+    for (int j = 1; j < n; ++j)
+    {
+      for (int k = 1; k < n; ++k)
+      {
+        points.push_back({ double(i), double(j), double(k) });
+      }
+    }
+  }
+  vtkNew<vtkBoundaryTriangulator> triangulator;
+  triangulator->SetInputData(builder.Build());
+  vtkNew<vtkDelaunaySurfaceRefiner> refiner;
+  refiner->SetInputConnection(triangulator->GetOutputPort());
+  refiner->SetInputData(1, MakePoints(points));
+  vtkNew<vtkAdvancingFrontTetrahedralizer> tetrahedralizer;
+  tetrahedralizer->SetInputConnection(refiner->GetOutputPort());
+  tetrahedralizer->SetInputConnection(1, refiner->GetOutputPort(2));
+  tetrahedralizer->Update();
+  vtkSmartPointer<vtkUnstructuredGrid> mesh = tetrahedralizer->GetOutput();
+  vtkNew<vtkIntArray> ids;
+  ids->SetName("TetrahedronId");
+  for (vtkIdType i = 0; i < mesh->GetNumberOfCells(); ++i)
+  {
+    ids->InsertNextValue(static_cast<int>(i) + 1);
+  }
+  mesh->GetCellData()->AddArray(ids);
+  return mesh;
+}
+
+/** Two tetrahedra that share a facet, made by hand, without RegionId and in float coordinates. */
+vtkSmartPointer<vtkUnstructuredGrid> MakeTwoTetrahedra()
+{
+  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToFloat();
+  points->InsertNextPoint(0, 0, 0);
+  points->InsertNextPoint(1, 0, 0);
+  points->InsertNextPoint(0, 1, 0);
+  points->InsertNextPoint(0, 0, 1);
+  points->InsertNextPoint(0, 0, -1);
+  mesh->SetPoints(points);
+  const vtkIdType upper[4] = { 0, 1, 2, 3 };
+  const vtkIdType lower[4] = { 0, 2, 1, 4 };
+  mesh->InsertNextCell(VTK_TETRA, 4, upper);
+  mesh->InsertNextCell(VTK_TETRA, 4, lower);
+  return mesh;
+}
+
+std::array<vtkIdType, 4> GetSortedIds(vtkUnstructuredGrid* mesh, vtkIdType cell)
+{
+  std::array<vtkIdType, 4> ids;
+  std::copy_n(mesh->GetCell(cell)->GetPointIds()->GetPointer(0), 4, ids.begin());
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+} // namespace
+
+TEST(SliverRemoverFilter, ImprovesAMeshAndKeepsDataOfSurvivors)
+{
+  auto input = MakeGridMesh(4);
+  ASSERT_GT(input->GetNumberOfCells(), 0);
+  vtkNew<vtkSliverRemover> filter;
+  filter->SetInputData(input);
+  filter->SetDihedralAngleTarget(70.0);
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->Update();
+  EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+  vtkUnstructuredGrid* output = filter->GetOutput();
+  EXPECT_NEAR(GetVolume(output, 0), 64.0, 1e-10);
+  EXPECT_EQ(output->GetNumberOfPoints(), input->GetNumberOfPoints());
+  EXPECT_GE(filter->GetSmallestDihedralAngleAfter(), filter->GetSmallestDihedralAngleBefore());
+  EXPECT_GT(filter->GetSmallestDihedralAngleBefore(), 0.0);
+  FindArray(output->GetCellData(), "RegionId", 1, VTK_INT);
+  ExpectLinear(output);
+  vtkDataArray* ids = FindArray(output->GetCellData(), "TetrahedronId", 1, VTK_INT);
+  ASSERT_NE(ids, nullptr);
+  vtkIdType survivors = 0;
+  for (vtkIdType cell = 0; cell < output->GetNumberOfCells(); ++cell)
+  {
+    const auto source = static_cast<vtkIdType>(ids->GetComponent(cell, 0)) - 1;
+    if (source >= 0)
+    {
+      EXPECT_EQ(GetSortedIds(output, cell), GetSortedIds(input, source));
+      ++survivors;
+    }
+  }
+  EXPECT_GT(survivors, 0);
+}
+
+TEST(SliverRemoverFilter, TakesMeshesFromOutside)
+{
+  vtkNew<vtkSliverRemover> filter;
+  filter->SetInputData(MakeTwoTetrahedra());
+  filter->Update();
+  vtkUnstructuredGrid* output = filter->GetOutput();
+  ASSERT_EQ(output->GetNumberOfCells(), 2);
+  EXPECT_EQ(output->GetPoints()->GetDataType(), VTK_DOUBLE);
+  EXPECT_NEAR(GetVolume(output, 0), 1.0 / 3.0, 1e-15);
+}
+
+TEST(SliverRemoverFilter, RefusesBadInput)
+{
+  vtkNew<vtkSliverRemover> filter;
+  vtkNew<vtkUnstructuredGrid> nothing;
+  filter->SetInputData(nothing);
+  ExpectFailure(filter, { "empty" });
+
+  auto mixed = MakeTwoTetrahedra();
+  const vtkIdType pyramid[5] = { 0, 1, 2, 3, 4 };
+  mixed->InsertNextCell(VTK_PYRAMID, 5, pyramid);
+  filter->SetInputData(mixed);
+  ExpectFailure(filter, { "VTK_TETRA", "Cells: 2 (1 in all)" });
+
+  auto inverted = MakeTwoTetrahedra();
+  const vtkIdType ids[4] = { 1, 0, 2, 3 };
+  inverted->ReplaceCell(0, 4, ids);
+  filter->SetInputData(inverted);
+  ExpectFailure(filter, { "Cells: 0" });
+
+  auto withNaN = MakeTwoTetrahedra();
+  withNaN->GetPoints()->SetPoint(4, 0, 0, std::numeric_limits<double>::quiet_NaN());
+  filter->SetInputData(withNaN);
+  ExpectFailure(filter, { "finite", "Points: 4 (0, 0, nan)" });
+
+  auto wrongRegion = MakeTwoTetrahedra();
+  vtkNew<vtkIntArray> regions;
+  regions->SetName("RegionId");
+  regions->InsertNextValue(0);
+  regions->InsertNextValue(-7);
+  wrongRegion->GetCellData()->AddArray(regions);
+  filter->SetInputData(wrongRegion);
+  ExpectFailure(filter, { "RegionId", "Cells: 1 (1 in all)" });
+}
+
+TEST(SliverRemoverFilter, ReportsProgressAndAborts)
+{
+  auto mesh = MakeGridMesh(12);
+  vtkNew<vtkSliverRemover> filter;
+  filter->SetInputData(mesh);
+  filter->SetDihedralAngleTarget(70.0);
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->Update();
+  ExpectProgress(recorder);
+  recorder->AbortAt = 0.0;
+  filter->Modified();
+  filter->Update();
+  EXPECT_EQ(recorder->Errors, "");
+  ExpectEmptyOutputs(filter);
+}

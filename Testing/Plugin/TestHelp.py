@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every filter of the plugin explains itself, and the plugin offers what the classes offer.
+
+Parses the server-manager XML, and compares it with the wrapped classes: each proxy and property has
+a help text, each class has a proxy, each option of a class has a property with the same default,
+and output ports have names.
+"""
+
+import glob
+import os
+import sys
+import xml.etree.ElementTree as ElementTree
+
+import conforming_delaunay
+
+problems = []
+
+
+def Check(condition, *words):
+    if not condition:
+        problems.append(" ".join(str(word) for word in words))
+
+
+def HasText(element):
+    return element is not None and len((element.text or "").strip()) > 20
+
+
+def GetOptions(cls):
+    """Names of the options a class adds to VTK's: those with both a Set and a Get method."""
+    instance = cls()
+    methods = set(dir(cls))
+    for base in cls.__mro__[1:]:
+        methods -= set(dir(base))
+    return {name[3:]: getattr(instance, "Get" + name[3:])()
+            for name in methods
+            if name.startswith("Set") and "Get" + name[3:] in methods}
+
+
+proxies = {}
+for path in sorted(glob.glob(os.path.join(os.environ["CDM_PLUGIN_XML_DIR"], "*.xml"))):
+    for proxy in ElementTree.parse(path).getroot().iter("SourceProxy"):
+        proxies[proxy.get("class")] = proxy
+Check(proxies, "no server-manager XML found")
+
+classes = {name: getattr(conforming_delaunay, name)
+           for name in dir(conforming_delaunay) if name.startswith("vtk")}
+Check(sorted(classes) == sorted(proxies), "classes", sorted(classes), "proxies", sorted(proxies))
+
+for name, proxy in sorted(proxies.items()):
+    documentation = proxy.find("Documentation")
+    Check(HasText(documentation), name, "has no help text")
+    for attribute in ("short_help", "long_help"):
+        Check(documentation is not None and documentation.get(attribute), name, "lacks", attribute)
+    Check(proxy.get("label", "").strip(), name, "has no label")
+    menus = [entry.get("category") for entry in proxy.iter("ShowInMenu")]
+    Check(menus == ["Conforming Delaunay"], name, "is in the menus", menus)
+
+    properties = {}
+    for child in proxy:
+        if child.tag.endswith("Property"):
+            properties[child.get("name")] = child
+            Check(HasText(child.find("Documentation")), name, child.get("name"), "has no help text")
+
+    if name not in classes:
+        continue
+    options = GetOptions(classes[name])
+    commands = {(child.get("command") or "")[3:]: child for child in properties.values()}
+    for option, default in options.items():
+        if option not in commands:
+            problems.append("%s has no property for Set%s" % (name, option))
+            continue
+        text = commands[option].get("default_values")
+        values = default if isinstance(default, (tuple, list)) else [default]
+        Check(text is not None and [float(word) for word in text.split()] ==
+              [float(value) for value in values],
+              name, option, "has the default", default, "and in the plugin", text)
+    for command in commands:
+        Check(hasattr(classes[name], "Set" + command), name, "has no method Set" + command)
+
+    instance = classes[name]()
+    ports = [port.get("name") for port in proxy.iter("OutputPort")]
+    Check(len(ports) == instance.GetNumberOfOutputPorts(), name, "has the output ports", ports)
+    inputs = [int(child.get("port_index", 0)) for child in properties.values()
+              if child.tag == "InputProperty"]
+    Check(sorted(inputs) == list(range(instance.GetNumberOfInputPorts())),
+          name, "has the input ports", inputs)
+
+for problem in problems:
+    print(problem)
+print(len(proxies), "proxies,", len(problems), "problems")
+sys.exit(1 if problems else 0)

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The plugin loads in pvpython, and each of its proxies runs on a small cube."""
+
+import os
+import sys
+
+from paraview.simple import *
+
+LoadPlugin(os.environ["CDM_PLUGIN"], remote=False, ns=globals())
+
+
+def Count(proxy, port=0):
+    information = OutputPort(proxy, port).GetDataInformation()
+    return information.GetNumberOfCells()
+
+
+def Volume(proxy):
+    """Sum of the volumes of the cells, all of which have to be positive."""
+    sizes = CellSize(Input=proxy)
+    data = servermanager.Fetch(sizes)
+    array = data.GetCellData().GetArray("Volume")
+    values = [array.GetValue(i) for i in range(array.GetNumberOfTuples())]
+    assert min(values) > 0.0, "a tetrahedron is inverted or flat"
+    return sum(values)
+
+
+cube = Box(XLength=1.0, YLength=2.0, ZLength=3.0)
+
+surface = BoundaryTriangulator(Input=cube)
+surface.UpdatePipeline()
+assert Count(surface) == 12, "the box has 12 triangles, not %d" % Count(surface)
+assert surface.GetDataInformation().GetNumberOfPoints() == 8, "coincident points are merged"
+
+edges = StructuralEdgeExtractor(Input=surface)
+edges.UpdatePipeline()
+assert Count(edges, 1) == 12, "a box has 12 edges, not %d" % Count(edges, 1)
+
+refined = DelaunaySurfaceRefiner(Input=surface, MaximumEdgeLength=1.0)
+refined.UpdatePipeline()
+assert Count(refined) > 12
+
+front = AdvancingFrontTetrahedralizer(Input=refined)
+front.UpdatePipeline()
+assert Count(front) > 0
+assert Count(front, 1) == Count(refined), "the boundary is the refined surface"
+assert Count(front, 2) == 0, "the front is empty when all is done"
+assert abs(Volume(front) - 6.0) < 6e-12, "volume %.17g" % Volume(front)
+
+better = SliverRemover(Input=front)
+better.UpdatePipeline()
+assert abs(Volume(better) - 6.0) < 6e-12, "volume %.17g" % Volume(better)
+
+mesher = ConformingDelaunayMesher(Input=cube, MaximumEdgeLength=1.0)
+mesher.UpdatePipeline()
+assert abs(Volume(mesher) - 6.0) < 6e-12, "volume %.17g" % Volume(mesher)
+regions = mesher.GetCellDataInformation().GetArray("RegionId")
+assert regions is not None and regions.GetRange() == (0.0, 0.0)
+without = Count(mesher)
+
+# An optional input can be set and taken away again.
+points = PointSource(NumberOfPoints=20, Radius=0.4)
+mesher.MeshPoints = points
+mesher.UpdatePipeline()
+assert abs(Volume(mesher) - 6.0) < 6e-12
+assert Count(mesher) > without, "the mesh points are used"
+mesher.MeshPoints = None
+mesher.UpdatePipeline()
+assert Count(mesher) == without, "the mesh points are gone"
+
+names = [mesher.SMProxy.GetOutputPortName(i) for i in range(3)]
+assert names == ["Tetrahedra", "Boundary", "Problems"], names
+
+device = TechnologyStructureSource()
+device.UpdatePipeline()
+assert Count(device) > 0
+devices = ConformingDelaunayMesher(Input=device)
+devices.UpdatePipeline()
+low, high = devices.GetCellDataInformation().GetArray("RegionId").GetRange()
+assert high > low, "the device has several regions"
+
+print("proxies: ok")
+sys.stdout.flush()
