@@ -122,7 +122,7 @@ std::vector<Id> MakeCanonical(const std::vector<Id>& outline, bool& reversed)
   return best;
 }
 
-/** Adds the regions of a copy to those of the first polygon; false if they contradict each other. */
+/** Adds the regions of a copy to those of the first polygon; false if they contradict. */
 bool UniteLabels(RegionPair& labels, RegionPair copy, bool isReversed)
 {
   if (isReversed)

@@ -11,8 +11,8 @@
  *  4. triangulate every polygon by recursive splitting with exact signs, in the projection along
  *     the largest component of its normal (PolygonTriangulation.h); outlines bridged to holes and
  *     collinear vertices are welcome. A non-planar polygon is triangulated in that same projection;
- *  5. trace open edges into rings and patch those of at most MaximumGapEdges edges, unless the patch
- *     would meet the surface (a lone triangle is no hole);
+ *  5. trace open edges into rings and patch those of at most MaximumGapEdges edges, unless the
+ *     patch would meet the surface (a lone triangle is no hole);
  *  6. find all pairs of triangles that cross, overlap or touch other than in a common edge or
  *     vertex, exactly (TriangleIntersection.h).
  *

@@ -462,9 +462,15 @@ bool SurfaceRefiner::CanFlip(Id use) const
   const Vec3& b = this->Points[ids[(use % 3 + 1) % 3]];
   const Vec3& c = this->Points[surface.GetApex(use)];
   const Vec3& d = this->Points[surface.GetApex(other)];
+  // The surface moves by at most the distance of the two diagonals.
+  const Vec3 across = Cross(b - a, d - c);
+  const double norm = Norm(across);
+  if (norm > 0.0 && std::abs(Dot(across, c - a)) <= this->Flatness * norm)
+  {
+    return true;
+  }
   const double angle = this->Options.StructuralEdges.AccuracyAngle;
-  return IsSmoothEdge(a, b, c, d, angle, this->Flatness) &&
-    IsSmoothEdge(d, c, a, b, angle, this->Flatness);
+  return angle > 0.0 && IsSmoothEdge(a, b, c, d, angle, 0.0) && IsSmoothEdge(d, c, a, b, angle, 0.0);
 }
 
 bool SurfaceRefiner::ShouldFlip(Id use) const
@@ -596,6 +602,11 @@ bool SurfaceRefiner::ResolveByFlip(Id t)
     const Id b = ids[(use % 3 + 1) % 3];
     const Id c = this->Surface->GetApex(use);
     const Id d = this->Surface->GetApex(other);
+    if (InEquatorialSphere(
+          this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]], this->Points[d]) < 0)
+    {
+      continue;
+    }
     SurfaceDelaunayTest::Result first;
     SurfaceDelaunayTest::Result second;
     this->Test.Run({ a, d, c }, first);
@@ -1052,7 +1063,7 @@ void SurfaceRefiner::Process(Id t)
   }
   // Whatever is done now, t is looked at again: the new point need not have changed it.
   this->IsUnresolved[t] = 0;
-  if (!this->IsGood(t) && this->ResolveByEdge(t))
+  if (this->ResolveByEdge(t))
   {
     this->Enqueue(t);
     return;

@@ -58,47 +58,59 @@ public:
     }
   }
 
+  double GetLimit() const { return this->Best; }
+
+  /** A lower bound of lambda over the box; infinite if no point of it matters. */
   double Order(const Box& box)
   {
-    // Largest height above the plane, and bounds of the coordinates relative to A.
     double height = 0.0;
     double reach = 0.0;
     double distance = 0.0;
-    Vec3 low = box.Low - this->A;
-    Vec3 high = box.High - this->A;
+    double magnitude = 0.0;
+    const Vec3 low = box.Low - this->A;
+    const Vec3 high = box.High - this->A;
     for (int axis = 0; axis < 3; ++axis)
     {
       const double n = this->Normal[axis];
       height += n * (n > 0.0 ? high[axis] : low[axis]);
       reach += std::max(std::abs(low[axis]), std::abs(high[axis]));
       const double h = this->Offset[axis];
-      const double nearest = std::min(std::max(h, low[axis]), high[axis]) - h;
-      distance += nearest * nearest;
+      const double x = std::min(std::max(h, low[axis]), high[axis]);
+      distance += x * (x - 2.0 * h);
+      magnitude += std::abs(x) * (std::abs(x) + 2.0 * std::abs(h));
     }
-    if (2.0 * height < -this->HeightError * reach)
+    const double heightHigh = 2.0 * height + this->HeightError * reach;
+    if (heightHigh < 0.0)
     {
       return Infinity;
     }
-    if (this->Best < Infinity && this->PowerError < Infinity)
+    if (!(this->PowerError < Infinity))
+    {
+      return -Infinity;
+    }
+    if (this->Best < Infinity)
     {
       // Smallest power of a point of the box relative to the best sphere.
       double power = 0.0;
-      double magnitude = 0.0;
+      double powerMagnitude = 0.0;
       for (int axis = 0; axis < 3; ++axis)
       {
         const double c = this->Offset[axis] + this->Best * this->Normal[axis];
         const double x = std::min(std::max(c, low[axis]), high[axis]);
         power += x * (x - 2.0 * c);
-        magnitude += std::abs(x) * (std::abs(x) + 2.0 * std::abs(c));
+        powerMagnitude += std::abs(x) * (std::abs(x) + 2.0 * std::abs(c));
       }
-      const double error = 16.0 * Epsilon * magnitude + 8.0 * Epsilon * reach * reach +
+      const double error = 16.0 * Epsilon * powerMagnitude + 8.0 * Epsilon * reach * reach +
         reach * (this->PowerError + std::abs(this->Best) * this->HeightError);
       if (power > error)
       {
         return Infinity;
       }
     }
-    return distance;
+    // Outside of the smallest sphere lambda is at least the smallest power by the largest height.
+    const double powerLow = distance - 16.0 * Epsilon * magnitude - 8.0 * Epsilon * reach * reach -
+      reach * this->PowerError;
+    return powerLow > 0.0 ? powerLow / heightHigh * (1.0 - 1e-12) : -Infinity;
   }
 
   void Visit(Id id, const Vec3& q)
@@ -205,7 +217,7 @@ void FourthPointSearch::Find(const TriangleIds& triangle, FourthPoint& result, d
   result.Cocircular.clear();
   this->Candidates.clear();
   PencilVisitor visitor(this->Points, triangle, limit, this->Candidates, result);
-  this->Octree.Visit(visitor);
+  this->Octree.VisitInOrder(visitor, this->Waiting);
   visitor.DropWorse();
 
   const Vec3& a = this->Points[triangle[0]];

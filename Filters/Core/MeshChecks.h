@@ -16,8 +16,8 @@
  *     criteria 3.1 and 3.2 for the outer and interface facets, which IsValid() does not ask for.
  *
  * Points of the boundary are those of the mesh with the same id if they coincide, otherwise those
- * with equal coordinates. With labels the boundary is to be kept completely; without, triangles with
- * a point that no tetrahedron uses belong to a region that was not meshed.
+ * with equal coordinates. With labels the boundary is to be kept completely; without, triangles
+ * with a point that no tetrahedron uses belong to a region that was not meshed.
  *
  * Failure: InvalidInput for ids out of range, arrays of the wrong length and coordinates that are
  * not finite. All other faults are counted, whatever their number.
@@ -42,8 +42,8 @@ struct RegionVolume
   Id Tetrahedra = 0;
   double Volume = 0.0;
   /**
-   * Volume enclosed by the boundary triangles that carry the region's label; without labels by those
-   * that bound the region's tetrahedra.
+   * Volume enclosed by the boundary triangles that carry the region's label; without labels by
+   * those that bound the region's tetrahedra.
    */
   double EnclosedVolume = 0.0;
 };
@@ -64,7 +64,7 @@ struct MeshCheckReport
   Id WrongNeighbors = 0;
   /** Tetrahedra with a mesh point strictly inside of their circumsphere. */
   Id NonDelaunayTetrahedra = 0;
-  /** Whether a boundary was given to compare with: otherwise these and the volume error are zero. */
+  /** Whether a boundary was given: otherwise these two and the volume error are zero. */
   bool HasBoundary = false;
   /** Outer or interface facets of the mesh that are no boundary triangle. */
   Id UnboundFacets = 0;

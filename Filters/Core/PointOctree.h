@@ -19,7 +19,9 @@
 #include "Vec3.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace cdm
@@ -56,9 +58,10 @@ public:
   void Insert(const std::vector<Vec3>& points);
 
   /**
-   * Visit the points nearest-first as far as the search wants. Search has to have
-   *   double Order(const Box&)       nodes with a smaller value are visited first; a node for which
-   *                                  it is infinite, now or when its turn comes, is left out;
+   * Visit the points of all nodes that matter to the search, depth first. Search has to have
+   *   double Order(const Box&)       among the children of a node those with a smaller value are
+   *                                  visited first; a node for which it is infinite, now or when
+   *                                  its turn comes, is left out;
    *   void Visit(Id, const Vec3&)    a point.
    */
   template <typename Search>
@@ -67,6 +70,51 @@ public:
     if (!this->Nodes.empty())
     {
       this->VisitNode(0, search);
+    }
+  }
+
+  /** Nodes that wait for their turn in VisitInOrder(): scratch memory of the caller. */
+  using WaitingNodes = std::vector<std::pair<double, Id>>;
+
+  /**
+   * Visit the points of all nodes that matter to the search in the order of Order() over the whole
+   * tree, which has to be a lower bound of what the search minimizes; it ends at the first node
+   * whose bound is not below search.GetLimit().
+   */
+  template <typename Search>
+  void VisitInOrder(Search& search, WaitingNodes& waiting) const
+  {
+    waiting.clear();
+    if (!this->Nodes.empty())
+    {
+      waiting.emplace_back(-std::numeric_limits<double>::infinity(), 0);
+    }
+    while (!waiting.empty())
+    {
+      std::pop_heap(waiting.begin(), waiting.end(), std::greater<>());
+      const auto [order, index] = waiting.back();
+      waiting.pop_back();
+      if (order > search.GetLimit())
+      {
+        return;
+      }
+      const Node& node = this->Nodes[index];
+      if (node.FirstChild == NoId)
+      {
+        this->VisitLeaf(node, search);
+        continue;
+      }
+      for (Id child = node.FirstChild; child < node.FirstChild + 8; ++child)
+      {
+        const Box& bounds = this->Nodes[child].Bounds;
+        const double childOrder =
+          bounds.IsEmpty() ? std::numeric_limits<double>::infinity() : search.Order(bounds);
+        if (childOrder != std::numeric_limits<double>::infinity())
+        {
+          waiting.emplace_back(childOrder, child);
+          std::push_heap(waiting.begin(), waiting.end(), std::greater<>());
+        }
+      }
     }
   }
 
@@ -97,19 +145,25 @@ private:
   void Split(Id node);
 
   template <typename Search>
+  void VisitLeaf(const Node& node, Search& search) const
+  {
+    if (node.Leaf != NoId)
+    {
+      const LeafPoints& leaf = this->Leaves[node.Leaf];
+      for (int i = 0; i < leaf.Count; ++i)
+      {
+        search.Visit(leaf.Ids[i], leaf.Positions[i]);
+      }
+    }
+  }
+
+  template <typename Search>
   void VisitNode(Id index, Search& search) const
   {
     const Node& node = this->Nodes[index];
     if (node.FirstChild == NoId)
     {
-      if (node.Leaf != NoId)
-      {
-        const LeafPoints& leaf = this->Leaves[node.Leaf];
-        for (int i = 0; i < leaf.Count; ++i)
-        {
-          search.Visit(leaf.Ids[i], leaf.Positions[i]);
-        }
-      }
+      this->VisitLeaf(node, search);
       return;
     }
     double orders[8];

@@ -429,8 +429,8 @@ bool TriangulateInAnyProjection(const std::vector<Vec3>& points, const std::vect
   constexpr int MaximumNumberOfAttempts = 64;
   for (const int axis : axes)
   {
-    // The rounded normal of a sliver may point the wrong way. The triangles' areas add up to that of
-    // the outline, so one sign at most can succeed.
+    // The rounded normal of a sliver may point the wrong way. The triangles' areas add up to that
+    // of the outline, so one sign at most can succeed.
     const int sign = normal[axis] < 0.0 ? -1 : 1;
     for (const int s : { sign, -sign })
     {

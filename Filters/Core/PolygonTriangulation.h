@@ -17,9 +17,9 @@
  * inside and not at all outside, if the outline does not cross itself.
  *
  * Outlines may be non-convex, have vertices of 180 degrees (which become corners of triangles),
- * visit an edge twice (holes bridged to the outline) or a vertex (lobes that touch, holes that touch
- * the outline). Spikes (a, b, a) that stick out are cut off. The triangles are oriented like the
- * polygon, never degenerate, and deterministic.
+ * visit an edge twice (holes bridged to the outline) or a vertex (lobes that touch each other,
+ * holes that touch the outline). Spikes (a, b, a) that stick out are cut off. The triangles are
+ * oriented like the polygon, never degenerate, and deterministic.
  *
  * Cost: O(n^2) for n vertices.
  */

@@ -194,9 +194,12 @@ bool RefinableSurface::IsConvex(Id use) const
   const Vec3& b = this->Points[ids[(use % 3 + 1) % 3]];
   const Vec3& c = this->Points[this->GetApex(use)];
   const Vec3& d = this->Points[this->GetApex(other)];
+  // The normal of the larger triangle counts: that of a needle may be noise.
+  const bool isOtherLarger =
+    SquaredNorm(Cross(a - b, d - b)) > SquaredNorm(Cross(b - a, c - a));
   int turn = 0;
-  const int axis = this->GetProjectionAxis(use / 3, turn);
-  return turn != 0 && ProjectedOrientation(axis, b, a, d) == turn &&
+  const int axis = this->GetProjectionAxis(isOtherLarger ? other / 3 : use / 3, turn);
+  return turn != 0 && ProjectedOrientation(axis, a, b, c) == turn && ProjectedOrientation(axis, b, a, d) == turn &&
     ProjectedOrientation(axis, a, d, c) == turn && ProjectedOrientation(axis, d, b, c) == turn;
 }
 

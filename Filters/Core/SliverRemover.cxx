@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <queue>
 #include <string>
 #include <utility>
@@ -20,8 +22,18 @@ constexpr Id ContinueInterval = 1 << 10;
 /** Edges with more tetrahedra around them are left alone: their removal hardly ever pays. */
 constexpr int MaximumRingSize = 8;
 
-/** By how much the smallest angle has to grow: more than its rounding error. */
-constexpr double RequiredGain = 1.0 + 1e-6;
+/**
+ * Angles are compared as multiples of this (degrees): it is more than their rounding error, so
+ * tetrahedra of one shape are equal, and an order of integers cannot run in circles.
+ */
+constexpr double AngleStep = 1e-6;
+
+using AngleKey = std::int64_t;
+
+AngleKey GetKey(double angle)
+{
+  return std::llround(angle / AngleStep);
+}
 
 /** Degrees: what two facets on a boundary bend at most if they are to be exchanged. */
 constexpr double LargestPeelBend = 1.0;
@@ -49,11 +61,23 @@ struct Ring
 /** Tetrahedra to be replaced by others. */
 struct Flip
 {
-  /** Smallest dihedral angle of the new tetrahedra; negative: there is no flip. */
-  double Angle = -1.0;
   std::vector<Id> Old;
+  /** None: there is no flip. */
   std::vector<TetrahedronIds> New;
+  /** Smallest dihedral angles of the new tetrahedra, ascending. */
+  std::vector<AngleKey> Keys;
 };
+
+/**
+ * Whether the first angles are the better ones: the smallest is larger, or as large and the second
+ * smallest is larger, and so on; none is better than any.
+ */
+bool AreBetter(const std::vector<AngleKey>& first, const std::vector<AngleKey>& second)
+{
+  const auto difference = std::mismatch(first.begin(), first.end(), second.begin(), second.end());
+  return difference.second != second.end() &&
+    (difference.first == first.end() || *difference.first > *difference.second);
+}
 
 class Remover
 {
@@ -95,7 +119,8 @@ private:
   bool HandOver(Id tetrahedron);
 
   bool IsDelaunay(const TetrahedronIds& ids, const std::vector<Id>& old) const;
-  double Rate(const TetrahedronIds& ids, const std::vector<Id>& old) const;
+  AngleKey GetSmallestKey(const std::vector<Id>& tetrahedra) const;
+  AngleKey Rate(const TetrahedronIds& ids, const std::vector<Id>& old, AngleKey required) const;
   void TryFacet(Id tetrahedron, int facet, Flip& best) const;
   void TryEdge(Id tetrahedron, int edge, Flip& best) const;
   void Keep(Flip& flip, Flip& best) const;
@@ -323,7 +348,7 @@ bool Remover::HandOver(Id tetrahedron)
   const Id ownRegion = std::exchange(this->Mesh.Regions[tetrahedron], neighborRegion);
   Flip flip;
   this->TryEdge(tetrahedron, outerEdge, flip);
-  if (flip.Angle < 0.0)
+  if (flip.New.empty())
   {
     this->Mesh.Regions[tetrahedron] = ownRegion;
     return false;
@@ -350,24 +375,47 @@ bool Remover::IsDelaunay(const TetrahedronIds& ids, const std::vector<Id>& old) 
     });
 }
 
-/** Smallest dihedral angle; negative if the tetrahedron must not be made. */
-double Remover::Rate(const TetrahedronIds& ids, const std::vector<Id>& old) const
+AngleKey Remover::GetSmallestKey(const std::vector<Id>& tetrahedra) const
 {
-  const bool isAllowed = Orientation(this->GetPoint(ids[0]), this->GetPoint(ids[1]),
-                           this->GetPoint(ids[2]), this->GetPoint(ids[3])) > 0 &&
+  double smallest = 180.0;
+  for (const Id tetrahedron : tetrahedra)
+  {
+    smallest = std::min(smallest, this->Angles[tetrahedron]);
+  }
+  return GetKey(smallest);
+}
+
+/**
+ * Smallest dihedral angle of a new tetrahedron; negative if it is less than required or if the
+ * tetrahedron must not be made. The angle comes first: it spares most of the exact tests, which are
+ * slow where all points are cospherical.
+ */
+AngleKey Remover::Rate(
+  const TetrahedronIds& ids, const std::vector<Id>& old, AngleKey required) const
+{
+  const AngleKey key = GetKey(this->MeasureAngle(ids));
+  const bool isAllowed = key >= required &&
+    Orientation(this->GetPoint(ids[0]), this->GetPoint(ids[1]), this->GetPoint(ids[2]),
+      this->GetPoint(ids[3])) > 0 &&
     this->IsDelaunay(ids, old);
-  return isAllowed ? this->MeasureAngle(ids) : -1.0;
+  return isAllowed ? key : -1;
 }
 
 /** Make the flip the best one if it improves on the old tetrahedra, and on the best one so far. */
 void Remover::Keep(Flip& flip, Flip& best) const
 {
-  double oldAngle = 180.0;
+  std::vector<AngleKey> oldKeys;
   for (const Id tetrahedron : flip.Old)
   {
-    oldAngle = std::min(oldAngle, this->Angles[tetrahedron]);
+    oldKeys.push_back(GetKey(this->Angles[tetrahedron]));
   }
-  if (flip.Angle > oldAngle * RequiredGain && flip.Angle > best.Angle)
+  for (const TetrahedronIds& ids : flip.New)
+  {
+    flip.Keys.push_back(GetKey(this->MeasureAngle(ids)));
+  }
+  std::sort(oldKeys.begin(), oldKeys.end());
+  std::sort(flip.Keys.begin(), flip.Keys.end());
+  if (AreBetter(flip.Keys, oldKeys) && (best.New.empty() || AreBetter(flip.Keys, best.Keys)))
   {
     best = std::move(flip);
   }
@@ -385,13 +433,12 @@ void Remover::TryFacet(Id tetrahedron, int facet, Flip& best) const
   const Id q = this->Mesh.Tetrahedra[neighbor / 4][neighbor % 4];
   const TriangleIds triangle = GetFacet(this->Mesh.Tetrahedra[tetrahedron], facet);
   Flip flip;
-  flip.Angle = 180.0;
   flip.Old = { tetrahedron, neighbor / 4 };
+  const AngleKey required = this->GetSmallestKey(flip.Old);
   for (int i = 0; i < 3; ++i)
   {
     flip.New.push_back({ p, q, triangle[i], triangle[(i + 1) % 3] });
-    flip.Angle = std::min(flip.Angle, this->Rate(flip.New.back(), flip.Old));
-    if (flip.Angle < 0.0)
+    if (this->Rate(flip.New.back(), flip.Old, required) < 0)
     {
       return;
     }
@@ -420,28 +467,29 @@ void Remover::TryEdge(Id tetrahedron, int edge, Flip& best) const
   };
 
   // Best smallest angle for the part of the ring from i to k, and the point j that gives it.
-  std::array<std::array<double, MaximumRingSize>, MaximumRingSize> angle{};
+  const AngleKey required = this->GetSmallestKey(ring.Tetrahedra);
+  std::array<std::array<AngleKey, MaximumRingSize>, MaximumRingSize> angle{};
   std::array<std::array<int, MaximumRingSize>, MaximumRingSize> middle{};
   for (int i = 0; i + 1 < size; ++i)
   {
-    angle[i][i + 1] = 180.0;
+    angle[i][i + 1] = GetKey(180.0);
   }
   for (int width = 2; width < size; ++width)
   {
     for (int i = 0; i + width < size; ++i)
     {
       const int k = i + width;
-      angle[i][k] = -1.0;
+      angle[i][k] = -1;
       for (int j = i + 1; j < k; ++j)
       {
-        double smallest = std::min(angle[i][j], angle[j][k]);
+        AngleKey smallest = std::min(angle[i][j], angle[j][k]);
         if (smallest > angle[i][k])
         {
-          smallest = std::min(smallest, this->Rate(makeUpper(i, j, k), ring.Tetrahedra));
+          smallest = std::min(smallest, this->Rate(makeUpper(i, j, k), ring.Tetrahedra, required));
         }
         if (smallest > angle[i][k])
         {
-          smallest = std::min(smallest, this->Rate(makeLower(i, j, k), ring.Tetrahedra));
+          smallest = std::min(smallest, this->Rate(makeLower(i, j, k), ring.Tetrahedra, required));
         }
         if (smallest > angle[i][k])
         {
@@ -451,12 +499,11 @@ void Remover::TryEdge(Id tetrahedron, int edge, Flip& best) const
       }
     }
   }
-  if (angle[0][size - 1] < 0.0)
+  if (angle[0][size - 1] < 0)
   {
     return;
   }
   Flip flip;
-  flip.Angle = angle[0][size - 1];
   flip.Old = ring.Tetrahedra;
   std::vector<std::pair<int, int>> parts{ { 0, size - 1 } };
   while (!parts.empty())
@@ -487,7 +534,7 @@ bool Remover::Improve(Id tetrahedron)
   {
     this->TryEdge(tetrahedron, edge, best);
   }
-  if (best.Angle < 0.0)
+  if (best.New.empty())
   {
     return false;
   }

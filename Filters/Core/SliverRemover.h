@@ -10,7 +10,8 @@
  *     of its edges (3-2, 4-4 and larger flips, the ring triangulated best possible by Klincsek's
  *     dynamic programming). A flip counts if it stays in one region, if each new tetrahedron has
  *     the circumsphere of one that it replaces (exactly cospherical sets, where any tetrahedra are
- *     Delaunay), and if the smallest dihedral angle of the tetrahedra involved grows;
+ *     Delaunay), and if the smallest dihedral angle of the tetrahedra involved grows, or stays and
+ *     fewer of them have it (the sorted angles grow lexicographically);
  *  3. one that is flat on an interface, like 1., is handed to the other region if a flip there
  *     makes it vanish.
  *

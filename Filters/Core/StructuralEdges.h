@@ -11,10 +11,10 @@
  *
  * Exactly: let n and m be the normals of the two triangles, turned so that the triangles are
  * oriented consistently along their edge; the edge bends by the angle between n and m (0 is flat,
- * 180 folded back). The edge is smooth if it bends by no more than the accuracy angle, or by no more
- * than one degree with both distances within FlatnessRatio * diagonal. A triangle without area has
- * no normal: its edges are never smooth. Labels are compared after turning them with the triangle;
- * surfaces without labels have no label change.
+ * 180 folded back). The edge is smooth if it bends by no more than the accuracy angle, or by no
+ * more than one degree with both distances within FlatnessRatio * diagonal. A triangle without area
+ * has no normal: its edges are never smooth. Labels are compared after turning them with the
+ * triangle; surfaces without labels have no label change.
  *
  * Method:
  *  1. sort all edges of all triangles, judge each group of equal edges;
@@ -82,11 +82,11 @@ Status ExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeO
  * Whether two triangles (a, b, c) and (b, a, d) count as flat or bend by no more than the accuracy
  * angle: the rule above in one place. flatness is a distance in model units.
  */
-bool IsSmoothEdge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d,
-  double accuracyAngle, double flatness);
+bool IsSmoothEdge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double accuracyAngle,
+  double flatness);
 
 /** Diagonal of the bounding box of the points; 0 without points. */
 double GetBoundingBoxDiagonal(const std::vector<Vec3>& points);
-}
+} // namespace cdm
 
 #endif

@@ -84,6 +84,8 @@ public:
 
   Vec3 Center;
   double Radius;
+  /** The triangle is a needle whose sphere doubles cannot describe: everything is exact. */
+  bool IsHopeless;
 
 private:
   TriangleIds Triangle;
@@ -91,8 +93,6 @@ private:
   Vec3 B;
   Vec3 C;
   double Slack;
-  /** The triangle is a needle whose sphere doubles cannot describe: everything is exact. */
-  bool IsHopeless;
   double Deepest = Infinity;
   SurfaceDelaunayTest::Result& Found;
 };
@@ -116,17 +116,30 @@ void SurfaceDelaunayTest::Run(const TriangleIds& triangle, Result& result)
     return;
   }
 
-  this->Search.Find(triangle, this->Front);
+  // Search where the sphere is disturbed first: what is found there limits the other side, whose
+  // nearest point may be far away.
+  const Vec3& a = this->Points[triangle[0]];
+  const Vec3& b = this->Points[triangle[1]];
+  const Vec3& c = this->Points[triangle[2]];
+  const Id disturbing = !result.InsideSmallestSphere.empty() ? result.InsideSmallestSphere.front()
+                                                              : result.OnSmallestSphere.front();
   const TriangleIds reversed{ triangle[0], triangle[2], triangle[1] };
-  this->Search.Find(reversed, this->Back);
+  const bool isFrontFirst = Orientation(a, b, c, this->Points[disturbing]) > 0;
+  FourthPoint& first = isFrontFirst ? this->Front : this->Back;
+  FourthPoint& second = isFrontFirst ? this->Back : this->Front;
+  // Rounding errors of lambda are far below this part of the radius; needles have no limit.
+  const double unit = visitor.Radius / Norm(Cross(b - a, c - a));
+  const double margin = visitor.IsHopeless ? Infinity : 1e-6 * unit;
+  this->Search.Find(isFrontFirst ? triangle : reversed, first, margin);
+  const double limit = -first.Lambda + 1e-6 * std::abs(first.Lambda) + margin;
+  this->Search.Find(isFrontFirst ? reversed : triangle, second,
+    first.Point != NoId && std::isfinite(limit) ? limit : Infinity);
   result.IsDelaunay = this->Front.InsideCircle == NoId &&
     (this->Front.Point == NoId || this->Back.Point == NoId ||
-      InSphere(this->Points[triangle[0]], this->Points[triangle[1]], this->Points[triangle[2]],
-        this->Points[this->Front.Point], this->Points[this->Back.Point]) < 0);
+      InSphere(a, b, c, this->Points[this->Front.Point], this->Points[this->Back.Point]) < 0);
   if (result.IsDelaunay)
   {
-    const Vec3& a = this->Points[triangle[0]];
-    const Vec3 normal = Cross(this->Points[triangle[1]] - a, this->Points[triangle[2]] - a);
+    const Vec3 normal = Cross(b - a, c - a);
     // The sphere through the disturbing point: in front of the triangle or behind.
     const double lambda = this->Front.Lambda <= 0.0 ? this->Front.Lambda
       : this->Back.Lambda <= 0.0                    ? -this->Back.Lambda

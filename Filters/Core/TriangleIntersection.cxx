@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TriangleIntersection.h"
 
+#include "BoxTree.h"
 #include "Predicates.h"
 
 #include <algorithm>
@@ -12,6 +13,9 @@ namespace cdm
 namespace
 {
 using Corners = std::array<Vec3, 3>;
+
+// The abort function is asked once in so many triangles.
+constexpr Id StepsBetweenChecks = 1024;
 
 Corners GetCorners(const std::vector<Vec3>& points, const TriangleIds& t)
 {
@@ -227,7 +231,7 @@ TriangleContact ClassifySeparate(const Corners& s, const Corners& t)
   return meet ? TriangleContact::Intersection : TriangleContact::Disjoint;
 }
 
-/** Turns s and t so that their common vertices come first, in the same order; returns their number. */
+/** Permutes s and t so that their common vertices come first, alike; returns their number. */
 int MoveCommonVerticesToFront(TriangleIds& s, TriangleIds& t)
 {
   int common = 0;
@@ -247,6 +251,51 @@ int MoveCommonVerticesToFront(TriangleIds& s, TriangleIds& t)
   return common;
 }
 
+/** Vertices of s in t, and edges of s that pierce t; side: 0 if s is the first triangle. */
+void AddPiercingContacts(const Corners& s, const Corners& t, int side, ContactPoints& contacts)
+{
+  const std::array<int, 3> sides = GetSides(t, s);
+  for (int i = 0; i < 3; ++i)
+  {
+    const int j = (i + 1) % 3;
+    if (sides[i] == 0 && IsInCoplanarTriangle(t, s[i]))
+    {
+      contacts.push_back({ side, i, -1, -1 });
+    }
+    if (sides[i] * sides[j] < 0 && MeetsTriangle(s[i], s[j], sides[i], sides[j], t))
+    {
+      contacts.push_back({ side, -1, i, -1 });
+    }
+  }
+}
+
+void AddCoplanarContacts(const Corners& s, const Corners& t, ContactPoints& contacts)
+{
+  for (int i = 0; i < 3; ++i)
+  {
+    if (IsInCoplanarTriangle(t, s[i]))
+    {
+      contacts.push_back({ 0, i, -1, -1 });
+    }
+    if (IsInCoplanarTriangle(s, t[i]))
+    {
+      contacts.push_back({ 1, i, -1, -1 });
+    }
+  }
+  int sign = 0;
+  const int axis = GetProjectionAxis(s, sign);
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int j = 0; j < 3; ++j)
+    {
+      if (DoProjectedSegmentsCross(axis, s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3]))
+      {
+        contacts.push_back({ 0, -1, i, j });
+      }
+    }
+  }
+}
+
 /** Where the segment from p to q, which meets the plane of t, meets it. */
 Vec3 PiercePlane(const Vec3& p, const Vec3& q, const Corners& t)
 {
@@ -257,47 +306,23 @@ Vec3 PiercePlane(const Vec3& p, const Vec3& q, const Corners& t)
   return p + std::min(1.0, std::max(0.0, ratio)) * (q - p);
 }
 
-void AddPiercingPoints(const Corners& s, const Corners& t, std::vector<Vec3>& found)
+Vec3 GetPosition(const ContactPoint& contact, const Corners& a, const Corners& b)
 {
-  const std::array<int, 3> sides = GetSides(t, s);
-  for (int i = 0; i < 3; ++i)
+  const Corners& own = contact.Triangle == 0 ? a : b;
+  const Corners& other = contact.Triangle == 0 ? b : a;
+  if (contact.Vertex >= 0)
   {
-    const int j = (i + 1) % 3;
-    if ((sides[i] != 0 || sides[j] != 0) && MeetsTriangle(s[i], s[j], sides[i], sides[j], t))
-    {
-      found.push_back(sides[i] == 0 ? s[i] : sides[j] == 0 ? s[j] : PiercePlane(s[i], s[j], t));
-    }
+    return own[contact.Vertex];
   }
-}
-
-void AddCoplanarPoints(const Corners& s, const Corners& t, std::vector<Vec3>& found)
-{
-  for (int i = 0; i < 3; ++i)
+  const Vec3& p = own[contact.Edge];
+  const Vec3& q = own[(contact.Edge + 1) % 3];
+  if (contact.OtherEdge < 0)
   {
-    if (IsInCoplanarTriangle(t, s[i]))
-    {
-      found.push_back(s[i]);
-    }
-    if (IsInCoplanarTriangle(s, t[i]))
-    {
-      found.push_back(t[i]);
-    }
+    return PiercePlane(p, q, other);
   }
-  int sign = 0;
-  const int axis = GetProjectionAxis(s, sign);
-  const Vec3 normal = Cross(s[1] - s[0], s[2] - s[0]);
-  for (int i = 0; i < 3; ++i)
-  {
-    for (int j = 0; j < 3; ++j)
-    {
-      const Vec3& c = t[j];
-      const Vec3& d = t[(j + 1) % 3];
-      if (DoCoplanarSegmentsMeet(axis, s[i], s[(i + 1) % 3], c, d))
-      {
-        found.push_back(PiercePlane(s[i], s[(i + 1) % 3], { c, d, c + normal }));
-      }
-    }
-  }
+  const Vec3& c = other[contact.OtherEdge];
+  const Vec3 normal = Cross(own[1] - own[0], own[2] - own[0]);
+  return PiercePlane(p, q, { c, other[(contact.OtherEdge + 1) % 3], c + normal });
 }
 } // namespace
 
@@ -319,20 +344,50 @@ TriangleContact ClassifyTriangles(
   }
 }
 
+bool AreCoplanar(const std::vector<Vec3>& points, const TriangleIds& s, const TriangleIds& t)
+{
+  return AreInPlane(GetSides(GetCorners(points, s), GetCorners(points, t)));
+}
+
+int FindProjectionAxis(const Vec3& a, const Vec3& b, const Vec3& c, int& sign)
+{
+  return GetProjectionAxis({ a, b, c }, sign);
+}
+
+bool DoProjectedSegmentsCross(
+  int axis, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  return ProjectedOrientation(axis, a, b, c) * ProjectedOrientation(axis, a, b, d) < 0 &&
+    ProjectedOrientation(axis, c, d, a) * ProjectedOrientation(axis, c, d, b) < 0;
+}
+
+ContactPoints FindContactPoints(
+  const std::vector<Vec3>& points, const TriangleIds& s, const TriangleIds& t, bool asCoplanar)
+{
+  const Corners a = GetCorners(points, s);
+  const Corners b = GetCorners(points, t);
+  ContactPoints contacts;
+  if (asCoplanar)
+  {
+    AddCoplanarContacts(a, b, contacts);
+  }
+  else
+  {
+    AddPiercingContacts(a, b, 0, contacts);
+    AddPiercingContacts(b, a, 1, contacts);
+  }
+  return contacts;
+}
+
 void FindIntersectionSegment(const std::vector<Vec3>& points, const TriangleIds& s,
   const TriangleIds& t, Vec3& begin, Vec3& end)
 {
   const Corners a = GetCorners(points, s);
   const Corners b = GetCorners(points, t);
   std::vector<Vec3> found;
-  if (AreInPlane(GetSides(a, b)))
+  for (const ContactPoint& contact : FindContactPoints(points, s, t, AreCoplanar(points, s, t)))
   {
-    AddCoplanarPoints(a, b, found);
-  }
-  else
-  {
-    AddPiercingPoints(a, b, found);
-    AddPiercingPoints(b, a, found);
+    found.push_back(GetPosition(contact, a, b));
   }
   begin = end = found.empty() ? a[0] : found[0];
   for (std::size_t i = 0; i < found.size(); ++i)
@@ -346,5 +401,55 @@ void FindIntersectionSegment(const std::vector<Vec3>& points, const TriangleIds&
       }
     }
   }
+}
+bool FindIntersectingPairs(const std::vector<Vec3>& points,
+  const std::vector<TriangleIds>& triangles, const std::vector<char>& active,
+  const ExecutionContext& context, std::vector<TrianglePair>& pairs)
+{
+  pairs.clear();
+  const Id n = static_cast<Id>(triangles.size());
+  std::vector<Box> boxes(n);
+  for (Id t = 0; t < n; ++t)
+  {
+    for (const Id id : triangles[t])
+    {
+      boxes[t].Extend(points[id]);
+    }
+  }
+  const BoxTree tree(boxes);
+  const auto isActive = [&active](Id t) { return active.empty() || active[t]; };
+  std::vector<Id> candidates;
+  for (Id t = 0; t < n && pairs.size() < MaximumNumberOfPairs; ++t)
+  {
+    if (t % StepsBetweenChecks == 0 &&
+      !context.Continue(static_cast<double>(t) / n, "Looking for self-intersections"))
+    {
+      return false;
+    }
+    if (!isActive(t))
+    {
+      continue;
+    }
+    candidates.clear();
+    tree.VisitOverlaps(boxes[t],
+      [&](Id other)
+      {
+        if (other > t || (other < t && !isActive(other)))
+        {
+          candidates.push_back(other);
+        }
+      });
+    std::sort(candidates.begin(), candidates.end());
+    for (const Id other : candidates)
+    {
+      if (ClassifyTriangles(points, triangles[t], triangles[other]) ==
+        TriangleContact::Intersection)
+      {
+        pairs.push_back({ std::min(t, other), std::max(t, other) });
+      }
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return true;
 }
 } // namespace cdm

@@ -133,6 +133,17 @@ private:
   std::set<std::tuple<int, cdm::Id, cdm::Id>> Known;
 };
 
+void WriteProblems(const cdm::PolygonSoup& soup, const std::vector<vtkIdType>& cells,
+  const std::vector<cdm::SurfaceProblem>& problems, vtkPolyData* output)
+{
+  ProblemCollector collector(soup, cells);
+  for (const cdm::SurfaceProblem& problem : problems)
+  {
+    collector.Add(problem);
+  }
+  collector.Finish(output);
+}
+
 /** One sentence for each kind of repair that dropped something, with its cells; empty for none. */
 std::string DescribeRepairs(const cdm::PolygonSoup& soup, const std::vector<vtkIdType>& cells,
   const cdm::BoundaryTriangulatorOutput& result)
@@ -222,19 +233,7 @@ int vtkBoundaryTriangulator::RequestData(
       return step;
     });
 
-  const cdm::BoundaryTriangulatorReport& report = result.Report;
-  this->NumberOfMergedPoints = report.MergedPoints;
-  this->NumberOfUnusedPoints = report.UnusedPoints;
-  this->NumberOfRepeatedVertices = report.RepeatedVertices;
-  this->NumberOfDegeneratePolygons = report.DegeneratePolygons;
-  this->NumberOfDuplicatePolygons = report.DuplicatePolygons;
-  this->NumberOfTJunctions = report.TJunctions;
-  this->NumberOfNonPlanarPolygons = report.NonPlanarPolygons;
-  this->NumberOfPatchedRings = report.PatchedRings;
-  this->NumberOfOpenEdges = report.OpenEdges;
-  this->NumberOfNonManifoldEdges = report.NonManifoldEdges;
-  this->NumberOfSelfIntersections = report.SelfIntersections;
-
+  this->TakeReport(result.Report);
   int success = 1;
   if (status.IsOk())
   {
@@ -257,13 +256,27 @@ int vtkBoundaryTriangulator::RequestData(
   {
     success = vtkCoreBridge::ReportFailure(this, outputVector, status, input);
   }
-  ProblemCollector problems(soup, cells);
-  for (const cdm::SurfaceProblem& problem : result.Problems)
+  if (!status.IsAborted())
   {
-    problems.Add(problem);
+    WriteProblems(soup, cells, result.Problems, vtkPolyData::GetData(outputVector, 1));
   }
-  problems.Finish(vtkPolyData::GetData(outputVector, 1));
   return success;
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkBoundaryTriangulator::TakeReport(const cdm::BoundaryTriangulatorReport& report)
+{
+  this->NumberOfMergedPoints = report.MergedPoints;
+  this->NumberOfUnusedPoints = report.UnusedPoints;
+  this->NumberOfRepeatedVertices = report.RepeatedVertices;
+  this->NumberOfDegeneratePolygons = report.DegeneratePolygons;
+  this->NumberOfDuplicatePolygons = report.DuplicatePolygons;
+  this->NumberOfTJunctions = report.TJunctions;
+  this->NumberOfNonPlanarPolygons = report.NonPlanarPolygons;
+  this->NumberOfPatchedRings = report.PatchedRings;
+  this->NumberOfOpenEdges = report.OpenEdges;
+  this->NumberOfNonManifoldEdges = report.NonManifoldEdges;
+  this->NumberOfSelfIntersections = report.SelfIntersections;
 }
 
 //--------------------------------------------------------------------------------------------------

@@ -45,6 +45,11 @@
 #include "cdmMeshingModule.h" // For export macro
 #include <vtkPolyDataAlgorithm.h>
 
+namespace cdm
+{
+struct BoundaryTriangulatorReport;
+}
+
 class CDMMESHING_EXPORT vtkBoundaryTriangulator : public vtkPolyDataAlgorithm
 {
 public:
@@ -137,6 +142,8 @@ protected:
   vtkIdType NumberOfSelfIntersections = 0;
 
 private:
+  void TakeReport(const cdm::BoundaryTriangulatorReport& report);
+
   vtkBoundaryTriangulator(const vtkBoundaryTriangulator&) = delete;
   void operator=(const vtkBoundaryTriangulator&) = delete;
 };

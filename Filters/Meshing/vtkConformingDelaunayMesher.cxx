@@ -340,7 +340,10 @@ int vtkConformingDelaunayMesher::RequestData(
   }
   const int success =
     status.IsOk() ? 1 : vtkCoreBridge::ReportFailure(this, outputVector, status, nullptr);
-  vtkPolyData::GetData(outputVector, 2)->ShallowCopy(triangulator->GetOutputDataObject(1));
+  if (!status.IsAborted())
+  {
+    vtkPolyData::GetData(outputVector, 2)->ShallowCopy(triangulator->GetOutputDataObject(1));
+  }
   return success;
 }
 

@@ -622,6 +622,18 @@ cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh)
       std::move(wrongRegions));
   }
   status = ToVectors(input->GetPoints(), mesh.Points);
+  for (std::size_t i = 0; i < mesh.Points.size(); ++i)
+  {
+    if (!cdm::IsFinite(mesh.Points[i]))
+    {
+      status.Points.push_back(static_cast<cdm::Id>(i));
+    }
+  }
+  if (!status.Points.empty())
+  {
+    return cdm::Status::InvalidInput(
+      "Points have coordinates that are not finite: remove or correct them.", {}, status.Points);
+  }
   return status.IsOk() ? cdm::BuildNeighbors(mesh) : status;
 }
 

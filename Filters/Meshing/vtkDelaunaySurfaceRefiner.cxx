@@ -19,6 +19,21 @@ vtkStandardNewMacro(vtkDelaunaySurfaceRefiner);
 
 namespace
 {
+cdm::DelaunaySurfaceRefinerOptions MakeOptions(vtkDelaunaySurfaceRefiner* filter)
+{
+  cdm::DelaunaySurfaceRefinerOptions options;
+  options.Criterion = static_cast<cdm::SurfaceCriterion>(filter->GetCriterion());
+  options.StructuralEdges.AccuracyAngle = filter->GetAccuracyAngle();
+  options.StructuralEdges.FlatnessRatio = filter->GetFlatnessRatio();
+  options.MinimumAngle = filter->GetMinimumAngle();
+  options.MaximumArea = filter->GetMaximumArea();
+  options.MaximumEdgeLength = filter->GetMaximumEdgeLength();
+  options.MeshPointClearanceRatio = filter->GetMeshPointClearanceRatio();
+  options.MinimumEdgeRatio = filter->GetMinimumEdgeRatio();
+  options.MaximumNewPoints = filter->GetMaximumNewPoints();
+  return options;
+}
+
 void AddUnresolvedArray(const std::vector<cdm::Id>& triangles, vtkPolyData* output)
 {
   vtkNew<vtkUnsignedCharArray> unresolved;
@@ -82,18 +97,8 @@ int vtkDelaunaySurfaceRefiner::RequestData(
       }
       if (step.IsOk())
       {
-        cdm::DelaunaySurfaceRefinerOptions options;
-        options.Criterion = static_cast<cdm::SurfaceCriterion>(this->Criterion);
-        options.StructuralEdges.AccuracyAngle = this->AccuracyAngle;
-        options.StructuralEdges.FlatnessRatio = this->FlatnessRatio;
-        options.MinimumAngle = this->MinimumAngle;
-        options.MaximumArea = this->MaximumArea;
-        options.MaximumEdgeLength = this->MaximumEdgeLength;
-        options.MeshPointClearanceRatio = this->MeshPointClearanceRatio;
-        options.MinimumEdgeRatio = this->MinimumEdgeRatio;
-        options.MaximumNewPoints = this->MaximumNewPoints;
         step = cdm::RefineDelaunaySurface(
-          engineInput, options, vtkCoreBridge::MakeContext(this), result);
+          engineInput, MakeOptions(this), vtkCoreBridge::MakeContext(this), result);
         vtkCoreBridge::OffsetCells(step, vtkCoreBridge::GetFirstPolygon(input));
       }
       return step;

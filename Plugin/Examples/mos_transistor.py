@@ -25,7 +25,7 @@ def MakeMesh():
     device = vtkTechnologyStructureSource()
     mesher = vtkConformingDelaunayMesher()
     mesher.SetInputConnection(device.GetOutputPort())
-    mesher.SetMaximumEdgeLength(0.1)
+    mesher.SetMaximumEdgeLength(0.2)
     mesher.Update()
     array = device.GetOutput().GetFieldData().GetAbstractArray("RegionNames")
     names = [array.GetValue(i) for i in range(array.GetNumberOfValues())]
@@ -88,6 +88,7 @@ def WriteAndDraw(mesh, names, folder):
     path = os.path.join(folder, "mos_transistor.png")
     SaveScreenshot(path, view, ImageResolution=[1200, 900])
     print("wrote", path)
+    Delete(view)
 
 
 output = sys.argv[1] if len(sys.argv) > 1 else "."

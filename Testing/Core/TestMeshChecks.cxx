@@ -33,8 +33,8 @@ Model MakeTwoPrisms()
   {
     model.Mesh.Points.push_back({ double(i & 1), double((i >> 1) & 1), double(i >> 2) });
   }
-  // Below the plane: the prism (0, 2, 6), (1, 3, 7); above: (0, 6, 4), (1, 7, 5). Each quadrilateral
-  // has the diagonal from its point with the smallest id.
+  // Below the plane: the prism (0, 2, 6), (1, 3, 7); above: (0, 6, 4), (1, 7, 5). Each
+  // quadrilateral has the diagonal from its point with the smallest id.
   model.Mesh.Tetrahedra = { { 0, 2, 6, 7 }, { 0, 3, 2, 7 }, { 0, 1, 3, 7 }, { 0, 6, 4, 7 },
     { 0, 4, 5, 7 }, { 0, 5, 1, 7 } };
   for (TetrahedronIds& tetrahedron : model.Mesh.Tetrahedra)
@@ -177,6 +177,11 @@ TEST(MeshChecks, InvertedTetrahedronIsCounted)
   EXPECT_FALSE(report.IsValid());
   EXPECT_NE(std::string::npos, report.GetSummary().find("1 inverted"));
   EXPECT_NE(std::string::npos, report.GetSummary().find(": not valid"));
+
+  // Its circumsphere counts all the same.
+  EXPECT_EQ(0, report.NonDelaunayTetrahedra);
+  model.Mesh.Points.push_back({ 0.5, 0.5, 0.5 });
+  EXPECT_EQ(6, Check(model).NonDelaunayTetrahedra);
 }
 
 TEST(MeshChecks, FlatTetrahedronIsCounted)

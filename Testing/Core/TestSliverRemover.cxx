@@ -38,7 +38,7 @@ enum class Numbering
 };
 
 /**
- * A grid of size^3 unit cubes, each pulled from its lowest numbered corner: six tetrahedra, or five.
+ * A grid of size^3 unit cubes, each pulled from its lowest numbered corner: six tetrahedra.
  * The cubes below the middle are region 0, the others region 1.
  */
 TetMesh MakeGrid(int size, Numbering numbering)
@@ -263,6 +263,36 @@ TEST(SliverRemover, OnlyCosphericalSetsAreFlipped)
     EXPECT_EQ(z == -3.0 ? 2u : 3u, mesh.Tetrahedra.size());
     EXPECT_TRUE(Check(mesh, &boundary).IsValid());
   }
+}
+
+TEST(SliverRemover, DiagonalOfCocircularPointsIsTurnedBetweenTwoSpheres)
+{
+  // Four points on a circle, an apex on each side on a sphere of its own. One of the two diagonals
+  // is better; a 4-4 flip leads there.
+  const std::array<Id, 4> circle{ 0, 1, 2, 3 };
+  Id flips = 0;
+  std::array<double, 2> angles{};
+  for (int i = 0; i < 2; ++i)
+  {
+    TetMesh mesh;
+    mesh.Points = { { 5, 0, 0 }, { 3, 4, 0 }, { -5, 0, 0 }, { 3, -4, 0 }, { 0, 0, 6 },
+      { 0, 0, -7 } };
+    for (const Id apex : { 4, 5 })
+    {
+      AddTetrahedron(mesh, { circle[i], circle[(i + 2) % 4], circle[i + 1], apex }, 0);
+      AddTetrahedron(mesh, { circle[i], circle[(i + 2) % 4], circle[(i + 3) % 4], apex }, 0);
+    }
+    ASSERT_TRUE(BuildNeighbors(mesh).IsOk());
+    const TriangleMesh boundary = MakeBoundary(mesh);
+    ASSERT_TRUE(Check(mesh, &boundary).IsValid());
+    const SliverRemoverReport report = Remove(mesh, 70.0);
+    flips += report.Flips;
+    angles[i] = report.SmallestDihedralAngleAfter;
+    EXPECT_EQ(4u, mesh.Tetrahedra.size());
+    EXPECT_TRUE(Check(mesh, &boundary).IsValid());
+  }
+  EXPECT_EQ(1, flips);
+  EXPECT_NEAR(angles[0], angles[1], 1e-9);
 }
 
 TEST(SliverRemover, FlatTetrahedronOnTheOutsideIsPeeledOff)

@@ -145,18 +145,25 @@ TEST(StructuralEdges, ChainsRunFromCornerToCornerThenClosedOnes)
 
 TEST(StructuralEdges, NonManifoldEdgeHasItsSmallestAngle)
 {
-  TriangleMesh fan;
-  fan.Points = { { 0, 0, 0 }, { 0, 0, 1 } };
-  for (const double angle : { 10.0, 350.0, 130.0, 200.0 })
+  const auto findSmallestAngle = [](const std::vector<double>& angles)
   {
-    fan.Triangles.push_back({ 0, 1, static_cast<Id>(fan.Points.size()) });
-    fan.Points.push_back({ std::cos(angle / Degrees), std::sin(angle / Degrees), 0.5 });
-  }
-  const auto output = Extract(fan);
-  const StructuralEdge* edge = Find(output, 0, 1);
-  ASSERT_NE(nullptr, edge);
-  EXPECT_EQ(StructuralEdgeKind::NonManifold, edge->Kind);
-  EXPECT_NEAR(20.0, edge->DihedralAngle, 1e-12);
+    TriangleMesh fan;
+    fan.Points = { { 0, 0, 0 }, { 0, 0, 1 } };
+    for (const double angle : angles)
+    {
+      fan.Triangles.push_back({ 0, 1, static_cast<Id>(fan.Points.size()) });
+      fan.Points.push_back({ std::cos(angle / Degrees), std::sin(angle / Degrees), 0.5 });
+    }
+    const auto output = Extract(fan);
+    const StructuralEdge* edge = Find(output, 0, 1);
+    EXPECT_NE(nullptr, edge);
+    EXPECT_EQ(StructuralEdgeKind::NonManifold, edge->Kind);
+    return edge->DihedralAngle;
+  };
+  EXPECT_NEAR(20.0, findSmallestAngle({ 10.0, 350.0, 130.0, 200.0 }), 1e-12);
+  // Whichever triangle comes first, and on both sides of the half turn.
+  EXPECT_NEAR(15.0, findSmallestAngle({ 0.0, 175.0, 190.0 }), 1e-12);
+  EXPECT_NEAR(15.0, findSmallestAngle({ 175.0, 190.0, 0.0 }), 1e-12);
 }
 
 TEST(StructuralEdges, LabelsAreComparedInOneOrientation)

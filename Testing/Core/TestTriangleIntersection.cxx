@@ -173,7 +173,7 @@ TEST(TriangleIntersection, SeparateTriangles)
   EXPECT_EQ(TriangleContact::Intersection, classify({ 1, 1, -1 }, { 1, 1, 1 }, { 9, 9, 0 }));
   // Planes cross, triangles do not.
   EXPECT_EQ(TriangleContact::Disjoint, classify({ 3, 3, -1 }, { 3, 3, 1 }, { 9, 9, 0 }));
-  // A vertex in the interior, an edge on the interior, a vertex on an edge, an edge through an edge.
+  // A vertex in the interior, an edge on it, a vertex on an edge, an edge through an edge.
   EXPECT_EQ(TriangleContact::Intersection, classify({ 1, 1, 0 }, { 1, 1, 1 }, { 2, 1, 1 }));
   EXPECT_EQ(TriangleContact::Intersection, classify({ 1, 1, 0 }, { 2, 1, 0 }, { 2, 1, 1 }));
   EXPECT_EQ(TriangleContact::Intersection, classify({ 2, 0, 0 }, { 2, -1, 1 }, { 3, -1, 1 }));

@@ -232,13 +232,17 @@ TEST(AdvancingFrontTetrahedralizerFilter, ClosesOpenBoundaries)
     Pipeline run(builder.Build());
     ExpectFailure(run.Filter, { "CloseOpenBoundary", "Cells: " });
   }
-  Pipeline run(builder.Build());
-  run.Filter->CloseOpenBoundaryOn();
-  run.Filter->Update();
-  EXPECT_EQ(run.Recorder->Errors, "");
-  EXPECT_NEAR(GetVolume(run.GetMesh()), 1.0, 1e-13);
-  ExpectClosed(run);
-  EXPECT_NEAR(GetArea(run.GetSurface(1), -1, 0), 6.0, 1e-13);
+  for (bool withLabels : { true, false })
+  {
+    SCOPED_TRACE(withLabels ? "with labels" : "without labels");
+    Pipeline run(builder.Build(withLabels));
+    run.Filter->CloseOpenBoundaryOn();
+    run.Filter->Update();
+    EXPECT_EQ(run.Recorder->Errors, "");
+    EXPECT_NEAR(GetVolume(run.GetMesh()), 1.0, 1e-13);
+    ExpectClosed(run);
+    EXPECT_NEAR(GetArea(run.GetSurface(1), -1, 0), 6.0, 1e-13);
+  }
 }
 
 TEST(AdvancingFrontTetrahedralizerFilter, StopsAtTheLimitWithItsFront)
@@ -279,10 +283,10 @@ TEST(AdvancingFrontTetrahedralizerFilter, RefusesBadInput)
   filter->SetInputData(surface);
   ExpectFailure(filter, { "finite", "Points: 2 (0, nan, 0)" });
 
-  // A point right behind a side of the cube: the side is not Delaunay any more.
-  filter->SetInputData(run.Refiner->GetOutput());
-  filter->SetInputData(1, MakePoints({ { 0.5, 0.5, 0.01 } }));
-  ExpectFailure(filter, { "vtkDelaunaySurfaceRefiner", "Cells: " });
+  // Points on both sides of the interface, and close to it, disturb its two triangles.
+  Pipeline boxes(MakeTwoBoxes());
+  boxes.Filter->SetInputData(1, MakePoints({ { 0.99, 0.5, 0.5 }, { 1.01, 0.5, 0.5 } }));
+  ExpectFailure(boxes.Filter, { "vtkDelaunaySurfaceRefiner", "(2 in all)" });
 }
 
 TEST(AdvancingFrontTetrahedralizerFilter, ReportsProgressAndKeepsThePartialMeshOfAnAbort)

@@ -51,7 +51,7 @@ with tempfile.TemporaryDirectory() as folder:
     with open(os.path.join(project, name.group(2)), "w", encoding="utf-8") as file:
         file.write(source)
     out = os.path.join(project, "out")
-    Run([os.environ["CDM_CMAKE"], "-S", project, "-B", out,
+    Run([os.environ["CDM_CMAKE"], "-G", os.environ["CDM_GENERATOR"], "-S", project, "-B", out,
          "-DCMAKE_PREFIX_PATH=" + os.environ["CDM_BINARY_DIR"],
          "-DCMAKE_CXX_COMPILER=" + os.environ["CDM_CXX_COMPILER"]], folder)
     Run([os.environ["CDM_CMAKE"], "--build", out], folder)
