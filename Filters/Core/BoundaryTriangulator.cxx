@@ -2,8 +2,10 @@
 #include "BoundaryTriangulator.h"
 
 #include "BoxTree.h"
+#include "DuplicateTriangles.h"
 #include "PolygonTriangulation.h"
 #include "Predicates.h"
+#include "SurfaceOrientation.h"
 #include "TriangleIntersection.h"
 
 #include <algorithm>
@@ -25,8 +27,6 @@ namespace
 // A polygon counts as non-planar if it leaves its mean plane by more than this ratio of its extent:
 // above what single precision in a file does to a planar one.
 constexpr double PlanarityRatio = 1e-6;
-// Guard against quadratic output: nobody looks at more.
-constexpr Id MaximumNumberOfIntersections = 1000000;
 // The abort function is asked once in so many steps of a loop.
 constexpr Id StepsBetweenChecks = 1024;
 
@@ -122,24 +122,6 @@ std::vector<Id> MakeCanonical(const std::vector<Id>& outline, bool& reversed)
   return best;
 }
 
-/** Adds the regions of a copy to those of the first polygon; false if they contradict. */
-bool UniteLabels(RegionPair& labels, RegionPair copy, bool isReversed)
-{
-  if (isReversed)
-  {
-    std::swap(copy.Front, copy.Back);
-  }
-  const auto unite = [](Id& region, Id other)
-  {
-    const bool agree = region < 0 || other < 0 || region == other;
-    region = region < 0 ? other : region;
-    return agree;
-  };
-  const bool front = unite(labels.Front, copy.Front);
-  const bool back = unite(labels.Back, copy.Back);
-  return front && back;
-}
-
 void SortUnique(std::vector<Id>& ids)
 {
   std::sort(ids.begin(), ids.end());
@@ -182,8 +164,10 @@ public:
     const Step steps[] = { &Triangulation::CheckInput, &Triangulation::MergePoints,
       &Triangulation::CleanPolygons, &Triangulation::SplitEdges,
       &Triangulation::DropDuplicatePolygons, &Triangulation::TriangulatePolygons,
-      &Triangulation::DropDuplicateTriangles, &Triangulation::PatchGaps, &Triangulation::CountEdges,
-      &Triangulation::FindIntersections, &Triangulation::WriteOutput };
+      &Triangulation::DropDuplicateTriangles, &Triangulation::PatchGaps,
+      &Triangulation::FindIntersections, &Triangulation::ResolveIntersections,
+      &Triangulation::CountEdges, &Triangulation::RefuseIntersections,
+      &Triangulation::WriteOutput, &Triangulation::TurnReversedTriangles };
     for (const Step step : steps)
     {
       const Status status = (this->*step)();
@@ -697,35 +681,19 @@ private:
   Status DropDuplicateTriangles()
   {
     const Id n = static_cast<Id>(this->Triangles.size());
-    std::vector<TriangleIds> sorted = this->Triangles;
-    std::vector<Id> order(n);
-    for (Id t = 0; t < n; ++t)
-    {
-      std::sort(sorted[t].begin(), sorted[t].end());
-      order[t] = t;
-    }
-    std::sort(order.begin(), order.end(),
-      [&sorted](Id a, Id b) { return sorted[a] != sorted[b] ? sorted[a] < sorted[b] : a < b; });
     std::vector<char> dropped(n, 0);
     std::vector<Id> contradictions;
-    Id first = NoId;
-    for (const Id t : order)
+    for (const DuplicateTriangle& duplicate : FindDuplicateTriangles(this->Triangles))
     {
-      if (first == NoId || sorted[first] != sorted[t])
-      {
-        first = t;
-        continue;
-      }
+      const Id t = duplicate.Triangle;
+      const Id first = duplicate.Original;
       dropped[t] = 1;
-      const TriangleIds& copy = this->Triangles[t];
-      const TriangleIds& original = this->Triangles[first];
-      const auto position = std::find(copy.begin(), copy.end(), original[0]) - copy.begin();
-      const bool isReversed = copy[(position + 1) % 3] != original[1];
       ++this->Output.Report.DuplicateTriangles;
       this->AddProblem(SurfaceProblemKind::DuplicatePolygon, this->Sources[t], this->Sources[first],
-        this->Points[copy[0]], this->Points[copy[1]]);
+        this->Points[this->Triangles[t][0]], this->Points[this->Triangles[t][1]]);
       if (this->HasLabels() &&
-        !UniteLabels(this->TriangleLabels[first], this->TriangleLabels[t], isReversed))
+        !UniteLabels(
+          this->TriangleLabels[first], this->TriangleLabels[t], duplicate.IsReversed))
       {
         contradictions.push_back(this->Sources[first]);
         contradictions.push_back(this->Sources[t]);
@@ -870,6 +838,13 @@ private:
     return rings;
   }
 
+  /** Where intersections are resolved a patch may cross the surface, but not lie in it. */
+  bool CanPatchBeside(const TriangleIds& patch, const TriangleIds& other) const
+  {
+    return ClassifyTriangles(this->Points, patch, other) != TriangleContact::Intersection ||
+      (this->Options.ResolveSelfIntersections && !AreCoplanar(this->Points, patch, other));
+  }
+
   void PatchRing(
     std::vector<RingStep> ring, const std::vector<EdgeUse>& open, const BoxTree& tree, Id unpatched)
   {
@@ -895,9 +870,7 @@ private:
       bool isFree = true;
       const auto test = [&](Id other)
       {
-        isFree = isFree &&
-          ClassifyTriangles(this->Points, t, this->Triangles[other]) !=
-            TriangleContact::Intersection;
+        isFree = isFree && this->CanPatchBeside(t, this->Triangles[other]);
       };
       tree.VisitOverlaps(GetBox(this->Points, t), test);
       for (Id other = unpatched; other < static_cast<Id>(this->Triangles.size()); ++other)
@@ -940,7 +913,7 @@ private:
       {
         ++this->Output.Report.OpenEdges;
         this->AddProblem(SurfaceProblemKind::OpenEdge, this->Sources[edges[begin].Triangle], NoId,
-          this->Points[edges[begin].Points[0]], this->Points[edges[begin].Points[1]]);
+          this->GetPoint(edges[begin].Points[0]), this->GetPoint(edges[begin].Points[1]));
       }
       begin = end;
     }
@@ -949,69 +922,78 @@ private:
 
   Status FindIntersections()
   {
-    const Id n = static_cast<Id>(this->Triangles.size());
-    std::vector<Box> boxes(n);
-    for (Id t = 0; t < n; ++t)
+    std::vector<TrianglePair> pairs;
+    if (!FindIntersectingPairs(
+          this->Points, this->Triangles, {}, this->Context.Part(0.55, 0.8), pairs))
     {
-      boxes[t] = GetBox(this->Points, this->Triangles[t]);
+      return Status::Aborted();
     }
-    const BoxTree tree(boxes);
-    std::vector<Id> candidates;
-    std::vector<Id> cells;
-    Id& found = this->Output.Report.SelfIntersections;
-    Vec3 example;
-    for (Id t = 0; t < n && found < MaximumNumberOfIntersections; ++t)
+    this->Output.Report.SelfIntersections = static_cast<Id>(pairs.size());
+    for (const TrianglePair& pair : pairs)
     {
-      if (!this->Continue(t, n, 0.55, 1.0, "Looking for self-intersections"))
-      {
-        return Status::Aborted();
-      }
-      candidates.clear();
-      tree.VisitOverlaps(boxes[t],
-        [&candidates, t](Id other)
-        {
-          if (other > t)
-          {
-            candidates.push_back(other);
-          }
-        });
-      std::sort(candidates.begin(), candidates.end());
-      for (const Id other : candidates)
-      {
-        if (ClassifyTriangles(this->Points, this->Triangles[t], this->Triangles[other]) !=
-          TriangleContact::Intersection)
-        {
-          continue;
-        }
-        Vec3 begin;
-        Vec3 end;
-        FindIntersectionSegment(
-          this->Points, this->Triangles[t], this->Triangles[other], begin, end);
-        this->AddProblem(
-          SurfaceProblemKind::SelfIntersection, this->Sources[t], this->Sources[other], begin, end);
-        cells.push_back(this->Sources[t]);
-        cells.push_back(this->Sources[other]);
-        example = found == 0 ? begin : example;
-        ++found;
-      }
+      Vec3 begin;
+      Vec3 end;
+      FindIntersectionSegment(
+        this->Points, this->Triangles[pair[0]], this->Triangles[pair[1]], begin, end);
+      this->AddProblem(SurfaceProblemKind::SelfIntersection, this->Sources[pair[0]],
+        this->Sources[pair[1]], begin, end);
     }
-    if (found == 0 || !this->Options.RefuseSelfIntersections)
+    return {};
+  }
+
+  Status ResolveIntersections()
+  {
+    if (!this->Options.ResolveSelfIntersections || this->Output.Report.SelfIntersections == 0)
     {
       return {};
     }
-    const std::string first = "cells " + std::to_string(cells[0]) + " and " +
-      std::to_string(cells[1]) + " at " + ToText(example);
+    IntersectionResolverOptions options;
+    options.Pieces = this->Options.Pieces;
+    options.Tolerance = this->Options.MergeTolerance;
+    TriangleMesh surface{ this->Points, std::move(this->Triangles), std::move(this->TriangleLabels),
+      std::move(this->Sources) };
+    const Status status = cdm::ResolveIntersections(options, this->Context.Part(0.8, 1.0), surface,
+      this->Parents, this->Output.Report.Resolution);
+    this->NewPoints.assign(surface.Points.begin() + this->Points.size(), surface.Points.end());
+    this->Triangles = std::move(surface.Triangles);
+    this->TriangleLabels = std::move(surface.Labels);
+    this->Sources = std::move(surface.SourceCells);
+    return status;
+  }
+
+  Status RefuseIntersections()
+  {
+    if (this->Output.Report.SelfIntersections == 0 || !this->Options.RefuseSelfIntersections ||
+      this->Options.ResolveSelfIntersections)
+    {
+      return {};
+    }
+    std::vector<Id> cells;
+    const SurfaceProblem* example = nullptr;
+    for (const SurfaceProblem& problem : this->Output.Problems)
+    {
+      if (problem.Kind == SurfaceProblemKind::SelfIntersection)
+      {
+        example = example != nullptr ? example : &problem;
+        cells.push_back(problem.Cell);
+        cells.push_back(problem.OtherCell);
+      }
+    }
     SortUnique(cells);
+    const Id found = this->Output.Report.SelfIntersections;
     return Status::InvalidInput("The surface intersects itself: " + std::to_string(found) +
-        (found < MaximumNumberOfIntersections ? "" : " or more") +
-        " pairs of triangles cross, overlap or touch, for example " + first +
-        ". Repair these polygons: " + ToText(cells) + ".",
+        (static_cast<std::size_t>(found) < MaximumNumberOfPairs ? "" : " or more") +
+        " pairs of triangles cross, overlap or touch, for example cells " +
+        std::to_string(example->Cell) + " and " + std::to_string(example->OtherCell) + " at " +
+        ToText(example->SegmentBegin) +
+        ". Switch on ResolveSelfIntersections, or repair these polygons: " + ToText(cells) + ".",
       cells);
   }
 
   Status WriteOutput()
   {
-    const Id n = static_cast<Id>(this->Points.size());
+    const Id numberOfInputPoints = static_cast<Id>(this->Points.size());
+    const Id n = numberOfInputPoints + static_cast<Id>(this->NewPoints.size());
     std::vector<Id> ids(n, NoId);
     for (const TriangleIds& t : this->Triangles)
     {
@@ -1023,15 +1005,23 @@ private:
     TriangleMesh& surface = this->Output.Surface;
     for (Id i = 0; i < n; ++i)
     {
-      if (ids[i] != NoId)
+      if (ids[i] == NoId)
       {
-        ids[i] = static_cast<Id>(surface.Points.size());
-        surface.Points.push_back(this->Points[i]);
+        continue;
+      }
+      ids[i] = static_cast<Id>(surface.Points.size());
+      surface.Points.push_back(this->GetPoint(i));
+      if (i < numberOfInputPoints)
+      {
         this->Output.PointSources.push_back(i);
       }
+      else
+      {
+        this->Output.NewPoints.push_back(this->Parents[i - numberOfInputPoints]);
+      }
     }
-    this->Output.Report.UnusedPoints =
-      n - static_cast<Id>(surface.Points.size()) - this->Output.Report.MergedPoints;
+    this->Output.Report.UnusedPoints = numberOfInputPoints -
+      static_cast<Id>(this->Output.PointSources.size()) - this->Output.Report.MergedPoints;
     for (TriangleIds& t : this->Triangles)
     {
       t = { ids[t[0]], ids[t[1]], ids[t[2]] };
@@ -1040,6 +1030,36 @@ private:
     surface.Labels = std::move(this->TriangleLabels);
     surface.SourceCells = std::move(this->Sources);
     return {};
+  }
+
+  Status TurnReversedTriangles()
+  {
+    if (this->Output.Report.SelfIntersections > 0 && !this->Options.ResolveSelfIntersections)
+    {
+      return {};
+    }
+    TriangleMesh& surface = this->Output.Surface;
+    std::vector<Id> cells;
+    for (const Id t : RepairOrientation(surface))
+    {
+      cells.push_back(surface.SourceCells[t]);
+    }
+    SortUnique(cells);
+    for (const Id cell : cells)
+    {
+      const Id* polygon = this->Input.GetPolygon(cell);
+      this->AddProblem(SurfaceProblemKind::ReversedPolygon, cell, NoId, this->Points[polygon[0]],
+        this->Points[polygon[1]]);
+    }
+    this->Output.Report.ReversedPolygons = static_cast<Id>(cells.size());
+    return {};
+  }
+
+  /** A point of the input or, behind those, a new one. */
+  const Vec3& GetPoint(Id id) const
+  {
+    const std::size_t i = static_cast<std::size_t>(id);
+    return i < this->Points.size() ? this->Points[i] : this->NewPoints[i - this->Points.size()];
   }
 
   const PolygonSoup& Input;
@@ -1055,6 +1075,9 @@ private:
   std::vector<TriangleIds> Triangles;
   std::vector<Id> Sources;
   std::vector<RegionPair> TriangleLabels;
+  /** Points made where triangles intersect, and what they were made from. */
+  std::vector<Vec3> NewPoints;
+  std::vector<PointParents> Parents;
 };
 } // namespace
 

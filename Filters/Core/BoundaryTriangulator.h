@@ -12,12 +12,25 @@
  *     the largest component of its normal (PolygonTriangulation.h); outlines bridged to holes and
  *     collinear vertices are welcome. A non-planar polygon is triangulated in that same projection;
  *  5. trace open edges into rings and patch those of at most MaximumGapEdges edges, unless the
- *     patch would meet the surface (a lone triangle is no hole);
+ *     patch would meet the surface (a lone triangle is no hole, nor is a flat sheet);
  *  6. find all pairs of triangles that cross, overlap or touch other than in a common edge or
- *     vertex, exactly (TriangleIntersection.h).
+ *     vertex, exactly (TriangleIntersection.h); as an option split them along their intersections
+ *     (IntersectionResolver.h);
+ *  7. turn over the triangles that are reversed, where labels or closure tell
+ *     (SurfaceOrientation.h).
  *
- * Guarantees: on Ok the surface has the invariants stated in TriangleMesh.h; the input points that
- * are used keep their exact coordinates. Deterministic.
+ * What a tolerance of zero does not mend: a vertex beside an edge, off by a rounding error (as when
+ * a slanted edge is divided in single precision), is no T-junction but opens a gap. Give a
+ * MergeTolerance above the precision of the coordinates then.
+ * Rings that stay open even if MaximumGapEdges allows them: those that are simple in no projection
+ * along an axis, and those whose patch would meet the surface. For the border of a Moebius strip
+ * there is none that does not: a strip and a disc make a projective plane, which always crosses
+ * itself in space. Where intersections are resolved a patch may cross the surface, but not lie in
+ * it.
+ *
+ * Guarantees: on Ok the surface has the invariants stated in TriangleMesh.h (with
+ * RefuseSelfIntersections off, but for the intersections listed); the input points that are used
+ * keep their exact coordinates. Deterministic.
  * Uniting labels: a side labelled OutsideRegion takes the region that a copy of the polygon has on
  * that side; two different regions on one side contradict each other.
  * Failure: InvalidInput names the cells (self-intersections: unless they are only to be reported)
@@ -28,6 +41,7 @@
 #define cdmBoundaryTriangulator_h
 
 #include "ExecutionContext.h"
+#include "IntersectionResolver.h"
 #include "PolygonSoup.h"
 #include "Status.h"
 #include "TriangleMesh.h"
@@ -46,6 +60,10 @@ struct BoundaryTriangulatorOptions
   Id MaximumGapEdges = 0;
   /** False: a self-intersection is listed in Problems, and the surface is made all the same. */
   bool RefuseSelfIntersections = true;
+  /** Split triangles that intersect along their intersections instead. */
+  bool ResolveSelfIntersections = false;
+  /** What stays of a surface whose self-intersections were resolved. */
+  ResolvedPieces Pieces = ResolvedPieces::OutsideOnly;
 };
 
 enum class SurfaceProblemKind : unsigned char
@@ -63,7 +81,9 @@ enum class SurfaceProblemKind : unsigned char
   /** An open edge of a ring that was patched. */
   PatchedGap,
   /** An open edge left as it is. */
-  OpenEdge
+  OpenEdge,
+  /** A polygon against the orientation of the others; the triangles were turned over. */
+  ReversedPolygon
 };
 
 /** One finding, with the cells of the input it concerns and a segment (or point) to look at. */
@@ -93,16 +113,24 @@ struct BoundaryTriangulatorReport
   Id PatchedRings = 0;
   Id OpenEdges = 0;
   Id NonManifoldEdges = 0;
-  /** Pairs of triangles. The search stops at a million. */
+  Id ReversedPolygons = 0;
+  /** Pairs of triangles, before they are resolved. The search stops at a million. */
   Id SelfIntersections = 0;
+  /** Resolved self-intersections. */
+  IntersectionResolverReport Resolution;
 };
 
 struct BoundaryTriangulatorOutput
 {
   /** SourceCells: polygon of the input (for a patch the polygon at its first edge). */
   TriangleMesh Surface;
-  /** For each point of Surface the input point whose coordinates and data it has. */
+  /**
+   * For each of the first points of Surface the input point whose coordinates and data it has. All
+   * points, unless self-intersections were resolved.
+   */
   std::vector<Id> PointSources;
+  /** For each of the other points of Surface: parents, as ids of points of the input. */
+  std::vector<PointParents> NewPoints;
   std::vector<SurfaceProblem> Problems;
   BoundaryTriangulatorReport Report;
 };

@@ -182,6 +182,7 @@ private:
   void DropCloseMeshPoints();
   void CollectPointFacets();
   void CollectAxes();
+  void CollectCorners();
   void Saturate();
   Status Refine();
   void Process(Id t);
@@ -194,6 +195,8 @@ private:
   bool ResolveByEdge(Id t);
   bool ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMirrored);
   bool MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) const;
+  bool RotateAboutAxis(Id t, Id disturbing, Vec3& target) const;
+  bool RotateAboutCorner(Id t, Id disturbing, Vec3& target) const;
   bool SplitSegment(Id segment, Id disturbing);
   Vec3 PlaceOnSegment(Id segment, Id disturbing) const;
   Id FindSharedCorner(Id segment, Id point) const;
@@ -232,6 +235,8 @@ private:
   std::vector<std::vector<Id>> PointFacets;
   /** Segments of the input that two facets share, by the facets, the smaller first. */
   std::map<std::pair<Id, Id>, std::vector<EdgeIds>> Axes;
+  /** Points of each facet at which structural edges end, ascending. */
+  std::vector<std::vector<Id>> FacetCorners;
   /** For each point of the input surface the input edges at it; for new ones on an edge, it. */
   std::vector<std::vector<Id>> PointEdges;
   /** Input points at which two structural edges meet at less than 90 degrees. */
@@ -321,6 +326,7 @@ Status SurfaceRefiner::Prepare()
   this->Surface = std::make_unique<RefinableSurface>(surface, edges.Edges, this->Points);
   this->CollectPointFacets();
   this->CollectAxes();
+  this->CollectCorners();
   return Status();
 }
 
@@ -429,6 +435,22 @@ void SurfaceRefiner::CollectAxes()
           this->IsAcuteCorner[p] = 1;
           break;
         }
+      }
+    }
+  }
+}
+
+void SurfaceRefiner::CollectCorners()
+{
+  for (Id p = 0; p < this->NumberOfSurfacePoints; ++p)
+  {
+    for (Id facet : this->PointFacets[p])
+    {
+      if (!this->PointEdges[p].empty())
+      {
+        this->FacetCorners.resize(
+          std::max(this->FacetCorners.size(), static_cast<std::size_t>(facet) + 1));
+        this->FacetCorners[facet].push_back(p);
       }
     }
   }
@@ -792,25 +814,17 @@ bool SurfaceRefiner::ResolveByEdge(Id t)
   return bestSegment != NoId && this->SplitSegment(bestSegment, bestPoint);
 }
 
-bool SurfaceRefiner::MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) const
+bool SurfaceRefiner::RotateAboutAxis(Id t, Id disturbing, Vec3& target) const
 {
   const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
-  const Vec3& a = this->Points[triangle.Points[0]];
-  const Vec3 normal =
-    Cross(this->Points[triangle.Points[1]] - a, this->Points[triangle.Points[2]] - a);
-  const Vec3 unit = (1.0 / Norm(normal)) * normal;
-  const Vec3 center =
-    GetCircumcenter(a, this->Points[triangle.Points[1]], this->Points[triangle.Points[2]]);
-  const double radius = Distance(center, a);
   const Vec3& p = this->Points[disturbing];
-  const double height = std::abs(Dot(unit, p - a));
-
-  // Type R: about the line that the two facets share, if they meet at an acute angle there.
+  const Vec3 center = GetCircumcenter(this->Points[triangle.Points[0]],
+    this->Points[triangle.Points[1]], this->Points[triangle.Points[2]]);
   double nearest = Infinity;
   for (Id facet : this->PointFacets[disturbing])
   {
-    const auto axes = this->Axes.find(
-      { std::min(facet, triangle.Facet), std::max(facet, triangle.Facet) });
+    const auto axes =
+      this->Axes.find({ std::min(facet, triangle.Facet), std::max(facet, triangle.Facet) });
     if (facet == triangle.Facet || axes == this->Axes.end())
     {
       continue;
@@ -821,8 +835,7 @@ bool SurfaceRefiner::MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) co
       const Vec3 direction =
         (1.0 / Distance(begin, this->Points[axis[1]])) * (this->Points[axis[1]] - begin);
       const Vec3 foot = begin + Dot(p - begin, direction) * direction;
-      const Vec3 centerFoot = begin + Dot(center - begin, direction) * direction;
-      const Vec3 inward = center - centerFoot;
+      const Vec3 inward = center - (begin + Dot(center - begin, direction) * direction);
       const double distance = Distance(p, foot);
       if (distance < nearest && distance > 0.0 && Dot(inward, p - foot) > 0.0)
       {
@@ -831,7 +844,73 @@ bool SurfaceRefiner::MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) co
       }
     }
   }
-  if (nearest == Infinity)
+  return nearest < Infinity;
+}
+
+bool SurfaceRefiner::RotateAboutCorner(Id t, Id disturbing, Vec3& target) const
+{
+  const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
+  if (static_cast<std::size_t>(triangle.Facet) >= this->FacetCorners.size())
+  {
+    return false;
+  }
+  const std::vector<Id>& corners = this->FacetCorners[triangle.Facet];
+  const Vec3& p = this->Points[disturbing];
+  double nearest = Infinity;
+  Id corner = NoId;
+  for (Id facet : this->PointFacets[disturbing])
+  {
+    if (static_cast<std::size_t>(facet) >= this->FacetCorners.size())
+    {
+      continue;
+    }
+    const std::vector<Id>& others = this->FacetCorners[facet];
+    const bool isSmaller = others.size() < corners.size();
+    for (Id candidate : isSmaller ? others : corners)
+    {
+      const double distance = Distance(p, this->Points[candidate]);
+      if (candidate != disturbing && distance < nearest &&
+        std::binary_search((isSmaller ? corners : others).begin(),
+          (isSmaller ? corners : others).end(), candidate))
+      {
+        nearest = distance;
+        corner = candidate;
+      }
+    }
+  }
+  if (corner == NoId)
+  {
+    return false;
+  }
+  const Vec3& a = this->Points[triangle.Points[0]];
+  const Vec3& b = this->Points[triangle.Points[1]];
+  const Vec3& c = this->Points[triangle.Points[2]];
+  const Vec3 normal = Cross(b - a, c - a);
+  const Vec3 arm = p - this->Points[corner];
+  const Vec3 inPlane = arm - (Dot(arm, normal) / SquaredNorm(normal)) * normal;
+  target = this->Points[corner] + (nearest / Norm(inPlane)) * inPlane;
+  // Steep or far beyond the triangle, the turned point would do nothing for it.
+  return SquaredNorm(inPlane) > 0.25 * SquaredNorm(arm) && InEquatorialSphere(a, b, c, target) > 0;
+}
+
+bool SurfaceRefiner::MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) const
+{
+  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+  const Vec3& a = this->Points[ids[0]];
+  const Vec3 normal = Cross(this->Points[ids[1]] - a, this->Points[ids[2]] - a);
+  const Vec3 unit = (1.0 / Norm(normal)) * normal;
+  const double radius =
+    Distance(a, GetCircumcenter(a, this->Points[ids[1]], this->Points[ids[2]]));
+  const Vec3& p = this->Points[disturbing];
+  const double height = std::abs(Dot(unit, p - a));
+  // Type R: about the line that the two facets share, if they meet at an acute angle there, or
+  // about a corner that they share.
+  if (this->RotateAboutAxis(t, disturbing, target))
+  {
+    // However close: only points that match exactly leave each other alone.
+    return true;
+  }
+  if (!this->RotateAboutCorner(t, disturbing, target))
   {
     if (height > ThinLayerRatio * radius)
     {

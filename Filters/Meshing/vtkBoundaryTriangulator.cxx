@@ -227,6 +227,9 @@ int vtkBoundaryTriangulator::RequestData(
         options.MergeTolerance = this->MergeTolerance;
         options.MaximumGapEdges = this->MaximumGapEdges;
         options.RefuseSelfIntersections = this->RefuseSelfIntersections;
+        options.ResolveSelfIntersections = this->ResolveSelfIntersections;
+        options.Pieces =
+          this->KeepInternalPieces ? cdm::ResolvedPieces::All : cdm::ResolvedPieces::OutsideOnly;
         step = cdm::TriangulateBoundary(soup, options, vtkCoreBridge::MakeContext(this), result);
         vtkCoreBridge::MapCells(step, cells);
       }
@@ -244,8 +247,9 @@ int vtkBoundaryTriangulator::RequestData(
       sources.push_back(polygon == cdm::NoId ? -1 : cells[polygon]);
     }
     vtkCoreBridge::CopyCellTuples(input, sources, output);
-    vtkCoreBridge::CopyTuples(input->GetPointData(),
-      { result.PointSources.begin(), result.PointSources.end() }, output->GetPointData());
+    vtkCoreBridge::InterpolateTuples(input->GetPointData(),
+      { result.PointSources.begin(), result.PointSources.end() }, result.NewPoints,
+      vtkCoreBridge::ParentIds::Input, output->GetPointData());
     const std::string repairs = DescribeRepairs(soup, cells, result);
     if (!repairs.empty())
     {
@@ -286,6 +290,8 @@ void vtkBoundaryTriangulator::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MergeTolerance: " << this->MergeTolerance << "\n";
   os << indent << "MaximumGapEdges: " << this->MaximumGapEdges << "\n";
   os << indent << "RefuseSelfIntersections: " << this->RefuseSelfIntersections << "\n";
+  os << indent << "ResolveSelfIntersections: " << this->ResolveSelfIntersections << "\n";
+  os << indent << "KeepInternalPieces: " << this->KeepInternalPieces << "\n";
   os << indent << "NumberOfMergedPoints: " << this->NumberOfMergedPoints << "\n";
   os << indent << "NumberOfUnusedPoints: " << this->NumberOfUnusedPoints << "\n";
   os << indent << "NumberOfRepeatedVertices: " << this->NumberOfRepeatedVertices << "\n";

@@ -11,7 +11,8 @@
  *  2. split polygon edges at vertices that lie on them (T-junctions, Fig. 3.16);
  *  3. triangulate every polygon by recursive splitting, with exact signs;
  *  4. patch gaps: rings of at most MaximumGapEdges open edges;
- *  5. find all triangles that cross, overlap or touch each other wrongly, exactly.
+ *  5. find all triangles that cross, overlap or touch each other wrongly, exactly; on request split
+ *     them along their intersections.
  *
  * Inputs: port 0: vtkPolyData. Polygons and triangle strips are used; vertices and lines are ignored
  * with a warning. Optional cell array BoundaryLabels (two whole numbers for each cell): the region
@@ -19,7 +20,7 @@
  *
  * Outputs: port 0: the surface, triangles only, coordinates in double precision. Cell data are those
  * of the polygon that a triangle comes from (for a patched gap: of the polygon at its first edge),
- * BoundaryLabels is a vtkIntArray; point data are those of the input points.
+ * BoundaryLabels is a vtkIntArray; point data are those of the input points, interpolated where triangles were split.
  * Port 1: the problems found, to look at: line segments, or vertices where a segment is a point, and
  * the polygons concerned. Cell arrays: ProblemKind (int, see ProblemKinds), Cell and OtherCell
  * (vtkIdType): the cells of the input that it is about, -1 for none.
@@ -105,6 +106,27 @@ public:
   ///@}
 
   ///@{
+  /**
+   * Split triangles that intersect along their intersections, instead of refusing them. The cuts are
+   * rounded to double precision, so a cut triangle moves by that much. Default off.
+   */
+  vtkSetMacro(ResolveSelfIntersections, bool);
+  vtkGetMacro(ResolveSelfIntersections, bool);
+  vtkBooleanMacro(ResolveSelfIntersections, bool);
+  ///@}
+
+  ///@{
+  /**
+   * What stays of a surface without labels whose self-intersections were resolved. Off: the boundary
+   * of the union; on: pieces inside of it too, as sheets between regions. With labels all pieces stay
+   * in any case. Default off.
+   */
+  vtkSetMacro(KeepInternalPieces, bool);
+  vtkGetMacro(KeepInternalPieces, bool);
+  vtkBooleanMacro(KeepInternalPieces, bool);
+  ///@}
+
+  ///@{
   /** What the last run met and repaired. */
   vtkGetMacro(NumberOfMergedPoints, vtkIdType);
   vtkGetMacro(NumberOfUnusedPoints, vtkIdType);
@@ -128,6 +150,8 @@ protected:
   double MergeTolerance = 0.0;
   int MaximumGapEdges = 0;
   bool RefuseSelfIntersections = true;
+  bool ResolveSelfIntersections = false;
+  bool KeepInternalPieces = false;
 
   vtkIdType NumberOfMergedPoints = 0;
   vtkIdType NumberOfUnusedPoints = 0;

@@ -294,6 +294,8 @@ int vtkConformingDelaunayMesher::RequestData(
   triangulator->SetInputData(surface);
   triangulator->SetMergeTolerance(this->MergeTolerance);
   triangulator->SetMaximumGapEdges(this->MaximumGapEdges);
+  triangulator->SetResolveSelfIntersections(this->ResolveSelfIntersections);
+  triangulator->SetKeepInternalPieces(this->KeepInternalPieces);
   vtkNew<vtkDelaunaySurfaceRefiner> refiner;
   refiner->SetInputConnection(triangulator->GetOutputPort());
   refiner->SetInputDataObject(1, vtkPointSet::GetData(inputVector[1]));
@@ -353,6 +355,8 @@ void vtkConformingDelaunayMesher::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "MergeTolerance: " << this->MergeTolerance << "\n";
   os << indent << "MaximumGapEdges: " << this->MaximumGapEdges << "\n";
+  os << indent << "ResolveSelfIntersections: " << this->ResolveSelfIntersections << "\n";
+  os << indent << "KeepInternalPieces: " << this->KeepInternalPieces << "\n";
   os << indent << "Criterion: " << this->Criterion << "\n";
   os << indent << "AccuracyAngle: " << this->AccuracyAngle << "\n";
   os << indent << "MinimumAngle: " << this->MinimumAngle << "\n";

@@ -72,6 +72,27 @@ public:
   ///@}
 
   ///@{
+  /**
+   * Split triangles that intersect along their intersections, instead of refusing them. The cuts are
+   * rounded to double precision, so a cut triangle moves by that much. Default off.
+   */
+  vtkSetMacro(ResolveSelfIntersections, bool);
+  vtkGetMacro(ResolveSelfIntersections, bool);
+  vtkBooleanMacro(ResolveSelfIntersections, bool);
+  ///@}
+
+  ///@{
+  /**
+   * What stays of a surface without labels whose self-intersections were resolved. Off: the boundary
+   * of the union; on: pieces inside of it too, as sheets between regions. With labels all pieces stay
+   * in any case. Default off.
+   */
+  vtkSetMacro(KeepInternalPieces, bool);
+  vtkGetMacro(KeepInternalPieces, bool);
+  vtkBooleanMacro(KeepInternalPieces, bool);
+  ///@}
+
+  ///@{
   /** What every boundary triangle has to fulfil, one of Criteria. Default Delaunay. */
   vtkSetClampMacro(Criterion, int, Delaunay, SmallestSphereAndEdges);
   vtkGetMacro(Criterion, int);
@@ -150,6 +171,8 @@ protected:
 
   double MergeTolerance = 0.0;
   int MaximumGapEdges = 0;
+  bool ResolveSelfIntersections = false;
+  bool KeepInternalPieces = false;
   int Criterion = Delaunay;
   double AccuracyAngle = 0.0;
   double MinimumAngle = 0.0;

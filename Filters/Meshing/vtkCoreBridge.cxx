@@ -849,10 +849,10 @@ void CopyTriangleTuples(vtkPolyData* from, const std::vector<cdm::Id>& sources, 
 }
 
 //--------------------------------------------------------------------------------------------------
-void InterpolateTuples(vtkDataSetAttributes* from, vtkIdType count,
-  const std::vector<cdm::PointParents>& newPoints, vtkDataSetAttributes* to)
+void InterpolateTuples(vtkDataSetAttributes* from, const std::vector<vtkIdType>& sources,
+  const std::vector<cdm::PointParents>& newPoints, ParentIds parentIds, vtkDataSetAttributes* to)
 {
-  const vtkIdType total = count + static_cast<vtkIdType>(newPoints.size());
+  const auto count = static_cast<vtkIdType>(sources.size());
   vtkNew<vtkIdList> ids;
   for (int i = 0; i < from->GetNumberOfArrays(); ++i)
   {
@@ -861,14 +861,19 @@ void InterpolateTuples(vtkDataSetAttributes* from, vtkIdType count,
     if (attribute == vtkDataSetAttributes::GLOBALIDS ||
       attribute == vtkDataSetAttributes::PEDIGREEIDS)
     {
-      continue; // there is no id between two ids
+      continue;
     }
     auto target = vtk::TakeSmartPointer(source->NewInstance());
     target->SetName(source->GetName());
     target->SetNumberOfComponents(source->GetNumberOfComponents());
     target->CopyComponentNames(source);
-    target->SetNumberOfTuples(total);
-    target->InsertTuples(0, count, 0, source);
+    target->SetNumberOfTuples(count + static_cast<vtkIdType>(newPoints.size()));
+    for (vtkIdType j = 0; j < count; ++j)
+    {
+      target->SetTuple(j, sources[j], source);
+    }
+    // Parents in the output may be new points themselves: the array is then its own source.
+    vtkAbstractArray* parentArray = parentIds == ParentIds::Input ? source : target.Get();
     for (std::size_t j = 0; j < newPoints.size(); ++j)
     {
       const cdm::PointParents& parents = newPoints[j];
@@ -876,8 +881,7 @@ void InterpolateTuples(vtkDataSetAttributes* from, vtkIdType count,
         parents.Ids.begin(), parents.Ids.end(), [](cdm::Id id) { return id != cdm::NoId; });
       ids->SetNumberOfIds(number);
       std::copy_n(parents.Ids.begin(), number, ids->GetPointer(0));
-      // The parents may be new points themselves, so the array is its own source.
-      target->InterpolateTuple(count + static_cast<vtkIdType>(j), ids, target,
+      target->InterpolateTuple(count + static_cast<vtkIdType>(j), ids, parentArray,
         const_cast<double*>(parents.Weights.data()));
     }
     const int index = to->AddArray(target);

@@ -134,9 +134,19 @@ void CopyCellTuples(vtkPolyData* from, const std::vector<vtkIdType>& sources, vt
 /** The same with sources counted from the first polygon of the surface; cdm::NoId stays none. */
 void CopyTriangleTuples(vtkPolyData* from, const std::vector<cdm::Id>& sources, vtkPolyData* to);
 
-/** The first count tuples are copied, the tuples of new points are interpolated after them. */
-void InterpolateTuples(vtkDataSetAttributes* from, vtkIdType count,
-  const std::vector<cdm::PointParents>& newPoints, vtkDataSetAttributes* to);
+/** What the parents of new points are ids of. */
+enum class ParentIds
+{
+  Input,
+  Output
+};
+
+/**
+ * Copy the tuple sources[i] to i; the tuples of new points are interpolated after them. Arrays of
+ * global and pedigree ids are left out: there is no id between two ids.
+ */
+void InterpolateTuples(vtkDataSetAttributes* from, const std::vector<vtkIdType>& sources,
+  const std::vector<cdm::PointParents>& newPoints, ParentIds parentIds, vtkDataSetAttributes* to);
 
 /**
  * All tuples of first, then the tuples sources[i] of second: the arrays that both have (same name,

@@ -15,6 +15,8 @@
 #include <vtkPolyData.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <numeric>
+
 vtkStandardNewMacro(vtkDelaunaySurfaceRefiner);
 
 namespace
@@ -116,8 +118,10 @@ int vtkDelaunaySurfaceRefiner::RequestData(
   vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
   vtkCoreBridge::FromTriangleMesh(result.Surface, output);
   vtkCoreBridge::CopyTriangleTuples(input, result.Surface.SourceCells, output);
-  vtkCoreBridge::InterpolateTuples(
-    input->GetPointData(), input->GetNumberOfPoints(), result.NewPoints, output->GetPointData());
+  std::vector<vtkIdType> inputPoints(surface.Points.size());
+  std::iota(inputPoints.begin(), inputPoints.end(), 0);
+  vtkCoreBridge::InterpolateTuples(input->GetPointData(), inputPoints, result.NewPoints,
+    vtkCoreBridge::ParentIds::Output, output->GetPointData());
   vtkCoreBridge::FromStructuralEdges(
     result.StructuralEdges, output, vtkPolyData::GetData(outputVector, 1));
   vtkCoreBridge::FromKeptPoints(

@@ -195,6 +195,27 @@ TEST(BoundaryTriangulatorFilter, ListsSelfIntersections)
   EXPECT_GE(CountProblems(filter, vtkBoundaryTriangulator::SelfIntersection), 4);
 }
 
+TEST(BoundaryTriangulatorFilter, ResolvesSelfIntersections)
+{
+  vtkNew<vtkBoundaryTriangulator> filter;
+  filter->SetInputData(MakeCrossingBoxes());
+  filter->ResolveSelfIntersectionsOn();
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->Update();
+  EXPECT_EQ(recorder->Errors, "");
+  // The cube, and half of the other box in front of its side x = 1.
+  double area = 0.0;
+  for (vtkIdType cell = 0; cell < filter->GetOutput()->GetNumberOfCells(); ++cell)
+  {
+    area += vtkTriangle::SafeDownCast(filter->GetOutput()->GetCell(cell))->ComputeArea();
+  }
+  EXPECT_NEAR(area, 6.0 + 4 * 0.25, 1e-12);
+  EXPECT_EQ(filter->GetNumberOfOpenEdges(), 0);
+  EXPECT_GT(filter->GetNumberOfSelfIntersections(), 0);
+  ExpectLinear(filter->GetOutput());
+}
+
 TEST(BoundaryTriangulatorFilter, RefusesEmptyInput)
 {
   vtkNew<vtkBoundaryTriangulator> filter;

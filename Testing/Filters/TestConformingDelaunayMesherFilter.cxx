@@ -193,6 +193,25 @@ TEST(ConformingDelaunayMesherFilter, RepairsPolygonsWithRepeatedPoints)
   EXPECT_NEAR(GetVolume(filter->GetOutput()), 1.0, 1e-13);
 }
 
+TEST(ConformingDelaunayMesherFilter, ResolvesSelfIntersections)
+{
+  vtkNew<vtkConformingDelaunayMesher> filter;
+  filter->SetInputData(MakeCrossingBoxes());
+  filter->ResolveSelfIntersectionsOn();
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->Update();
+  EXPECT_EQ(recorder->Errors, "");
+  // The union, then the same with the part of the second box inside of the first one.
+  EXPECT_NEAR(GetVolume(filter->GetOutput(), 0), 1.125, 1e-12);
+  EXPECT_GT(GetSurface(filter, 2)->GetNumberOfCells(), 0);
+  filter->KeepInternalPiecesOn();
+  filter->Update();
+  EXPECT_EQ(recorder->Errors, "");
+  EXPECT_NEAR(GetVolume(filter->GetOutput()), 1.125, 1e-12);
+  EXPECT_GT(GetVolume(filter->GetOutput(), 2), 0.0);
+}
+
 TEST(ConformingDelaunayMesherFilter, ClosesGapsAndOpenBoundaries)
 {
   SurfaceBuilder builder;
