@@ -159,7 +159,7 @@ Status CheckTetrahedra(const TetMesh& mesh)
   {
     return Status::InvalidInput(
       std::to_string(cells.size()) + " tetrahedra refer to points that do not exist.",
-      std::move(cells));
+      cells);
   }
   return {};
 }
@@ -182,7 +182,7 @@ Status CheckInput(const TetMesh& mesh, const TriangleMesh* boundary)
   {
     return Status::InvalidInput(
       std::to_string(points.size()) + " points of the mesh have coordinates that are not finite.",
-      {}, std::move(points));
+      {}, points);
   }
   if (boundary == nullptr)
   {
@@ -193,7 +193,7 @@ Status CheckInput(const TetMesh& mesh, const TriangleMesh* boundary)
   {
     return Status::InvalidInput(std::to_string(triangles.size()) +
         " triangles of the boundary refer to points that do not exist.",
-      std::move(triangles));
+      triangles);
   }
   if (!boundary->Labels.empty() && boundary->Labels.size() != boundary->Triangles.size())
   {
@@ -204,7 +204,7 @@ Status CheckInput(const TetMesh& mesh, const TriangleMesh* boundary)
   {
     return Status::InvalidInput(std::to_string(points.size()) +
         " points of the boundary have coordinates that are not finite.",
-      {}, std::move(points));
+      {}, points);
   }
   return {};
 }
@@ -800,7 +800,7 @@ Status BuildNeighbors(TetMesh& mesh)
     overfull.erase(std::unique(overfull.begin(), overfull.end()), overfull.end());
     return Status::InvalidInput(
       std::to_string(overfull.size()) + " tetrahedra share a facet with more than one other.",
-      std::move(overfull));
+      overfull);
   }
   return {};
 }

@@ -779,7 +779,7 @@ Status CheckMesh(const TetMesh& mesh)
                        : Status::InvalidInput(std::to_string(wrong.size()) +
                              " tetrahedra are inverted, flat, or have wrong points or neighbours: "
                              "slivers can be removed from valid meshes only.",
-                           std::move(wrong));
+                           wrong);
 }
 } // namespace
 

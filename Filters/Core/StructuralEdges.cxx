@@ -117,7 +117,7 @@ Status CheckSurface(const TriangleMesh& surface)
   {
     return Status::InvalidInput(std::to_string(badPoints.size()) +
         " points have coordinates that are not finite: remove or correct them.",
-      {}, std::move(badPoints));
+      {}, badPoints);
   }
   std::vector<Id> badTriangles;
   for (Id triangle = 0; triangle < numberOfTriangles; ++triangle)

@@ -1,0 +1,406 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "AdvancingFrontTetrahedralizer.h"
+#include "BoundaryTriangulator.h"
+#include "DelaunaySurfaceRefiner.h"
+#include "Measures.h"
+#include "MeshChecks.h"
+#include "RandomComplexes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iostream>
+
+using namespace cdm;
+
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+
+TriangleMesh Triangulate(const PolygonSoup& soup)
+{
+  BoundaryTriangulatorOutput output;
+  const Status status = TriangulateBoundary(soup, {}, {}, output);
+  EXPECT_TRUE(status.IsOk()) << status.Message;
+  return output.Surface;
+}
+
+DelaunaySurfaceRefinerOutput Refine(const TriangleMesh& surface,
+  const DelaunaySurfaceRefinerOptions& options = {}, const std::vector<Vec3>& meshPoints = {})
+{
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &surface;
+  input.MeshPoints = &meshPoints;
+  DelaunaySurfaceRefinerOutput output;
+  const Status status = RefineDelaunaySurface(input, options, {}, output);
+  EXPECT_TRUE(status.IsOk()) << status.Message;
+  EXPECT_TRUE(output.UnresolvedTriangles.empty());
+  return output;
+}
+
+/** Meshes a refined surface and lets the checker judge it. */
+MeshCheckReport MeshAndCheck(const DelaunaySurfaceRefinerOutput& refined,
+  const std::vector<Vec3>& meshPoints = {}, double volumeTolerance = 1e-10)
+{
+  AdvancingFrontTetrahedralizerInput input;
+  input.Surface = &refined.Surface;
+  input.MeshPoints = &meshPoints;
+  AdvancingFrontTetrahedralizerOutput output;
+  const Status status = TetrahedralizeByAdvancingFront(input, {}, {}, output);
+  EXPECT_TRUE(status.IsOk()) << status.Message;
+  MeshCheckReport report;
+  EXPECT_TRUE(CheckTetMesh(output.Mesh, &output.Boundary, {}, report).IsOk());
+  EXPECT_TRUE(report.IsValid(volumeTolerance)) << report.GetSummary();
+  return report;
+}
+
+PolygonSoup MakeBox(const Vec3& size)
+{
+  return CellComplex(size).GetSoup();
+}
+
+/** A box with a plane through it for each height: layers along z. */
+PolygonSoup MakeLayers(const std::vector<double>& heights, double angle = 0.0)
+{
+  CellComplex complex({ 1.0, 1.0, 1.0 });
+  for (double height : heights)
+  {
+    EXPECT_TRUE(complex.Cut({ 0.0, 0.0, 1.0 }, height, 1e-6));
+  }
+  PolygonSoup soup = complex.GetSoup();
+  if (angle != 0.0)
+  {
+    Rotate(soup.Points, (1.0 / std::sqrt(14.0)) * Vec3{ 1.0, 2.0, 3.0 }, angle);
+  }
+  return soup;
+}
+
+/** Prism over a triangle whose angle at the first edge is given in degrees. */
+PolygonSoup MakeWedge(double degrees, double height)
+{
+  const double angle = degrees * Pi / 180.0;
+  PolygonSoup soup;
+  for (double z : { 0.0, height })
+  {
+    soup.Points.push_back({ 0.0, 0.0, z });
+    soup.Points.push_back({ 1.0, 0.0, z });
+    soup.Points.push_back({ std::cos(angle), std::sin(angle), z });
+  }
+  soup.Connectivity = { 0, 2, 1, 3, 4, 5, 0, 1, 4, 3, 1, 2, 5, 4, 2, 0, 3, 5 };
+  soup.Offsets = { 0, 3, 6, 10, 14, 18 };
+  return soup;
+}
+
+double GetLongestEdge(const TriangleMesh& surface)
+{
+  double longest = 0.0;
+  for (const TriangleIds& ids : surface.Triangles)
+  {
+    for (int i = 0; i < 3; ++i)
+    {
+      longest = std::max(
+        longest, Distance(surface.Points[ids[i]], surface.Points[ids[(i + 1) % 3]]));
+    }
+  }
+  return longest;
+}
+
+double GetArea(const TriangleMesh& surface)
+{
+  double area = 0.0;
+  for (const TriangleIds& ids : surface.Triangles)
+  {
+    area +=
+      GetTriangleArea(surface.Points[ids[0]], surface.Points[ids[1]], surface.Points[ids[2]]);
+  }
+  return area;
+}
+}
+
+TEST(DelaunaySurfaceRefiner, LeavesADelaunaySurfaceAlone)
+{
+  const TriangleMesh box = Triangulate(MakeBox({ 1.0, 1.0, 1.0 }));
+  const DelaunaySurfaceRefinerOutput refined = Refine(box);
+  EXPECT_EQ(refined.Surface.Triangles, box.Triangles);
+  EXPECT_EQ(refined.Surface.Points, box.Points);
+  EXPECT_EQ(refined.Surface.Labels, box.Labels);
+  EXPECT_EQ(refined.StructuralEdges.size(), 12u);
+  MeshAndCheck(refined);
+}
+
+TEST(DelaunaySurfaceRefiner, KeepsInputPointsAndExplainsNewOnes)
+{
+  DelaunaySurfaceRefinerOptions options;
+  options.MaximumEdgeLength = 0.3;
+  const TriangleMesh box = Triangulate(MakeBox({ 2.0, 1.0, 1.0 }));
+  const DelaunaySurfaceRefinerOutput refined = Refine(box, options);
+  ASSERT_EQ(refined.Surface.Points.size(), box.Points.size() + refined.NewPoints.size());
+  EXPECT_TRUE(
+    std::equal(box.Points.begin(), box.Points.end(), refined.Surface.Points.begin()));
+  for (std::size_t i = 0; i < refined.NewPoints.size(); ++i)
+  {
+    const Id id = static_cast<Id>(box.Points.size() + i);
+    Vec3 sum;
+    for (int k = 0; k < 3; ++k)
+    {
+      const Id parent = refined.NewPoints[i].Ids[k];
+      ASSERT_LT(parent, id);
+      sum = parent == NoId
+        ? sum
+        : sum + refined.NewPoints[i].Weights[k] * refined.Surface.Points[parent];
+    }
+    EXPECT_LT(Distance(sum, refined.Surface.Points[id]), 1e-14);
+  }
+  for (std::size_t t = 0; t < refined.Surface.Triangles.size(); ++t)
+  {
+    const Id source = refined.Surface.SourceCells[t];
+    ASSERT_GE(source, 0);
+    EXPECT_EQ(refined.Surface.Labels[t], box.Labels[source]);
+  }
+  EXPECT_LE(GetLongestEdge(refined.Surface), 0.3);
+  EXPECT_NEAR(GetArea(refined.Surface), 10.0, 1e-12);
+  MeshAndCheck(refined, {}, 1e-12);
+}
+
+TEST(DelaunaySurfaceRefiner, HonoursAreaAngleAndSizing)
+{
+  const TriangleMesh box = Triangulate(MakeBox({ 1.0, 1.0, 1.0 }));
+  DelaunaySurfaceRefinerOptions options;
+  options.MaximumArea = 0.01;
+  options.MinimumAngle = 20.0;
+  DelaunaySurfaceRefinerOutput refined = Refine(box, options);
+  double smallest = 180.0;
+  for (const TriangleIds& ids : refined.Surface.Triangles)
+  {
+    const Vec3& a = refined.Surface.Points[ids[0]];
+    const Vec3& b = refined.Surface.Points[ids[1]];
+    const Vec3& c = refined.Surface.Points[ids[2]];
+    EXPECT_LE(GetTriangleArea(a, b, c), 0.01);
+    for (const auto& [p, q, r] : { std::tie(a, b, c), std::tie(b, c, a), std::tie(c, a, b) })
+    {
+      smallest = std::min(
+        smallest, std::atan2(Norm(Cross(q - p, r - p)), Dot(q - p, r - p)) * 180.0 / Pi);
+    }
+  }
+  EXPECT_GE(smallest, 20.0);
+  MeshAndCheck(refined);
+
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &box;
+  input.Sizing = [](const Vec3& p) { return 0.05 + 0.4 * p.X; };
+  ASSERT_TRUE(RefineDelaunaySurface(input, {}, {}, refined).IsOk());
+  for (const TriangleIds& ids : refined.Surface.Triangles)
+  {
+    const Vec3 center = (1.0 / 3.0) *
+      (refined.Surface.Points[ids[0]] + refined.Surface.Points[ids[1]] +
+        refined.Surface.Points[ids[2]]);
+    for (int i = 0; i < 3; ++i)
+    {
+      EXPECT_LE(Distance(refined.Surface.Points[ids[i]], refined.Surface.Points[ids[(i + 1) % 3]]),
+        input.Sizing(center) * (1.0 + 1e-12));
+    }
+  }
+  MeshAndCheck(refined);
+}
+
+TEST(DelaunaySurfaceRefiner, KeepsMeshPointsAndDropsThoseTooClose)
+{
+  const TriangleMesh box = Triangulate(MakeBox({ 1.0, 1.0, 1.0 }));
+  const std::vector<Vec3> meshPoints{ { 0.5, 0.5, 0.5 }, { 0.5, 0.5, 1e-5 }, { 0.0, 0.0, 0.0 },
+    { 0.5, 0.5, 0.5 }, { 0.3, 0.4, 0.02 }, { std::nan(""), 0.0, 0.0 } };
+  DelaunaySurfaceRefinerOptions options;
+  options.Criterion = SurfaceCriterion::SmallestSphere;
+  const DelaunaySurfaceRefinerOutput refined = Refine(box, options, meshPoints);
+  EXPECT_EQ(refined.KeptMeshPoints, (std::vector<Id>{ 0, 4 }));
+  EXPECT_EQ(refined.Report.DroppedMeshPoints, 4);
+  EXPECT_FALSE(refined.NewPoints.empty());
+  const MeshCheckReport report =
+    MeshAndCheck(refined, { meshPoints[0], meshPoints[4] }, 1e-12);
+  EXPECT_EQ(report.UnusedPoints, 0);
+  EXPECT_EQ(report.SmallestSphereViolations, 0);
+}
+
+TEST(DelaunaySurfaceRefiner, MirrorsPointsThroughThinLayers)
+{
+  for (double thickness : { 0.02, 0.005, 0.001, 0.0001 })
+  {
+    for (double angle : { 0.0, 0.6 })
+    {
+      DelaunaySurfaceRefinerOptions options;
+      options.MaximumEdgeLength = 0.2;
+      options.Criterion = SurfaceCriterion::SmallestSphere;
+      const TriangleMesh layers =
+        Triangulate(MakeLayers({ 0.5, 0.5 + thickness, 0.5 + 2.0 * thickness }, angle));
+      const DelaunaySurfaceRefinerOutput refined = Refine(layers, options);
+      // Six faces of 25 squares and three layers: the count must not know the thickness.
+      EXPECT_LT(refined.NewPoints.size(), 900u) << thickness << " " << angle;
+      const MeshCheckReport report = MeshAndCheck(refined);
+      EXPECT_EQ(report.SmallestSphereViolations, 0);
+    }
+  }
+}
+
+TEST(DelaunaySurfaceRefiner, EndsAtSharpAngles)
+{
+  for (double degrees : { 60.0, 10.0, 1.0, 0.1 })
+  {
+    for (SurfaceCriterion criterion : { SurfaceCriterion::Delaunay,
+           SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
+    {
+      DelaunaySurfaceRefinerOptions options;
+      options.Criterion = criterion;
+      options.MaximumEdgeLength = 0.25;
+      const DelaunaySurfaceRefinerOutput refined =
+        Refine(Triangulate(MakeWedge(degrees, 0.7)), options);
+      EXPECT_LT(refined.NewPoints.size(), 500u) << degrees;
+      const MeshCheckReport report = MeshAndCheck(refined);
+      if (criterion != SurfaceCriterion::Delaunay)
+      {
+        EXPECT_EQ(report.SmallestSphereViolations, 0);
+      }
+    }
+  }
+}
+
+TEST(DelaunaySurfaceRefiner, KeepsItsCountWhenTheDeviceTurns)
+{
+  DelaunaySurfaceRefinerOptions options;
+  options.MaximumEdgeLength = 0.1;
+  options.Criterion = SurfaceCriterion::SmallestSphere;
+  std::vector<double> counts;
+  for (double angle : { 0.0, 0.17, 0.58, 1.34 })
+  {
+    const DelaunaySurfaceRefinerOutput refined =
+      Refine(Triangulate(MakeLayers({ 0.5, 0.52 }, angle)), options);
+    counts.push_back(static_cast<double>(refined.Surface.Points.size()));
+    MeshAndCheck(refined);
+  }
+  for (double count : counts)
+  {
+    EXPECT_NEAR(count, counts.front(), 0.05 * counts.front());
+  }
+}
+
+TEST(DelaunaySurfaceRefiner, DoesTheSameForAnyScale)
+{
+  DelaunaySurfaceRefinerOptions options;
+  const PolygonSoup wedge = MakeWedge(7.0, 0.3);
+  const std::size_t expected = Refine(Triangulate(wedge), options).Surface.Points.size();
+  for (double scale : { 0x1p-30, 0x1p+20 })
+  {
+    PolygonSoup scaled = wedge;
+    for (Vec3& p : scaled.Points)
+    {
+      p = scale * p;
+    }
+    const DelaunaySurfaceRefinerOutput refined = Refine(Triangulate(scaled), options);
+    EXPECT_EQ(refined.Surface.Points.size(), expected);
+    MeshAndCheck(refined);
+  }
+}
+
+/** Boxes cut by random planes, some almost parallel, in random positions: every criterion ends. */
+TEST(DelaunaySurfaceRefiner, EndsOnRandomComplexes)
+{
+  for (std::uint64_t seed = 1; seed <= 30; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 generator(seed);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    CellComplex complex({ 1.0, 1.0, 1.0 });
+    const Vec3 common = MakeRandomDirection(generator);
+    for (std::uint64_t cut = 0; cut <= seed % 6; ++cut)
+    {
+      Vec3 direction = MakeRandomDirection(generator);
+      if (seed % 3 == 0)
+      {
+        direction = common + 0.02 * direction;
+        direction = (1.0 / Norm(direction)) * direction;
+      }
+      const Vec3 inside{ uniform(generator), uniform(generator), uniform(generator) };
+      complex.Cut(direction, Dot(direction, inside), 1e-4);
+    }
+    PolygonSoup soup = complex.GetSoup();
+    Rotate(soup.Points, MakeRandomDirection(generator), uniform(generator));
+    const TriangleMesh surface = Triangulate(soup);
+    for (SurfaceCriterion criterion : { SurfaceCriterion::Delaunay,
+           SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
+    {
+      DelaunaySurfaceRefinerOptions options;
+      options.Criterion = criterion;
+      options.MaximumNewPoints = 20000;
+      const MeshCheckReport report = MeshAndCheck(Refine(surface, options));
+      if (criterion != SurfaceCriterion::Delaunay)
+      {
+        EXPECT_EQ(report.SmallestSphereViolations, 0);
+      }
+    }
+  }
+}
+
+TEST(DelaunaySurfaceRefiner, IsDeterministic)
+{
+  DelaunaySurfaceRefinerOptions options;
+  options.MaximumEdgeLength = 0.2;
+  const TriangleMesh surface = Triangulate(MakeLayers({ 0.3, 0.31 }, 0.4));
+  const DelaunaySurfaceRefinerOutput first = Refine(surface, options);
+  const DelaunaySurfaceRefinerOutput second = Refine(surface, options);
+  EXPECT_EQ(first.Surface.Points, second.Surface.Points);
+  EXPECT_EQ(first.Surface.Triangles, second.Surface.Triangles);
+}
+
+TEST(DelaunaySurfaceRefiner, NamesWhatIsWrong)
+{
+  DelaunaySurfaceRefinerInput input;
+  DelaunaySurfaceRefinerOutput output;
+  TriangleMesh surface;
+  input.Surface = &surface;
+  EXPECT_EQ(RefineDelaunaySurface(input, {}, {}, output).Code, StatusCode::InvalidInput);
+
+  surface.Points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 2, 0, 0 } };
+  surface.Triangles = { { 0, 1, 2 }, { 0, 1, 3 } };
+  Status status = RefineDelaunaySurface(input, {}, {}, output);
+  EXPECT_EQ(status.Cells, (std::vector<Id>{ 1 }));
+  EXPECT_TRUE(output.Surface.Triangles.empty());
+
+  surface.Points[3] = { 0, 1, 0 };
+  status = RefineDelaunaySurface(input, {}, {}, output);
+  EXPECT_EQ(status.Points, (std::vector<Id>{ 2, 3 }));
+
+  surface.Points[3].Y = std::nan("");
+  status = RefineDelaunaySurface(input, {}, {}, output);
+  EXPECT_EQ(status.Points, (std::vector<Id>{ 3 }));
+}
+
+TEST(DelaunaySurfaceRefiner, StopsAtItsLimitAndSaysSo)
+{
+  DelaunaySurfaceRefinerOptions options;
+  options.MaximumNewPoints = 3;
+  options.Criterion = SurfaceCriterion::SmallestSphere;
+  CellComplex complex({ 1.0, 1.0, 1.0 });
+  ASSERT_TRUE(complex.Cut({ 0.36, 0.48, 0.8 }, 0.9, 1e-4));
+  ASSERT_TRUE(complex.Cut({ 0.6, 0.0, 0.8 }, 0.72, 1e-4));
+  const TriangleMesh surface = Triangulate(complex.GetSoup());
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &surface;
+  DelaunaySurfaceRefinerOutput output;
+  ASSERT_TRUE(RefineDelaunaySurface(input, options, {}, output).IsOk());
+  EXPECT_EQ(output.NewPoints.size(), 3u);
+  EXPECT_FALSE(output.UnresolvedTriangles.empty());
+}
+
+TEST(DelaunaySurfaceRefiner, ReportsProgressAndAborts)
+{
+  DelaunaySurfaceRefinerOptions options;
+  options.MaximumEdgeLength = 0.02;
+  const TriangleMesh surface = Triangulate(MakeBox({ 1.0, 1.0, 1.0 }));
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &surface;
+  DelaunaySurfaceRefinerOutput output;
+  double last = 0.0;
+  const ExecutionContext context(
+    [&last](double fraction, const char*) { last = fraction; }, [&last]() { return last > 0.5; });
+  EXPECT_TRUE(RefineDelaunaySurface(input, options, context, output).IsAborted());
+  EXPECT_GT(last, 0.5);
+  EXPECT_TRUE(output.Surface.Triangles.empty());
+}
