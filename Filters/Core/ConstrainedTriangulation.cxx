@@ -20,7 +20,10 @@ constexpr double TieOfCotangents = 1e-9;
 double GetCotangent(const Vec3& apex, const Vec3& a, const Vec3& b)
 {
   const double sine = Norm(Cross(a - apex, b - apex));
-  return sine > 0.0 ? Dot(a - apex, b - apex) / sine : 0.0;
+  const double cosine = Dot(a - apex, b - apex);
+  // A triangle without height after rounding: 0 or 180 degrees.
+  constexpr double limit = 1e150;
+  return std::abs(cosine) < limit * sine ? cosine / sine : cosine < 0.0 ? -limit : limit;
 }
 } // namespace
 

@@ -198,6 +198,7 @@ private:
   bool RotateAboutAxis(Id t, Id disturbing, Vec3& target) const;
   bool RotateAboutCorner(Id t, Id disturbing, Vec3& target) const;
   bool SplitSegment(Id segment, Id disturbing);
+  bool SplitLongestEdge(Id t);
   Vec3 PlaceOnSegment(Id segment, Id disturbing) const;
   Id FindSharedCorner(Id segment, Id point) const;
 
@@ -973,16 +974,22 @@ bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMir
     {
       const Id segment = -1 - adjacent;
       const EdgeIds& ends = surface.GetSegment(segment).Points;
-      const bool isDisturbed = disturbing != NoId &&
-        InDiametralSphere(
-          this->Points[ends[0]], this->Points[ends[1]], this->Points[disturbing]) >= 0;
-      return this->SplitSegment(segment, isDisturbed ? disturbing : NoId);
+      const auto isDisturbedBy = [&](const Vec3& p) {
+        return InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], p) >= 0;
+      };
+      const bool isDisturbed = disturbing != NoId && isDisturbedBy(this->Points[disturbing]);
+      // On a curved facet the walk may lead to an edge that has nothing to do with the triangle.
+      return (isDisturbed || isDisturbedBy(target) || isDisturbedBy(a) ||
+               isDisturbedBy(this->Points[start[1]]) || isDisturbedBy(this->Points[start[2]])) &&
+        this->SplitSegment(segment, isDisturbed ? disturbing : NoId);
     }
     previous = current;
     current = adjacent / 3;
   }
 
-  if (this->GetNearestDistance(position) < std::max(this->MinimumEdge, 1e-300))
+  // A point that does not disturb the triangle would not remove it (on curved facets).
+  if (this->GetNearestDistance(position) < std::max(this->MinimumEdge, 1e-300) ||
+    InEquatorialSphere(a, this->Points[start[1]], this->Points[start[2]], position) <= 0)
   {
     return false;
   }
@@ -1034,6 +1041,50 @@ bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMir
   }
   this->Legalize(uses);
   return true;
+}
+
+bool SurfaceRefiner::SplitLongestEdge(Id t)
+{
+  const TriangleIds ids = this->Surface->GetTriangle(t).Points;
+  int longest = 0;
+  double length = 0.0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const double candidate = Distance(this->Points[ids[i]], this->Points[ids[(i + 1) % 3]]);
+    if (candidate > length)
+    {
+      longest = i;
+      length = candidate;
+    }
+  }
+  const Id use = 3 * t + longest;
+  const Id segment = this->Surface->GetSegmentAt(t, longest);
+  if (segment != NoId)
+  {
+    return this->SplitSegment(segment, this->Surface->GetApex(use));
+  }
+  const EdgeIds ends{ ids[longest], ids[(longest + 1) % 3] };
+  const Vec3 a = this->Points[ends[0]];
+  const Vec3 edge = this->Points[ends[1]] - a;
+  const double foot =
+    Dot(this->Points[this->Surface->GetApex(use)] - a, edge) / SquaredNorm(edge);
+  for (double weight : { std::min(std::max(foot, 0.25), 0.75), 0.5 })
+  {
+    const Vec3 position = a + weight * edge;
+    if (0.25 * length >= this->MinimumEdge && this->GetNearestDistance(position) > 0.0 &&
+      this->Surface->CanSplitSmoothEdge(use, position))
+    {
+      const PointParents parents{ { ends[0], ends[1], NoId }, { 1.0 - weight, weight, 0.0 } };
+      const Id point =
+        this->AddPoint(position, parents, { this->Surface->GetTriangle(t).Facet });
+      ++this->Output.Report.FacetPoints;
+      std::vector<Id> uses;
+      this->Surface->SplitSmoothEdge(use, point, uses);
+      this->Legalize(uses);
+      return true;
+    }
+  }
+  return false;
 }
 
 bool SurfaceRefiner::FindTooCoarse(Id t, Id& segment) const
@@ -1156,7 +1207,7 @@ void SurfaceRefiner::Process(Id t)
   const bool isMirrored =
     disturbing != NoId && this->MirrorDisturbingPoint(t, disturbing, target);
   if ((isMirrored && this->ResolveInFacet(t, disturbing, target, true)) ||
-    this->ResolveInFacet(t, disturbing, getCircumcenter(t), false))
+    this->ResolveInFacet(t, disturbing, getCircumcenter(t), false) || this->SplitLongestEdge(t))
   {
     this->Enqueue(t);
     return;

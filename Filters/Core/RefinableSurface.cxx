@@ -279,23 +279,29 @@ Id RefinableSurface::SplitUse(Id use, Id point)
   return 3 * added;
 }
 
+bool RefinableSurface::CanSplitUse(Id use, const Vec3& position) const
+{
+  const TriangleIds& ids = this->Triangles[use / 3].Points;
+  const Vec3& a = this->Points[ids[use % 3]];
+  const Vec3& b = this->Points[ids[(use % 3 + 1) % 3]];
+  const Vec3& c = this->Points[this->GetApex(use)];
+  int turn = 0;
+  const int axis = this->GetProjectionAxis(use / 3, turn);
+  return turn != 0 && ProjectedOrientation(axis, a, position, c) == turn &&
+    ProjectedOrientation(axis, position, b, c) == turn;
+}
+
 bool RefinableSurface::CanSplitSegment(Id segment, const Vec3& position) const
 {
-  for (Id use : this->Segments[segment].Uses)
-  {
-    const TriangleIds& ids = this->Triangles[use / 3].Points;
-    const Vec3& a = this->Points[ids[use % 3]];
-    const Vec3& b = this->Points[ids[(use % 3 + 1) % 3]];
-    const Vec3& c = this->Points[this->GetApex(use)];
-    int turn = 0;
-    const int axis = this->GetProjectionAxis(use / 3, turn);
-    if (turn == 0 || ProjectedOrientation(axis, a, position, c) != turn ||
-      ProjectedOrientation(axis, position, b, c) != turn)
-    {
-      return false;
-    }
-  }
-  return true;
+  const std::vector<Id>& uses = this->Segments[segment].Uses;
+  return std::all_of(uses.begin(), uses.end(),
+    [this, &position](Id use) { return this->CanSplitUse(use, position); });
+}
+
+bool RefinableSurface::CanSplitSmoothEdge(Id use, const Vec3& position) const
+{
+  return this->CanSplitUse(use, position) &&
+    this->CanSplitUse(this->Triangles[use / 3].Adjacent[use % 3], position);
 }
 
 void RefinableSurface::SplitSegment(Id segment, Id point, std::vector<Id>& uses)

@@ -85,6 +85,9 @@ public:
    */
   bool CanSplitSegment(Id segment, const Vec3& position) const;
 
+  /** The same for a smooth edge. */
+  bool CanSplitSmoothEdge(Id use, const Vec3& position) const;
+
   /** Split a segment at a point; uses lists the edges opposite to the point. */
   void SplitSegment(Id segment, Id point, std::vector<Id>& uses);
 
@@ -105,6 +108,7 @@ public:
 
 private:
   void Connect(Id use, Id adjacent, Id formerUse);
+  bool CanSplitUse(Id use, const Vec3& position) const;
   Id SplitUse(Id use, Id point);
   void TurnTriangle(Id t);
   void MakeFacets();
