@@ -906,20 +906,18 @@ bool SurfaceRefiner::MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) co
   const double height = std::abs(Dot(unit, p - a));
   // Type R: about the line that the two facets share, if they meet at an acute angle there, or
   // about a corner that they share.
-  if (this->RotateAboutAxis(t, disturbing, target))
+  if (this->RotateAboutAxis(t, disturbing, target) ||
+    this->RotateAboutCorner(t, disturbing, target))
   {
     // However close: only points that match exactly leave each other alone.
     return true;
   }
-  if (!this->RotateAboutCorner(t, disturbing, target))
+  if (height > ThinLayerRatio * radius)
   {
-    if (height > ThinLayerRatio * radius)
-    {
-      return false;
-    }
-    // Type P: along the normal.
-    target = p - Dot(unit, p - a) * unit;
+    return false;
   }
+  // Type P: along the normal.
+  target = p - Dot(unit, p - a) * unit;
   return this->GetNearestDistance(target, disturbing) >= MirrorClearance * height;
 }
 

@@ -28,6 +28,11 @@ namespace
 constexpr double ToleranceRatio = 1e-11;
 // The tolerance of a round relative to that of the one before.
 constexpr double ToleranceGrowth = 2.0;
+// In so many rounds triangles that overlap up to the tolerance count as intersecting, too. In later
+// ones the tolerance is too large for that.
+constexpr int RoundsWithOverlaps = 3;
+// The abort function is asked once in so many triangles.
+constexpr Id StepsBetweenChecks = 1024;
 // Determinants are trusted up to this relative error.
 constexpr double DeterminantError = 1e-14;
 
@@ -208,6 +213,64 @@ private:
   double Width;
   std::unordered_map<Cell, std::vector<Id>, CellHash> Cells;
 };
+
+double GetHeight(const std::vector<Vec3>& points, Id point, const TriangleIds& t)
+{
+  const Vec3& a = points[t[0]];
+  const Vec3 normal = Cross(points[t[1]] - a, points[t[2]] - a);
+  const double length = Norm(normal);
+  return length > 0.0 ? std::abs(Dot(normal, points[point] - a)) / length : 0.0;
+}
+
+/** Whether s lies in the plane of t, up to a tolerance. */
+bool IsNearPlane(
+  const std::vector<Vec3>& points, const TriangleIds& s, const TriangleIds& t, double tolerance)
+{
+  return std::all_of(
+    s.begin(), s.end(), [&](Id id) { return GetHeight(points, id, t) <= tolerance; });
+}
+
+/** Width of the common part of two triangles that are nearly coplanar; rounded. */
+double GetOverlapWidth(
+  const std::vector<Vec3>& points, const TriangleIds& s, const TriangleIds& t)
+{
+  // Cut s along the edges of t, with heights above them in the plane of t.
+  const Vec3& origin = points[t[0]];
+  const Vec3 normal = Cross(points[t[1]] - origin, points[t[2]] - origin);
+  std::vector<Vec3> polygon{ points[s[0]], points[s[1]], points[s[2]] };
+  std::vector<Vec3> rest;
+  for (int i = 0; i < 3 && !polygon.empty(); ++i)
+  {
+    const Vec3& a = points[t[i]];
+    const Vec3 inwards = Cross(normal, points[t[(i + 1) % 3]] - a);
+    rest.clear();
+    for (std::size_t k = 0; k < polygon.size(); ++k)
+    {
+      const Vec3& p = polygon[k];
+      const Vec3& q = polygon[(k + 1) % polygon.size()];
+      const double heightP = Dot(inwards, p - a);
+      const double heightQ = Dot(inwards, q - a);
+      if (heightP >= 0.0)
+      {
+        rest.push_back(p);
+      }
+      if ((heightP < 0.0) != (heightQ < 0.0))
+      {
+        rest.push_back(Divide(p, q, heightP, heightQ));
+      }
+    }
+    polygon.swap(rest);
+  }
+  Vec3 area;
+  double longest = 0.0;
+  for (std::size_t k = 1; k < polygon.size(); ++k)
+  {
+    area = area + Cross(polygon[k - 1] - polygon[0], polygon[k] - polygon[0]);
+    longest = std::max({ longest, Distance(polygon[k], polygon[k - 1]),
+      Distance(polygon[k], polygon[0]) });
+  }
+  return longest > 0.0 ? Norm(area) / longest : 0.0;
+}
 
 /** A triangle or what was cut from one. */
 struct Piece
@@ -417,20 +480,10 @@ private:
     return ratio > 0.0 && ratio < 1.0 && Distance(p, from + ratio * direction) <= this->Tolerance;
   }
 
-  double GetHeight(Id point, const TriangleIds& t) const
-  {
-    const Vec3& a = this->Points[t[0]];
-    const Vec3 normal = Cross(this->Points[t[1]] - a, this->Points[t[2]] - a);
-    const double length = Norm(normal);
-    return length > 0.0 ? std::abs(Dot(normal, this->Points[point] - a)) / length : 0.0;
-  }
-
-  /** Whether s lies in the plane of t, up to the tolerance. */
   bool IsNearPlane(Id s, Id t) const
   {
-    const TriangleIds& ids = this->Triangles[s];
-    return std::all_of(ids.begin(), ids.end(),
-      [&](Id id) { return this->GetHeight(id, this->Triangles[t]) <= this->Tolerance; });
+    return cdm::IsNearPlane(
+      this->Points, this->Triangles[s], this->Triangles[t], this->Tolerance);
   }
 
   /** Triangles that are narrower than the tolerance are closed: the apex divides the long edge. */
@@ -621,7 +674,7 @@ private:
     const TriangleIds& other = this->Triangles[t];
     for (const Id id : this->Triangles[s])
     {
-      if (!HasVertex(other, id) && this->GetHeight(id, other) <= this->Tolerance)
+      if (!HasVertex(other, id) && GetHeight(this->Points, id, other) <= this->Tolerance)
       {
         int sign = 0;
         const int axis = FindProjectionAxis(
@@ -1035,6 +1088,10 @@ private:
     {
       return false;
     }
+    if (this->Report.Rounds < RoundsWithOverlaps && !this->AddOverlaps(active, context, pairs))
+    {
+      return false;
+    }
     for (Piece& piece : this->Pieces)
     {
       piece.IsActive = piece.IsDegenerate;
@@ -1049,6 +1106,57 @@ private:
     {
       this->Pieces[pair[0]].IsActive = this->Pieces[pair[1]].IsActive = true;
     }
+    return true;
+  }
+
+  /**
+   * Coplanar but for rounding errors, triangles that cover each other may or may not intersect: cut
+   * all of them, or sheets are left that lie a hair beside each other, and cut each other up later.
+   */
+  bool AddOverlaps(const std::vector<char>& active, const ExecutionContext& context,
+    std::vector<TrianglePair>& pairs)
+  {
+    const Id n = static_cast<Id>(this->Triangles.size());
+    const Vec3 margin{ this->Tolerance, this->Tolerance, this->Tolerance };
+    std::vector<Box> boxes(n);
+    for (Id t = 0; t < n; ++t)
+    {
+      for (const Id id : this->Triangles[t])
+      {
+        boxes[t].Extend(this->Points[id]);
+      }
+      boxes[t].Low = boxes[t].Low - margin;
+      boxes[t].High = boxes[t].High + margin;
+    }
+    const BoxTree tree(boxes);
+    for (Id s = 0; s < n; ++s)
+    {
+      if (s % StepsBetweenChecks == 0 && !context.Continue(1.0, "Looking for overlaps"))
+      {
+        return false;
+      }
+      if (!active[s])
+      {
+        continue;
+      }
+      tree.VisitOverlaps(boxes[s],
+        [&](Id t)
+        {
+          if ((t < s && !active[t]) || t > s)
+          {
+            const TriangleIds& a = this->Triangles[s];
+            const TriangleIds& b = this->Triangles[t];
+            if ((IsNearPlane(this->Points, a, b, this->Tolerance) ||
+                  IsNearPlane(this->Points, b, a, this->Tolerance)) &&
+              GetOverlapWidth(this->Points, a, b) > 4.0 * this->Tolerance)
+            {
+              pairs.push_back({ std::min(s, t), std::max(s, t) });
+            }
+          }
+        });
+    }
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     return true;
   }
 
@@ -1205,16 +1313,36 @@ private:
     const Vec3& a = this->Points[root[0]];
     const Vec3& b = this->Points[root[1]];
     const Vec3& c = this->Points[root[2]];
-    const Vec3 normal = Cross(b - a, c - a);
-    const double area = SquaredNorm(normal);
     // Rounding must not take a point outside, nor give a share to the opposite corner of an edge.
     constexpr double negligible = 1e-9;
-    const auto getWeight = [&](const Vec3& q, const Vec3& r)
+    const auto clip = [](double weight) { return weight < negligible ? 0.0 : weight; };
+    const Vec3 normal = Cross(b - a, c - a);
+    const double area = SquaredNorm(normal);
+    const double longest =
+      std::max({ SquaredNorm(b - a), SquaredNorm(c - b), SquaredNorm(a - c) });
+    if (area > negligible * negligible * longest * longest)
     {
-      const double weight = area > 0.0 ? Dot(normal, Cross(r - q, p - q)) / area : 1.0 / 3.0;
-      return weight < negligible ? 0.0 : weight;
-    };
-    parents.Weights = { getWeight(b, c), getWeight(c, a), getWeight(a, b) };
+      const auto getWeight = [&](const Vec3& q, const Vec3& r)
+      { return clip(Dot(normal, Cross(r - q, p - q)) / area); };
+      parents.Weights = { getWeight(b, c), getWeight(c, a), getWeight(a, b) };
+    }
+    else
+    {
+      // A triangle without a reliable area: the position along its longest edge.
+      for (int i = 0; i < 3; ++i)
+      {
+        const int j = (i + 1) % 3;
+        const Vec3& from = this->Points[root[i]];
+        const Vec3 direction = this->Points[root[j]] - from;
+        if (SquaredNorm(direction) == longest)
+        {
+          const double ratio = std::min(1.0, clip(Dot(direction, p - from) / longest));
+          parents.Weights = { 0.0, 0.0, 0.0 };
+          parents.Weights[i] = clip(1.0 - ratio);
+          parents.Weights[j] = ratio;
+        }
+      }
+    }
     const double sum = parents.Weights[0] + parents.Weights[1] + parents.Weights[2];
     for (double& weight : parents.Weights)
     {

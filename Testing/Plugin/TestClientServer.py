@@ -13,7 +13,7 @@ import sys
 def RunClient(port):
     from paraview import simple
 
-    simple.Connect("localhost", port)
+    simple.Connect("127.0.0.1", port)
     simple.LoadPlugin(os.environ["CDM_PLUGIN"], remote=True, ns=globals())
     mesher = ConformingDelaunayMesher(Input=simple.Box(), MaximumEdgeLength=0.5)
     mesher.UpdatePipeline()
@@ -26,7 +26,7 @@ def RunClient(port):
 
 def RunBoth():
     with socket.socket() as probe:
-        probe.bind(("localhost", 0))
+        probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     server = subprocess.Popen([os.environ["CDM_PVSERVER"], "--server-port=%d" % port],
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)

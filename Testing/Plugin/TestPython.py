@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Python package works beside the proxies: pipelines of vtk classes, and proxies' own objects."""
+"""The Python package works beside the proxies: in vtk pipelines, and as the proxies' objects."""
 
 import os
 
