@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AdvancingFrontTetrahedralizer.h"
 
+#include "ApexSearch.h"
 #include "CosphericalCell.h"
-#include "FacetTable.h"
-#include "FourthPointSearch.h"
+#include "Measures.h"
+#include "PointTree.h"
 #include "Predicates.h"
+#include "SpatialSort.h"
+#include "StarTable.h"
 #include "SurfaceDelaunayTest.h"
 #include "SurfaceSides.h"
 
@@ -37,37 +40,134 @@ int GetRelativeTurn(const TriangleIds& s, const TriangleIds& t)
   return s[1] == t[(first + 1) % 3] ? 1 : -1;
 }
 
+/** The eight corners of a box: its faces, counter-clockwise seen from outside. */
+constexpr int BoxFaces[6][4] = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 },
+  { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
+
+/** What is known of the space that a side of the surface looks into before it is reached. */
+constexpr Id UnknownSpace = -2;
+constexpr Id OutsideSpace = -1;
+
+/**
+ * A set of small numbers that gives its smallest one: the vertices that the front has reached.
+ * One bit for each number, in a tree of words.
+ */
+class OrderedSet
+{
+public:
+  void Reset(std::size_t size)
+  {
+    this->Levels.clear();
+    do
+    {
+      size = (size + 63) / 64;
+      this->Levels.emplace_back(size, 0);
+    } while (size > 1);
+  }
+
+  void Insert(Id number)
+  {
+    std::size_t i = static_cast<std::size_t>(number);
+    for (std::vector<std::uint64_t>& level : this->Levels)
+    {
+      std::uint64_t& word = level[i / 64];
+      const std::uint64_t before = word;
+      word |= std::uint64_t(1) << (i % 64);
+      if (before != 0)
+      {
+        return;
+      }
+      i /= 64;
+    }
+  }
+
+  bool IsEmpty() const { return this->Levels.back()[0] == 0; }
+
+  Id PopSmallest()
+  {
+    std::size_t i = 0;
+    for (std::size_t level = this->Levels.size(); level-- > 0;)
+    {
+      i = 64 * i + CountTrailingZeros64(this->Levels[level][i]);
+    }
+    const Id smallest = static_cast<Id>(i);
+    for (std::vector<std::uint64_t>& level : this->Levels)
+    {
+      std::uint64_t& word = level[i / 64];
+      word &= ~(std::uint64_t(1) << (i % 64));
+      if (word != 0)
+      {
+        break;
+      }
+      i /= 64;
+    }
+    return smallest;
+  }
+
+private:
+  static std::size_t CountTrailingZeros64(std::uint64_t word)
+  {
+    const unsigned low = static_cast<unsigned>(word);
+    return low != 0 ? CountTrailingZeros(low)
+                    : 32 + CountTrailingZeros(static_cast<unsigned>(word >> 32));
+  }
+
+  std::vector<std::vector<std::uint64_t>> Levels;
+};
+
 class AdvancingFront
 {
 public:
   AdvancingFront(const AdvancingFrontTetrahedralizerInput& input,
     const AdvancingFrontTetrahedralizerOptions& options, const ExecutionContext& context,
     AdvancingFrontTetrahedralizerOutput& output)
-    : Input(input)
-    , Options(options)
-    , Context(context)
-    , Output(output)
-    , Surface(output.Boundary)
-    , Points(output.Mesh.Points)
-    , Mesh(output.Mesh)
-    , Search(Points, Octree)
-    , Cell(Points)
+    : Input(input), Options(options), Context(context), Output(output), Surface(output.Boundary),
+      Points(output.Mesh.Points), Mesh(output.Mesh), Search(Tree), Cell(Points)
   {
   }
 
   Status Run();
 
 private:
+  /** A seed of growth: a side of the surface, its region, and the space it looks into. */
+  struct SideSeed
+  {
+    Id Side;
+    Id Region;
+    Id Space;
+  };
+  /** A facet of the front in the list of its first vertex; (vertex, B, C) looks out. */
+  struct OpenFacet
+  {
+    Id B;
+    Id C;
+    Id Facet;
+    Id Next;
+  };
+
   Status CollectPoints();
   Status TurnDiagonals();
   Status FindSeeds();
   bool LocateSeed(const Vec3& position, Id& side) const;
-  Status GrowRegion(Id side, Id region);
-  Status CompleteFacet(const TriangleIds& base, Id region, Id sourceFacet);
+  Status FindFirstFacet(TriangleIds& facet);
+  void PrepareFront();
+  Status GrowRegion(const SideSeed& seed);
+  Status GrowHull();
+  Status Advance(Id region);
+  Status CompleteStar(Id vertex, Id region);
+  Status OpenStar(Id vertex);
+  Status CompleteFacet(Id b, Id c, Id region, Id sourceFacet);
+  Status SplitCell(Id b, Id c, Id region);
+  Status AddBox(Id region);
   Status AddTetrahedron(const TetrahedronIds& tetrahedron, Id region);
+  Status AttachToStar(Id b, Id c, Id facet);
   Status AttachToSurface(Id triangle, const TriangleIds& outward, Id facet, Id region);
   void AddHullTriangle(const TriangleIds& outward, Id facet, Id region);
+  bool IsFinished(Id vertex) const;
+  bool IsFinishedForNow(Id vertex) const;
+  Status CollectFront();
   void Finish();
+  void SortHull();
   void SortTetrahedra();
   TriangleIds GetSideTriangle(Id side) const
   {
@@ -86,6 +186,11 @@ private:
     return this->Options.MaximumNumberOfTetrahedra > 0 &&
       static_cast<Id>(this->Mesh.Tetrahedra.size()) >= this->Options.MaximumNumberOfTetrahedra;
   }
+  TriangleIds ToPoints(Id a, Id b, Id c) const
+  {
+    return { this->Order[a], this->Order[b], this->Order[c] };
+  }
+  bool HasSurface() const { return this->NumberOfSurfaceTriangles > 0; }
 
   const AdvancingFrontTetrahedralizerInput& Input;
   const AdvancingFrontTetrahedralizerOptions& Options;
@@ -99,25 +204,49 @@ private:
   bool HasLabels = false;
   Id NumberOfSurfacePoints = 0;
   Id NumberOfSurfaceTriangles = 0;
-  PointOctree Octree;
-  FourthPointSearch Search;
+
+  /**
+   * Vertices are points in the order of a Hilbert curve, without copies: the point of each vertex,
+   * and the vertex of each point or NoId. Until the end tetrahedra are made of vertices.
+   */
+  std::vector<Id> Order;
+  std::vector<Id> Vertices;
+  PointTree Tree;
+  ApexSearch Search;
   CosphericalCell Cell;
-  FourthPoint Found;
+  Apex Found;
 
   /** For each side of the surface: the tetrahedron facet attached to it, or NoId. */
   std::vector<Id> SideFacets;
   /** Region that the front reached the side with. */
   std::vector<Id> SideRegions;
-  std::vector<std::pair<Id, Id>> Seeds; // side, region
-  /** Open facets of the front by their points; surface triangle t is stored as -2 - t. */
-  FacetTable Facets;
-  std::vector<Id> Queue;
+  /** What each side looks into, as far as it is known before. */
+  std::vector<Id> SideSpaces;
+  std::vector<SideSeed> Seeds;
+  /** Surface triangles around each vertex. */
+  std::vector<Id> IncidentStarts;
+  std::vector<Id> Incident;
+
+  /** Vertices with facets of the front, and the list of those of which it is the first one. */
+  OrderedSet Reached;
+  std::vector<Id> Lists;
+  std::vector<OpenFacet> OpenFacets;
+  Id FreeFacet = NoId;
+  /** The vertex whose star is being completed, and the facets around it. */
+  Id Vertex = NoId;
+  StarTable Star;
+  std::vector<StarTable::Entry> Stack;
+  Id CurrentSpace = UnknownSpace;
+  Id CurrentRegion = NoId;
+  /** Vertices that dropped out for the present region only. */
+  std::vector<Id> Postponed;
   bool IsStopped = false;
 };
 
 Status AdvancingFront::CollectPoints()
 {
-  const TriangleMesh& surface = *this->Input.Surface;
+  const TriangleMesh none;
+  const TriangleMesh& surface = this->Input.Surface != nullptr ? *this->Input.Surface : none;
   this->Surface = surface;
   this->HasLabels = !surface.Labels.empty();
   this->Surface.SourceCells.resize(surface.Triangles.size());
@@ -135,9 +264,10 @@ Status AdvancingFront::CollectPoints()
     this->Points.insert(
       this->Points.end(), this->Input.MeshPoints->begin(), this->Input.MeshPoints->end());
   }
-  if (surface.Triangles.empty())
+  if (surface.Triangles.empty() && !this->Options.CloseOpenBoundary)
   {
-    return Status::InvalidInput("The surface has no triangles; there is nothing to mesh.");
+    return Status::InvalidInput("The surface has no triangles; there is nothing to mesh. Switch "
+                                "CloseOpenBoundary on to mesh the convex hull of points.");
   }
   for (std::size_t i = 0; i < this->Points.size(); ++i)
   {
@@ -162,39 +292,32 @@ Status AdvancingFront::CollectPoints()
   }
 
   // Copies of a point cannot be told apart: they are an error on the surface, and left out
-  // among the mesh points. The lower number wins.
-  std::vector<Id> order(this->Points.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [this](Id i, Id j) {
-    return this->Points[i] != this->Points[j] ? this->Points[i] < this->Points[j] : i < j;
-  });
-  std::vector<char> isCopy(this->Points.size(), 0);
+  // among the mesh points. The lower number wins. Along the curve they follow each other.
+  this->Order.resize(this->Points.size());
+  std::iota(this->Order.begin(), this->Order.end(), 0);
+  SortAlongHilbertCurve(this->Points, this->Order);
   std::vector<Id> coincident;
-  for (std::size_t i = 1; i < order.size(); ++i)
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < this->Order.size(); ++i)
   {
-    if (this->Points[order[i]] == this->Points[order[i - 1]])
+    const Id point = this->Order[i];
+    if (kept == 0 || this->Points[point] != this->Points[this->Order[kept - 1]])
     {
-      isCopy[order[i]] = 1;
-      if (order[i] < this->NumberOfSurfacePoints)
-      {
-        coincident.push_back(order[i - 1]);
-        coincident.push_back(order[i]);
-      }
+      this->Order[kept++] = point;
+    }
+    else if (point < this->NumberOfSurfacePoints && this->HasSurface())
+    {
+      coincident.push_back(this->Order[kept - 1]);
+      coincident.push_back(point);
     }
   }
+  this->Order.resize(kept);
   if (!coincident.empty())
   {
     SortUnique(coincident);
     return Status::InvalidInput("Points of the surface coincide; merge them with "
                                 "vtkBoundaryTriangulator first.",
       {}, std::move(coincident));
-  }
-  for (std::size_t i = 0; i < this->Points.size(); ++i)
-  {
-    if (!isCopy[i])
-    {
-      this->Octree.Insert(static_cast<Id>(i), this->Points[i]);
-    }
   }
   return Status();
 }
@@ -207,8 +330,7 @@ class FacetPolygons
 {
 public:
   FacetPolygons(const TriangleMesh& surface, bool hasLabels)
-    : Surface(surface)
-    , HasLabels(hasLabels)
+    : Surface(surface), HasLabels(hasLabels)
   {
     for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
     {
@@ -266,7 +388,7 @@ private:
     {
       ++last;
     }
-    return last - first != 2 ? NoId
+    return last - first != 2      ? NoId
       : first->second == triangle ? (first + 1)->second
                                   : first->second;
   }
@@ -277,7 +399,8 @@ private:
     {
       return true;
     }
-    const auto runs = [a, b](const TriangleIds& ids) {
+    const auto runs = [a, b](const TriangleIds& ids)
+    {
       return (ids[0] == a && ids[1] == b) || (ids[1] == a && ids[2] == b) ||
         (ids[2] == a && ids[0] == b);
     };
@@ -296,8 +419,17 @@ private:
 
 Status AdvancingFront::TurnDiagonals()
 {
+  if (!this->HasSurface())
+  {
+    return Status();
+  }
   const FacetPolygons polygons(this->Surface, this->HasLabels);
-  SurfaceDelaunayTest test(this->Points, this->Octree);
+  PointOctree octree;
+  for (Id point : this->Order)
+  {
+    octree.Insert(point, this->Points[point]);
+  }
+  SurfaceDelaunayTest test(this->Points, octree);
   SurfaceDelaunayTest::Result result;
   std::vector<Id> offending;
   std::vector<char> isDone(this->Surface.Triangles.size(), 0);
@@ -337,11 +469,10 @@ Status AdvancingFront::TurnDiagonals()
     {
       ++axis;
     }
-    const int turn =
-      ProjectedOrientation(axis, a, this->Points[first[1]], this->Points[first[2]]);
-    std::sort(outline.begin(), outline.end(), [&](Id x, Id y) {
-      return ProjectedOrientation(axis, a, this->Points[x], this->Points[y]) == turn;
-    });
+    const int turn = ProjectedOrientation(axis, a, this->Points[first[1]], this->Points[first[2]]);
+    std::sort(outline.begin(), outline.end(),
+      [&](Id x, Id y)
+      { return ProjectedOrientation(axis, a, this->Points[x], this->Points[y]) == turn; });
     outline.insert(outline.begin(), first[0]);
     std::vector<TriangleIds> fan;
     AppendFan(outline, fan);
@@ -387,8 +518,8 @@ bool AdvancingFront::LocateSeed(const Vec3& position, Id& side) const
   for (Id t = 0; t < this->NumberOfSurfaceTriangles; ++t)
   {
     const TriangleIds& ids = this->Surface.Triangles[t];
-    const Vec3 centroid = (1.0 / 3.0) *
-      (this->Points[ids[0]] + this->Points[ids[1]] + this->Points[ids[2]]);
+    const Vec3 centroid =
+      (1.0 / 3.0) * (this->Points[ids[0]] + this->Points[ids[1]] + this->Points[ids[2]]);
     const double distance = Distance(centroid, position);
     if (distance < nearest)
     {
@@ -426,6 +557,11 @@ bool AdvancingFront::LocateSeed(const Vec3& position, Id& side) const
 
 Status AdvancingFront::FindSeeds()
 {
+  this->SideSpaces.assign(2 * this->Surface.Triangles.size(), UnknownSpace);
+  if (!this->HasSurface())
+  {
+    return Status();
+  }
   if (this->Input.Seeds != nullptr && !this->Input.Seeds->empty())
   {
     for (const RegionSeed& seed : *this->Input.Seeds)
@@ -437,7 +573,7 @@ Status AdvancingFront::FindSeeds()
                                     "the region that it is to mark.",
           {}, { static_cast<Id>(&seed - this->Input.Seeds->data()) });
       }
-      this->Seeds.emplace_back(side, seed.Region);
+      this->Seeds.push_back({ side, seed.Region, UnknownSpace });
     }
     return Status();
   }
@@ -445,9 +581,11 @@ Status AdvancingFront::FindSeeds()
   {
     for (Id side = 0; side < 2 * this->NumberOfSurfaceTriangles; ++side)
     {
-      if (this->GetSideLabel(side) != OutsideRegion)
+      const Id label = this->GetSideLabel(side);
+      this->SideSpaces[side] = label == OutsideRegion ? OutsideSpace : label;
+      if (label != OutsideRegion)
       {
-        this->Seeds.emplace_back(side, this->GetSideLabel(side));
+        this->Seeds.push_back({ side, label, label });
       }
     }
     if (this->Seeds.empty())
@@ -459,31 +597,81 @@ Status AdvancingFront::FindSeeds()
   }
   const TriangleMesh withPoints{ this->Points, this->Surface.Triangles, {}, {} };
   const SurfaceSides sides = FindSurfaceSides(withPoints);
-  std::vector<char> isSeeded(sides.IsOuter.size(), 0);
+  std::vector<Id> spaces(sides.IsOuter.size(), UnknownSpace);
   for (Id side = 0; side < 2 * this->NumberOfSurfaceTriangles; ++side)
   {
     const Id shell = sides.Shells[side];
     const bool isMeshed =
       !sides.IsOuter[shell] || (this->Options.CloseOpenBoundary && sides.IsOpen[shell]);
-    if (isMeshed && !isSeeded[shell])
+    if (isMeshed && spaces[shell] == UnknownSpace)
     {
-      isSeeded[shell] = 1;
-      this->Seeds.emplace_back(side, NoId);
+      spaces[shell] = static_cast<Id>(this->Seeds.size());
+      this->Seeds.push_back({ side, NoId, spaces[shell] });
     }
   }
   if (this->Seeds.empty())
   {
     return Status::InvalidInput("The surface encloses nothing: it has " +
         std::to_string(sides.OpenTriangles.size()) +
-        " triangles with an open edge. Close it (MaximumGapEdges of vtkBoundaryTriangulator patches "
+        " triangles with an open edge. Close it (MaximumGapEdges of vtkBoundaryTriangulator "
+        "patches "
         "gaps), or switch CloseOpenBoundary on to mesh up to the convex hull.",
       sides.OpenTriangles);
+  }
+  if (!sides.OpenTriangles.empty())
+  {
+    // Open shells may look into the same space as others.
+    for (SideSeed& seed : this->Seeds)
+    {
+      seed.Space = UnknownSpace;
+    }
+    return Status();
+  }
+
+  // The outer shell of a component that lies in the bounds of no other one looks outside.
+  std::vector<Box> bounds(sides.IsOuter.size());
+  std::vector<Id> outer;
+  for (Id side = 0; side < 2 * this->NumberOfSurfaceTriangles; ++side)
+  {
+    const Id shell = sides.Shells[side];
+    if (sides.IsOuter[shell])
+    {
+      if (bounds[shell].IsEmpty())
+      {
+        outer.push_back(shell);
+      }
+      for (Id point : this->Surface.Triangles[side / 2])
+      {
+        bounds[shell].Add(this->Points[point]);
+      }
+    }
+  }
+  constexpr std::size_t ManyShells = 2000;
+  for (std::size_t i = 0; i < outer.size() && outer.size() < ManyShells; ++i)
+  {
+    const Box& inside = bounds[outer[i]];
+    bool isInside = false;
+    for (std::size_t j = 0; j < outer.size(); ++j)
+    {
+      const Box& outside = bounds[outer[j]];
+      bool isWithin = i != j;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        isWithin = isWithin && outside.Low[axis] <= inside.Low[axis] &&
+          inside.High[axis] <= outside.High[axis];
+      }
+      isInside = isInside || isWithin;
+    }
+    spaces[outer[i]] = isInside ? UnknownSpace : OutsideSpace;
+  }
+  for (Id side = 0; side < 2 * this->NumberOfSurfaceTriangles; ++side)
+  {
+    this->SideSpaces[side] = spaces[sides.Shells[side]];
   }
   return Status();
 }
 
-Status AdvancingFront::AttachToSurface(
-  Id triangle, const TriangleIds& outward, Id facet, Id region)
+Status AdvancingFront::AttachToSurface(Id triangle, const TriangleIds& outward, Id facet, Id region)
 {
   // The tetrahedron lies behind its outward facet.
   const bool isFront = GetRelativeTurn(this->Surface.Triangles[triangle], outward) < 0;
@@ -516,19 +704,42 @@ Status AdvancingFront::AttachToSurface(
 
 void AdvancingFront::AddHullTriangle(const TriangleIds& outward, Id facet, Id region)
 {
-  const Id triangle = static_cast<Id>(this->Surface.Triangles.size());
   this->Surface.Triangles.push_back(outward);
   this->Surface.SourceCells.push_back(NoId);
   if (this->HasLabels)
   {
     this->Surface.Labels.push_back({ OutsideRegion, region });
   }
-  this->SideFacets.resize(2 * this->Surface.Triangles.size(), NoId);
-  this->SideRegions.resize(2 * this->Surface.Triangles.size(), OutsideRegion);
-  this->SideFacets[2 * triangle + 1] = facet;
-  this->SideRegions[2 * triangle + 1] = region;
-  this->Facets.Remove(outward);
-  this->Facets.Insert(outward, -2 - triangle);
+  this->SideFacets.push_back(NoId);
+  this->SideFacets.push_back(facet);
+  this->SideRegions.push_back(OutsideRegion);
+  this->SideRegions.push_back(region);
+}
+
+Status AdvancingFront::AttachToStar(Id b, Id c, Id facet)
+{
+  StarTable::Entry& entry = this->Star.Find(b, c);
+  if (entry.Value == StarTable::Nothing)
+  {
+    entry = { b, c, facet };
+    this->Stack.push_back(entry);
+    return Status();
+  }
+  if (entry.Value <= StarTable::FirstBarrier)
+  {
+    return this->AttachToSurface(StarTable::FirstBarrier - entry.Value,
+      this->ToPoints(this->Vertex, b, c), facet, this->CurrentRegion);
+  }
+  if (entry.Value == StarTable::Closed || entry.B == b)
+  {
+    return Status::InternalError("The front ran into itself: tetrahedra overlap.", {},
+      { this->Order[this->Vertex], this->Order[b], this->Order[c] });
+  }
+  const Id other = entry.Value;
+  this->Mesh.Neighbors[facet / 4][facet % 4] = other;
+  this->Mesh.Neighbors[other / 4][other % 4] = facet;
+  entry.Value = StarTable::Closed;
+  return Status();
 }
 
 Status AdvancingFront::AddTetrahedron(const TetrahedronIds& tetrahedron, Id region)
@@ -546,58 +757,102 @@ Status AdvancingFront::AddTetrahedron(const TetrahedronIds& tetrahedron, Id regi
   {
     const Id facet = 4 * index + i;
     const TriangleIds outward = GetFacet(tetrahedron, i);
-    Id* found = this->Facets.Find(outward);
-    if (found == nullptr)
+    // Facets around the present vertex meet at once, others when their first vertex is due.
+    int first = 0;
+    if (outward[1] == this->Vertex || outward[2] == this->Vertex)
     {
-      this->Facets.Insert(outward, facet);
-      this->Queue.push_back(facet);
-      continue;
+      first = outward[1] == this->Vertex ? 1 : 2;
     }
-    if (*found <= -2)
+    else if (outward[0] != this->Vertex)
     {
-      const Status status = this->AttachToSurface(-2 - *found, outward, facet, region);
+      first = outward[0] < outward[1] ? (outward[0] < outward[2] ? 0 : 2)
+                                      : (outward[1] < outward[2] ? 1 : 2);
+    }
+    const Id a = outward[first];
+    const Id b = outward[first == 2 ? 0 : first + 1];
+    const Id c = outward[first == 0 ? 2 : first - 1];
+    if (a == this->Vertex)
+    {
+      const Status status = this->AttachToStar(b, c, facet);
       if (!status.IsOk())
       {
         return status;
       }
       continue;
     }
-    const Id other = *found;
-    const TriangleIds facing = GetFacet(this->Mesh.Tetrahedra[other / 4], other % 4);
-    if (GetRelativeTurn(outward, facing) > 0)
+    Id place = this->FreeFacet;
+    if (place != NoId)
     {
-      return Status::InternalError("The front ran into itself: tetrahedra overlap.", {},
-        { outward[0], outward[1], outward[2] });
+      this->FreeFacet = this->OpenFacets[place].Next;
+      this->OpenFacets[place] = { b, c, facet, this->Lists[a] };
     }
-    this->Mesh.Neighbors[index][i] = other;
-    this->Mesh.Neighbors[other / 4][other % 4] = facet;
-    this->Facets.Remove(outward);
+    else
+    {
+      place = static_cast<Id>(this->OpenFacets.size());
+      this->OpenFacets.push_back({ b, c, facet, this->Lists[a] });
+    }
+    if (this->Lists[a] == NoId)
+    {
+      this->Reached.Insert(a);
+    }
+    this->Lists[a] = place;
   }
   return Status();
 }
 
-Status AdvancingFront::CompleteFacet(const TriangleIds& base, Id region, Id sourceFacet)
+Status AdvancingFront::AddBox(Id region)
 {
-  this->Search.Find(base, this->Found);
-  if (this->Found.Point == NoId)
+  const Id* const corners = this->Found.Corners;
+  ++this->Output.Report.CosphericalCells;
+  this->Output.Report.LargestCell = std::max<Id>(this->Output.Report.LargestCell, 8);
+  int lowest = 0;
+  for (int corner = 1; corner < 8; ++corner)
   {
-    if (sourceFacet != NoId && this->Options.CloseOpenBoundary)
+    if (this->Order[corners[corner]] < this->Order[corners[lowest]])
     {
-      this->AddHullTriangle(base, sourceFacet, region);
-      return Status();
+      lowest = corner;
     }
-    return Status::InvalidInput("Region " + std::to_string(region) +
-        " is not closed: the front reached the convex hull of the points. Close the surface, correct "
-        "its BoundaryLabels, or switch CloseOpenBoundary on.",
-      {}, { base[0], base[1], base[2] });
   }
-  if (this->Found.Cospherical.size() == 1 && this->Found.Cocircular.empty())
+  for (const int(&face)[4] : BoxFaces)
   {
-    return this->AddTetrahedron({ base[0], base[1], base[2], this->Found.Point }, region);
+    int start = 0;
+    bool hasLowest = face[0] == lowest;
+    for (int i = 1; i < 4; ++i)
+    {
+      hasLowest = hasLowest || face[i] == lowest;
+      if (this->Order[corners[face[i]]] < this->Order[corners[face[start]]])
+      {
+        start = i;
+      }
+    }
+    for (int i = 1; i < 3 && !hasLowest; ++i)
+    {
+      const Status status =
+        this->AddTetrahedron({ corners[face[start]], corners[face[(start + i + 1) % 4]],
+                               corners[face[(start + i) % 4]], corners[lowest] },
+          region);
+      if (!status.IsOk())
+      {
+        return status;
+      }
+    }
   }
-  std::vector<Id> ids(this->Found.Cospherical);
-  ids.insert(ids.end(), this->Found.Cocircular.begin(), this->Found.Cocircular.end());
-  ids.insert(ids.end(), base.begin(), base.end());
+  return Status();
+}
+
+Status AdvancingFront::SplitCell(Id b, Id c, Id region)
+{
+  const TriangleIds base = this->ToPoints(this->Vertex, b, c);
+  std::vector<Id> ids(base.begin(), base.end());
+  for (Id vertex : this->Found.Cospherical)
+  {
+    ids.push_back(this->Order[vertex]);
+  }
+  for (Id vertex : this->Found.Cocircular)
+  {
+    ids.push_back(this->Order[vertex]);
+  }
+  std::sort(ids.begin(), ids.end());
   std::vector<TetrahedronIds> tetrahedra;
   if (!this->Cell.Split(base, ids, tetrahedra))
   {
@@ -606,8 +861,12 @@ Status AdvancingFront::CompleteFacet(const TriangleIds& base, Id region, Id sour
   ++this->Output.Report.CosphericalCells;
   this->Output.Report.LargestCell =
     std::max(this->Output.Report.LargestCell, static_cast<Id>(ids.size()));
-  for (const TetrahedronIds& tetrahedron : tetrahedra)
+  for (TetrahedronIds& tetrahedron : tetrahedra)
   {
+    for (Id& id : tetrahedron)
+    {
+      id = this->Vertices[id];
+    }
     const Status status = this->AddTetrahedron(tetrahedron, region);
     if (!status.IsOk())
     {
@@ -617,48 +876,145 @@ Status AdvancingFront::CompleteFacet(const TriangleIds& base, Id region, Id sour
   return Status();
 }
 
-Status AdvancingFront::GrowRegion(Id side, Id region)
+Status AdvancingFront::CompleteFacet(Id b, Id c, Id region, Id sourceFacet)
 {
-  Status status = this->CompleteFacet(this->GetSideTriangle(side), region, NoId);
-  if (!status.IsOk())
+  this->Search.Find(b, c, this->Found);
+  if (this->Found.IsUnique)
   {
-    if (status.Cells.empty() && status.Code == StatusCode::InvalidInput)
-    {
-      status.Cells.push_back(this->GetSourceCell(side / 2));
-    }
-    return status;
+    return this->AddTetrahedron({ this->Vertex, b, c, this->Found.Point }, region);
   }
-  if (this->SideFacets[side] == NoId)
+  if (this->Found.Point != NoId)
   {
-    return Status::InternalError(
-      "A boundary triangle is no facet of the mesh.", { this->GetSourceCell(side / 2) });
+    return this->Found.IsBox ? this->AddBox(region) : this->SplitCell(b, c, region);
   }
-  // About 6.7 tetrahedra per point are usual.
-  const double expected = 6.7 * static_cast<double>(this->Points.size());
-  std::size_t steps = 0;
-  while (!this->Queue.empty())
+  const TriangleIds base = this->ToPoints(this->Vertex, b, c);
+  if (sourceFacet != NoId && this->Options.CloseOpenBoundary)
   {
-    if (this->IsLimitReached())
+    this->AddHullTriangle(base, sourceFacet, region);
+    this->Star.Find(b, c).Value = StarTable::Closed;
+    return Status();
+  }
+  return Status::InvalidInput("Region " + std::to_string(region) +
+      " is not closed: the front reached the convex hull of the points. Close the surface, correct "
+      "its BoundaryLabels, or switch CloseOpenBoundary on.",
+    {}, { base[0], base[1], base[2] });
+}
+
+void AdvancingFront::PrepareFront()
+{
+  const std::size_t count = this->Order.size();
+  this->Vertices.assign(this->Points.size(), NoId);
+  for (std::size_t vertex = 0; vertex < count; ++vertex)
+  {
+    this->Vertices[this->Order[vertex]] = static_cast<Id>(vertex);
+  }
+  // Memory that is not used is not touched; growing would copy.
+  const std::size_t expected = 7 * count;
+  this->Mesh.Tetrahedra.reserve(expected);
+  this->Mesh.Regions.reserve(expected);
+  this->Mesh.Neighbors.reserve(expected);
+  this->Tree.Build(this->Points, this->Order);
+  this->Lists.assign(count, NoId);
+  this->Reached.Reset(count);
+  this->SideFacets.assign(2 * this->Surface.Triangles.size(), NoId);
+  this->SideRegions.assign(2 * this->Surface.Triangles.size(), OutsideRegion);
+  if (this->HasSurface())
+  {
+    this->IncidentStarts.assign(count + 1, 0);
+    for (const TriangleIds& ids : this->Surface.Triangles)
     {
-      this->IsStopped = true;
-      return Status();
-    }
-    if (++steps % ReportInterval == 0)
-    {
-      const double done = static_cast<double>(this->Mesh.Tetrahedra.size()) / expected;
-      if (!this->Context.Part(0.1, 0.95).Continue(std::min(done, 0.99), "Advancing the front"))
+      for (Id point : ids)
       {
-        return Status::Aborted();
+        ++this->IncidentStarts[this->Vertices[point] + 1];
       }
     }
-    const Id facet = this->Queue.back();
-    this->Queue.pop_back();
-    if (this->Mesh.Neighbors[facet / 4][facet % 4] != NoId)
+    std::partial_sum(
+      this->IncidentStarts.begin(), this->IncidentStarts.end(), this->IncidentStarts.begin());
+    this->Incident.resize(this->IncidentStarts.back());
+    std::vector<Id> places(this->IncidentStarts.begin(), this->IncidentStarts.end() - 1);
+    for (Id t = 0; t < this->NumberOfSurfaceTriangles; ++t)
     {
+      for (Id point : this->Surface.Triangles[t])
+      {
+        this->Incident[places[this->Vertices[point]]++] = t;
+      }
+    }
+  }
+}
+
+bool AdvancingFront::IsFinished(Id vertex) const
+{
+  if (!this->HasSurface())
+  {
+    return true;
+  }
+  for (Id i = this->IncidentStarts[vertex]; i < this->IncidentStarts[vertex + 1]; ++i)
+  {
+    for (Id side = 2 * this->Incident[i]; side < 2 * this->Incident[i] + 2; ++side)
+    {
+      if (this->SideFacets[side] == NoId && this->SideSpaces[side] != OutsideSpace)
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool AdvancingFront::IsFinishedForNow(Id vertex) const
+{
+  for (Id i = this->IncidentStarts[vertex]; i < this->IncidentStarts[vertex + 1]; ++i)
+  {
+    for (Id side = 2 * this->Incident[i]; side < 2 * this->Incident[i] + 2; ++side)
+    {
+      const Id space = this->SideSpaces[side];
+      if (this->SideFacets[side] == NoId &&
+        (space == UnknownSpace || this->CurrentSpace == UnknownSpace ||
+          space == this->CurrentSpace))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+Status AdvancingFront::OpenStar(Id vertex)
+{
+  this->Vertex = vertex;
+  this->Star.Clear();
+  this->Stack.clear();
+  if (this->HasSurface())
+  {
+    for (Id i = this->IncidentStarts[vertex]; i < this->IncidentStarts[vertex + 1]; ++i)
+    {
+      const TriangleIds& ids = this->Surface.Triangles[this->Incident[i]];
+      const Id point = this->Order[vertex];
+      const int first = ids[0] == point ? 0 : ids[1] == point ? 1 : 2;
+      const Id b = this->Vertices[ids[(first + 1) % 3]];
+      const Id c = this->Vertices[ids[(first + 2) % 3]];
+      this->Star.Find(b, c) = { b, c, StarTable::FirstBarrier - this->Incident[i] };
+    }
+  }
+  Id place = this->Lists[vertex];
+  this->Lists[vertex] = NoId;
+  while (place != NoId)
+  {
+    OpenFacet& open = this->OpenFacets[place];
+    const Id next = open.Next;
+    const Id facet = open.Facet;
+    const Id b = open.B;
+    const Id c = open.C;
+    open.Next = this->FreeFacet;
+    this->FreeFacet = place;
+    place = next;
+    if (facet < 0)
+    {
+      // The seed: a side of the surface, or the first facet of all.
+      this->Stack.push_back({ b, c, facet });
       continue;
     }
-    status = this->CompleteFacet(
-      GetFacet(this->Mesh.Tetrahedra[facet / 4], facet % 4), region, facet);
+    const Status status = this->AttachToStar(b, c, facet);
     if (!status.IsOk())
     {
       return status;
@@ -667,104 +1023,365 @@ Status AdvancingFront::GrowRegion(Id side, Id region)
   return Status();
 }
 
-void AdvancingFront::SortTetrahedra()
+Status AdvancingFront::CompleteStar(Id vertex, Id region)
 {
-  // A numbering that depends on the tetrahedra alone: lowest point first, second lowest second as
-  // far as the orientation allows, then by region and points.
-  TetMesh& mesh = this->Mesh;
-  const std::size_t count = mesh.Tetrahedra.size();
-  for (std::size_t t = 0; t < count; ++t)
+  Status status = this->OpenStar(vertex);
+  if (!status.IsOk() || this->Stack.empty())
   {
-    TetrahedronIds& ids = mesh.Tetrahedra[t];
-    // The even permutations that bring each vertex to the front.
-    static constexpr int First[4][4] = { { 0, 1, 2, 3 }, { 1, 0, 3, 2 }, { 2, 0, 1, 3 },
-      { 3, 0, 2, 1 } };
-    const int lowest = static_cast<int>(std::min_element(ids.begin(), ids.end()) - ids.begin());
-    int order[4];
-    std::copy(First[lowest], First[lowest] + 4, order);
-    const int second = static_cast<int>(
-      std::min_element(order + 1, order + 4, [&](int i, int j) { return ids[i] < ids[j]; }) -
-      order);
-    std::rotate(order + 1, order + second, order + 4);
-    const TetrahedronIds oldIds = ids;
-    const TetrahedronIds oldNeighbors = mesh.Neighbors[t];
-    for (int i = 0; i < 4; ++i)
+    return status;
+  }
+  this->Search.SetVertex(vertex);
+  while (!this->Stack.empty())
+  {
+    if (this->IsLimitReached())
     {
-      ids[i] = oldIds[order[i]];
-      const Id neighbor = oldNeighbors[order[i]];
-      mesh.Neighbors[t][i] = neighbor == NoId ? NoId : neighbor / 4;
+      this->IsStopped = true;
+      return Status();
+    }
+    const StarTable::Entry facet = this->Stack.back();
+    this->Stack.pop_back();
+    if (facet.Value >= 0 && this->Mesh.Neighbors[facet.Value / 4][facet.Value % 4] != NoId)
+    {
+      continue;
+    }
+    status = this->CompleteFacet(facet.B, facet.C, region, facet.Value >= 0 ? facet.Value : NoId);
+    if (!status.IsOk())
+    {
+      return status;
     }
   }
-  std::vector<Id> order(count);
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&mesh](Id i, Id j) {
-    return mesh.Regions[i] != mesh.Regions[j] ? mesh.Regions[i] < mesh.Regions[j]
-                                              : mesh.Tetrahedra[i] < mesh.Tetrahedra[j];
-  });
-  std::vector<Id> places(count);
-  TetMesh sorted;
-  sorted.Points = std::move(mesh.Points);
-  sorted.Tetrahedra.resize(count);
-  sorted.Regions.resize(count);
-  sorted.Neighbors.resize(count);
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    places[order[i]] = static_cast<Id>(i);
-    sorted.Tetrahedra[i] = mesh.Tetrahedra[order[i]];
-    sorted.Regions[i] = mesh.Regions[order[i]];
-  }
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    for (int f = 0; f < 4; ++f)
-    {
-      const Id old = mesh.Neighbors[order[i]][f];
-      if (old == NoId)
-      {
-        sorted.Neighbors[i][f] = NoId;
-        continue;
-      }
-      // The neighbour's facet is opposite to its one vertex that this facet lacks.
-      const Id neighbor = places[old];
-      const TriangleIds facet = GetFacet(sorted.Tetrahedra[i], f);
-      int opposite = 0;
-      while (std::find(facet.begin(), facet.end(), sorted.Tetrahedra[neighbor][opposite]) !=
-        facet.end())
-      {
-        ++opposite;
-      }
-      sorted.Neighbors[i][f] = 4 * neighbor + opposite;
-    }
-  }
-  mesh = std::move(sorted);
+  return Status();
 }
 
-void AdvancingFront::Finish()
+Status AdvancingFront::Advance(Id region)
 {
-  // Front: facets whose other side is neither meshed nor surface.
+  // About 6.7 tetrahedra per point are usual.
+  const double expected = 6.7 * static_cast<double>(this->Order.size());
+  std::size_t steps = 0;
+  while (!this->Reached.IsEmpty())
+  {
+    if (++steps % (ReportInterval / 8) == 0)
+    {
+      const double done = static_cast<double>(this->Mesh.Tetrahedra.size()) / expected;
+      if (!this->Context.Part(0.1, 0.95).Continue(std::min(done, 0.99), "Advancing the front"))
+      {
+        return Status::Aborted();
+      }
+    }
+    const Id vertex = this->Reached.PopSmallest();
+    const Status status = this->CompleteStar(vertex, region);
+    if (!status.IsOk() || this->IsStopped)
+    {
+      return status;
+    }
+    if (this->IsFinished(vertex))
+    {
+      this->Tree.Remove(vertex);
+    }
+    else if (this->IsFinishedForNow(vertex))
+    {
+      this->Tree.Remove(vertex);
+      this->Postponed.push_back(vertex);
+    }
+  }
+  return Status();
+}
+
+Status AdvancingFront::GrowRegion(const SideSeed& seed)
+{
+  this->CurrentSpace = seed.Space;
+  this->CurrentRegion = seed.Region;
+  const TriangleIds ids = this->GetSideTriangle(seed.Side);
+  const TriangleIds base{ this->Vertices[ids[0]], this->Vertices[ids[1]], this->Vertices[ids[2]] };
+  const int first = static_cast<int>(std::min_element(base.begin(), base.end()) - base.begin());
+  this->Lists[base[first]] = static_cast<Id>(this->OpenFacets.size());
+  this->OpenFacets.push_back({ base[(first + 1) % 3], base[(first + 2) % 3], NoId, NoId });
+  this->Reached.Insert(base[first]);
+  const std::size_t before = this->Mesh.Tetrahedra.size();
+  Status status = this->Advance(seed.Region);
+  if (!status.IsOk())
+  {
+    if (status.Cells.empty() && status.Code == StatusCode::InvalidInput &&
+      this->Mesh.Tetrahedra.size() == before)
+    {
+      status.Cells.push_back(this->GetSourceCell(seed.Side / 2));
+    }
+    return status;
+  }
+  if (this->IsStopped)
+  {
+    return Status();
+  }
+  if (this->SideFacets[seed.Side] == NoId)
+  {
+    return Status::InternalError(
+      "A boundary triangle is no facet of the mesh.", { this->GetSourceCell(seed.Side / 2) });
+  }
+  for (Id vertex : this->Postponed)
+  {
+    if (!this->IsFinished(vertex))
+    {
+      this->Tree.Restore(vertex);
+    }
+  }
+  this->Postponed.clear();
+  return Status();
+}
+
+Status AdvancingFront::FindFirstFacet(TriangleIds& facet)
+{
+  const char* const tooFew = "A mesh needs four points that do not coincide.";
+  const char* const collinear = "All points lie on one line: they have no tetrahedra.";
+  const char* const coplanar = "All points lie in one plane: they have no tetrahedra.";
+  const Id count = static_cast<Id>(this->Order.size());
+  if (count < 4)
+  {
+    return Status::InvalidInput(tooFew);
+  }
+  // Two points whose smallest sphere is empty: start near the first point, and take what disturbs.
+  const Vec3 a = this->Tree.GetPoint(0);
+  Id second = 1;
+  for (Id i = 1; i < count; ++i)
+  {
+    if (Distance(a, this->Tree.GetPoint(i)) < Distance(a, this->Tree.GetPoint(second)))
+    {
+      second = i;
+    }
+  }
+  for (Id i = 1; i < count; ++i)
+  {
+    if (i != second &&
+      InDiametralSphere(a, this->Tree.GetPoint(second), this->Tree.GetPoint(i)) > 0)
+    {
+      second = i;
+      i = 0;
+    }
+  }
+  // The third point likewise: what disturbs makes the sphere smaller.
+  const Vec3 b = this->Tree.GetPoint(second);
+  Id third = NoId;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (Id i = 1; i < count; ++i)
+  {
+    const Vec3 p = this->Tree.GetPoint(i);
+    if (i == second)
+    {
+      continue;
+    }
+    const double radius = Norm(GetCircumcenterOffset(a, b, p));
+    if ((third == NoId || radius < smallest) && !AreCollinear(a, b, p))
+    {
+      third = i;
+      smallest = radius;
+    }
+  }
+  if (third == NoId)
+  {
+    return Status::InvalidInput(collinear);
+  }
+  for (Id i = 1; i < count; ++i)
+  {
+    if (i != second && i != third &&
+      InEquatorialSphere(a, b, this->Tree.GetPoint(third), this->Tree.GetPoint(i)) > 0)
+    {
+      third = i;
+      i = 0;
+    }
+  }
+  // Points on its sphere make a cell of their own: then take the triangle of its hull at the edge,
+  // which is one of the subdivision since the edge's smallest sphere is empty.
+  std::vector<Id> cell{ third };
+  bool isFlat = true;
+  bool isFlatSet = true;
+  Vec3 c = this->Tree.GetPoint(third);
+  for (Id i = 1; i < count; ++i)
+  {
+    if (i == second || i == third)
+    {
+      continue;
+    }
+    const Vec3 p = this->Tree.GetPoint(i);
+    const bool isCoplanar = (isFlat || isFlatSet) && Orientation(a, b, c, p) == 0;
+    isFlatSet = isFlatSet && isCoplanar;
+    if (InEquatorialSphere(a, b, c, p) == 0)
+    {
+      isFlat = isFlat && isCoplanar;
+      cell.push_back(i);
+    }
+  }
+  if (isFlatSet)
+  {
+    return Status::InvalidInput(coplanar);
+  }
+  for (Id i : cell)
+  {
+    if (i != third && Orientation(a, b, this->Tree.GetPoint(third), this->Tree.GetPoint(i)) < 0)
+    {
+      third = i;
+    }
+  }
+  facet = { 0, second, third };
+  return Status();
+}
+
+Status AdvancingFront::GrowHull()
+{
+  TriangleIds facet;
+  Status status = this->FindFirstFacet(facet);
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  this->CurrentRegion = 0;
+  this->Vertex = facet[0];
+  this->Search.SetVertex(facet[0]);
+  this->Search.Find(facet[1], facet[2], this->Found);
+  if (this->Found.Point == NoId)
+  {
+    std::swap(facet[1], facet[2]);
+  }
+  this->Lists[facet[0]] = 0;
+  this->OpenFacets.push_back({ facet[1], facet[2], NoId, NoId });
+  this->Reached.Insert(facet[0]);
+  return this->Advance(0);
+}
+
+void AdvancingFront::SortTetrahedra()
+{
+  // A numbering that depends on the tetrahedra alone: each starts with its first vertex along the
+  // curve, then the first of the others as far as the orientation allows; all in the order of their
+  // vertices. The twelve even permutations, by the place of the first and the second vertex:
+  static constexpr signed char Turns[12][4] = { { 0, 1, 2, 3 }, { 0, 2, 3, 1 }, { 0, 3, 1, 2 },
+    { 1, 0, 3, 2 }, { 1, 3, 2, 0 }, { 1, 2, 0, 3 }, { 2, 0, 1, 3 }, { 2, 1, 3, 0 }, { 2, 3, 0, 1 },
+    { 3, 0, 2, 1 }, { 3, 2, 1, 0 }, { 3, 1, 0, 2 } };
+  TetMesh& mesh = this->Mesh;
+  const Id count = static_cast<Id>(mesh.Tetrahedra.size());
+  std::vector<unsigned char> turns(count);
+  std::vector<Id> starts(this->Order.size() + 1, 0);
+  for (Id t = 0; t < count; ++t)
+  {
+    TetrahedronIds& ids = mesh.Tetrahedra[t];
+    const int first = static_cast<int>(std::min_element(ids.begin(), ids.end()) - ids.begin());
+    int turn = 3 * first;
+    for (int other = 3 * first + 1; other < 3 * first + 3; ++other)
+    {
+      turn = ids[Turns[other][1]] < ids[Turns[turn][1]] ? other : turn;
+    }
+    const TetrahedronIds old = ids;
+    for (int i = 0; i < 4; ++i)
+    {
+      ids[i] = old[Turns[turn][i]];
+    }
+    turns[t] = static_cast<unsigned char>(turn);
+    ++starts[ids[0] + 1];
+  }
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  std::vector<Id> places(count);
+  {
+    std::vector<Id> order(count);
+    std::vector<Id> next(starts.begin(), starts.end() - 1);
+    for (Id t = 0; t < count; ++t)
+    {
+      order[next[mesh.Tetrahedra[t][0]]++] = t;
+    }
+    for (std::size_t vertex = 0; vertex + 1 < starts.size(); ++vertex)
+    {
+      std::sort(order.begin() + starts[vertex], order.begin() + starts[vertex + 1],
+        [&mesh](Id i, Id j) { return mesh.Tetrahedra[i] < mesh.Tetrahedra[j]; });
+    }
+    for (Id i = 0; i < count; ++i)
+    {
+      places[order[i]] = i;
+    }
+  }
+  unsigned char inverse[12][4];
+  for (int turn = 0; turn < 12; ++turn)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      inverse[turn][static_cast<int>(Turns[turn][i])] = static_cast<unsigned char>(i);
+    }
+  }
+  for (Id t = 0; t < count; ++t)
+  {
+    const TetrahedronIds old = mesh.Neighbors[t];
+    for (int i = 0; i < 4; ++i)
+    {
+      const Id facet = old[Turns[turns[t]][i]];
+      mesh.Neighbors[t][i] =
+        facet == NoId ? NoId : 4 * places[facet / 4] + inverse[turns[facet / 4]][facet % 4];
+    }
+  }
+  // In place: a copy would be the largest array of all.
+  for (Id t = 0; t < count; ++t)
+  {
+    while (places[t] != t)
+    {
+      const Id place = places[t];
+      std::swap(mesh.Tetrahedra[t], mesh.Tetrahedra[place]);
+      std::swap(mesh.Neighbors[t], mesh.Neighbors[place]);
+      std::swap(mesh.Regions[t], mesh.Regions[place]);
+      std::swap(places[t], places[place]);
+    }
+  }
+}
+
+Status AdvancingFront::CollectFront()
+{
+  // Facets wait in the lists until their first vertex is due: let them meet now.
+  for (Id vertex = 0; vertex < static_cast<Id>(this->Lists.size()); ++vertex)
+  {
+    if (this->Lists[vertex] != NoId)
+    {
+      const Status status = this->OpenStar(vertex);
+      if (!status.IsOk())
+      {
+        return status;
+      }
+    }
+  }
+  std::vector<Id> closed;
+  for (Id facet : this->SideFacets)
+  {
+    if (facet != NoId)
+    {
+      closed.push_back(facet);
+    }
+  }
+  std::sort(closed.begin(), closed.end());
   for (std::size_t t = 0; t < this->Mesh.Tetrahedra.size(); ++t)
   {
     for (int i = 0; i < 4; ++i)
     {
-      const TriangleIds outward = GetFacet(this->Mesh.Tetrahedra[t], i);
-      if (this->Mesh.Neighbors[t][i] != NoId)
+      if (this->Mesh.Neighbors[t][i] == NoId &&
+        !std::binary_search(closed.begin(), closed.end(), static_cast<Id>(4 * t + i)))
       {
-        continue;
-      }
-      const Id* found = this->Facets.Find(outward);
-      if (found != nullptr && *found >= 0)
-      {
-        this->Output.Front.push_back(outward);
+        const TriangleIds outward = GetFacet(this->Mesh.Tetrahedra[t], i);
+        this->Output.Front.push_back(this->ToPoints(outward[0], outward[1], outward[2]));
       }
     }
   }
+  return Status();
+}
+
+void AdvancingFront::Finish()
+{
+  this->SortTetrahedra();
 
   // Only mesh points that are used stay.
   std::vector<Id> places(this->Points.size(), NoId);
-  for (const TetrahedronIds& ids : this->Mesh.Tetrahedra)
   {
-    for (Id id : ids)
+    std::vector<char> isUsed(this->Order.size(), 0);
+    for (const TetrahedronIds& ids : this->Mesh.Tetrahedra)
     {
-      places[id] = 0;
+      for (Id vertex : ids)
+      {
+        isUsed[vertex] = 1;
+      }
+    }
+    for (std::size_t vertex = 0; vertex < isUsed.size(); ++vertex)
+    {
+      places[this->Order[vertex]] = isUsed[vertex] ? 0 : NoId;
     }
   }
   Id count = this->NumberOfSurfacePoints;
@@ -772,6 +1389,7 @@ void AdvancingFront::Finish()
   {
     if (i < this->NumberOfSurfacePoints)
     {
+      this->Output.Report.UnusedMeshPoints += !this->HasSurface() && places[i] == NoId ? 1 : 0;
       places[i] = i;
     }
     else if (places[i] != NoId)
@@ -786,11 +1404,15 @@ void AdvancingFront::Finish()
     }
   }
   this->Points.resize(count);
+  for (Id& point : this->Order)
+  {
+    point = places[point];
+  }
   for (TetrahedronIds& ids : this->Mesh.Tetrahedra)
   {
     for (Id& id : ids)
     {
-      id = places[id];
+      id = this->Order[id];
     }
   }
   for (TriangleIds& ids : this->Output.Front)
@@ -822,8 +1444,28 @@ void AdvancingFront::Finish()
       id = places[id];
     }
   }
-  this->SortTetrahedra();
+  this->SortHull();
   this->Surface.Points = this->Points;
+}
+
+void AdvancingFront::SortHull()
+{
+  // Triangles that close the boundary were found in the order of the growth.
+  const std::size_t begin = static_cast<std::size_t>(this->NumberOfSurfaceTriangles);
+  std::vector<std::pair<TriangleIds, RegionPair>> hull;
+  for (std::size_t t = begin; t < this->Surface.Triangles.size(); ++t)
+  {
+    TriangleIds ids = this->Surface.Triangles[t];
+    std::rotate(ids.begin(), std::min_element(ids.begin(), ids.end()), ids.end());
+    hull.emplace_back(ids, this->Surface.Labels[t]);
+  }
+  std::sort(
+    hull.begin(), hull.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+  for (std::size_t i = 0; i < hull.size(); ++i)
+  {
+    this->Surface.Triangles[begin + i] = hull[i].first;
+    this->Surface.Labels[begin + i] = hull[i].second;
+  }
 }
 
 Status AdvancingFront::Run()
@@ -841,33 +1483,49 @@ Status AdvancingFront::Run()
   {
     return status;
   }
+  std::vector<std::pair<TriangleIds, Id>> sorted;
   for (Id t = 0; t < this->NumberOfSurfaceTriangles; ++t)
   {
-    if (this->Facets.Find(this->Surface.Triangles[t]) != nullptr)
+    TriangleIds ids = this->Surface.Triangles[t];
+    std::sort(ids.begin(), ids.end());
+    sorted.emplace_back(ids, t);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+  {
+    if (sorted[i].first == sorted[i - 1].first)
     {
       return Status::InvalidInput("Two triangles of the surface have the same points; clean the "
                                   "surface with vtkBoundaryTriangulator first.",
-        { this->GetSourceCell(t) });
+        { this->GetSourceCell(sorted[i].second) });
     }
-    this->Facets.Insert(this->Surface.Triangles[t], -2 - t);
   }
-  this->SideFacets.assign(2 * this->Surface.Triangles.size(), NoId);
-  this->SideRegions.assign(2 * this->Surface.Triangles.size(), OutsideRegion);
+  this->PrepareFront();
   std::vector<Id> regions;
   Id nextRegion = 0;
-  for (const auto& [side, label] : this->Seeds)
+  if (!this->HasSurface())
   {
-    if (this->SideFacets[side] != NoId)
+    regions.push_back(0);
+    status = this->GrowHull();
+  }
+  for (SideSeed seed : this->Seeds)
+  {
+    if (this->SideFacets[seed.Side] != NoId)
     {
       continue;
     }
-    const Id region = label == NoId ? nextRegion++ : label;
-    regions.push_back(region);
-    status = this->GrowRegion(side, region);
+    seed.Region = seed.Region == NoId ? nextRegion++ : seed.Region;
+    regions.push_back(seed.Region);
+    status = this->GrowRegion(seed);
     if (!status.IsOk() || this->IsStopped)
     {
       break;
     }
+  }
+  if (status.IsAborted() || this->IsStopped)
+  {
+    const Status collected = this->CollectFront();
+    status = collected.IsOk() ? status : collected;
   }
   if (!status.IsOk() && !status.IsAborted())
   {
@@ -878,7 +1536,7 @@ Status AdvancingFront::Run()
   this->Finish();
   return status;
 }
-}
+} // namespace
 
 Status TetrahedralizeByAdvancingFront(const AdvancingFrontTetrahedralizerInput& input,
   const AdvancingFrontTetrahedralizerOptions& options, const ExecutionContext& context,
@@ -892,4 +1550,4 @@ Status TetrahedralizeByAdvancingFront(const AdvancingFrontTetrahedralizerInput& 
   }
   return status;
 }
-}
+} // namespace cdm

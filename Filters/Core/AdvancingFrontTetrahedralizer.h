@@ -6,23 +6,32 @@
  * Method (thesis 6.4):
  *  1. test that each triangle of the surface is strongly Delaunay; turn the diagonals inside of
  *     cocircular facets to the pulling rule;
- *  2. take a side of a triangle of each enclosed region as seed and put it into the front;
- *  3. take a triangle from the front; find the point in front of it with the smallest lambda
- *     (Crit. 6.2) in the point octree, exactly, and all points cospherical with them: the cell;
+ *  2. take a side of a triangle of each enclosed region as seed and put it into the front; without
+ *     a surface an exact Delaunay triangle at the first point;
+ *  3. number the points along a Hilbert curve, and take the first vertex that the front has
+ *     reached; for each facet of the front around it find the point in front with the smallest
+ *     lambda (Crit. 6.2), exactly, and all points cospherical with it: the cell;
  *  4. triangulate the cell by pulling its lowest numbered point, its polygonal faces from theirs;
  *     each triangle of its hull either meets its like in the front (Lemma 6.1), or is a triangle of
  *     the surface, where the front stops, or joins the front;
- *  5. until the front is empty (Lemma 6.2).
+ *  5. when no facet around the vertex is left, its star is complete, and it drops out of all later
+ *     searches: the apex of a facet of the front is never such a point. Go on until the front is
+ *     empty (Lemma 6.2).
  *
  * Regions: with labels a side of a triangle belongs to its label, and sides labelled
  * OutsideRegion are not meshed. Without labels every enclosed segment gets an id from 0 on, and the
  * unbounded outside is not meshed. With seeds only the regions that hold one are meshed.
  *
  * Guarantees: tetrahedra are positively oriented, none is flat; their circumspheres are empty of
- * all points (exact); the mesh depends on the numbering of the points only. Points keep their
+ * all points (exact); the mesh depends on the numbering of the points only, the order of its
+ * tetrahedra (along the curve, by their first vertices) on the points alone. Points keep their
  * coordinates; Boundary is the surface with diagonals of cocircular facets turned.
  * Failure: InvalidInput names the triangles that are not Delaunay, that contradict each other's
- * labels, or that enclose nothing. Aborted leaves a valid partial mesh and its front.
+ * labels, or that enclose nothing; fewer than four points, collinear and coplanar ones if there is
+ * no surface. Aborted leaves a valid partial mesh and its front.
+ *
+ * Cost: O(n log n) for usual distributions; 43 bytes per tetrahedron and 110 per point at the peak.
+ * See Testing/Benchmarks/README.md.
  */
 #ifndef cdmAdvancingFrontTetrahedralizer_h
 #define cdmAdvancingFrontTetrahedralizer_h
@@ -44,7 +53,8 @@ struct AdvancingFrontTetrahedralizerOptions
 {
   /**
    * Where the surface is open, close the mesh with triangles on the convex hull of the points
-   * (thesis 6.4.2); otherwise an open region is an error.
+   * (thesis 6.4.2); otherwise an open region is an error. Without any triangle the mesh fills the
+   * convex hull of all points, in one region 0, and Boundary is the hull.
    */
   bool CloseOpenBoundary = false;
   /** Stop after this many tetrahedra and leave the front as it is. 0: no limit. */
@@ -53,6 +63,7 @@ struct AdvancingFrontTetrahedralizerOptions
 
 struct AdvancingFrontTetrahedralizerInput
 {
+  /** May be null or without triangles if CloseOpenBoundary is on. */
   const TriangleMesh* Surface = nullptr;
   /** May be null. Points outside of all meshed regions are not used, and counted. */
   const std::vector<Vec3>* MeshPoints = nullptr;
@@ -62,7 +73,7 @@ struct AdvancingFrontTetrahedralizerInput
 
 struct AdvancingFrontTetrahedralizerReport
 {
-  /** Mesh points that lie in no meshed region. */
+  /** Mesh points that lie in no meshed region, and copies of points. */
   Id UnusedMeshPoints = 0;
   /** Degenerate cells: more than four points on one empty sphere. */
   Id CosphericalCells = 0;
@@ -91,6 +102,6 @@ struct AdvancingFrontTetrahedralizerOutput
 Status TetrahedralizeByAdvancingFront(const AdvancingFrontTetrahedralizerInput& input,
   const AdvancingFrontTetrahedralizerOptions& options, const ExecutionContext& context,
   AdvancingFrontTetrahedralizerOutput& output);
-}
+} // namespace cdm
 
 #endif

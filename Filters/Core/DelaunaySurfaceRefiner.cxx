@@ -29,8 +29,8 @@ constexpr double SmallestPiece = 0.15;
 /** A disturbing point this close to the plane of a triangle, in units of its circumradius, is
  * mirrored into the plane: thin layers get matching points instead of small triangles. */
 constexpr double ThinLayerRatio = 0.5;
-/** A mirrored point has to keep this distance, in units of its height, from all other points. */
-constexpr double MirrorClearance = 0.5;
+/** A disturbing point this close to an edge, in units of its length, is matched exactly. */
+constexpr double ThinGapRatio = 0.1;
 
 /** Distance from a position to the nearest point other than one. */
 class NearestPointVisitor
@@ -182,7 +182,7 @@ private:
   void DropCloseMeshPoints();
   void CollectPointFacets();
   void CollectAxes();
-  void CollectCorners();
+  void CollectFacetGeometry();
   void Saturate();
   Status Refine();
   void Process(Id t);
@@ -197,10 +197,11 @@ private:
   bool MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) const;
   bool RotateAboutAxis(Id t, Id disturbing, Vec3& target) const;
   bool RotateAboutCorner(Id t, Id disturbing, Vec3& target) const;
+  bool ProjectOntoFacet(Id t, Id disturbing, Vec3& target) const;
   bool SplitSegment(Id segment, Id disturbing);
   bool SplitLongestEdge(Id t);
   Vec3 PlaceOnSegment(Id segment, Id disturbing) const;
-  Id FindSharedCorner(Id segment, Id point) const;
+  bool PlacePartner(Id segment, Id disturbing, double& way) const;
 
   bool CanFlip(Id use) const;
   bool ShouldFlip(Id use) const;
@@ -236,6 +237,8 @@ private:
   std::vector<std::vector<Id>> PointFacets;
   /** Segments of the input that two facets share, by the facets, the smaller first. */
   std::map<std::pair<Id, Id>, std::vector<EdgeIds>> Axes;
+  /** Unit normal of each plane facet; zero for a curved one, which has no one plane. */
+  std::vector<Vec3> FacetNormals;
   /** Points of each facet at which structural edges end, ascending. */
   std::vector<std::vector<Id>> FacetCorners;
   /** For each point of the input surface the input edges at it; for new ones on an edge, it. */
@@ -327,7 +330,7 @@ Status SurfaceRefiner::Prepare()
   this->Surface = std::make_unique<RefinableSurface>(surface, edges.Edges, this->Points);
   this->CollectPointFacets();
   this->CollectAxes();
-  this->CollectCorners();
+  this->CollectFacetGeometry();
   return Status();
 }
 
@@ -441,8 +444,28 @@ void SurfaceRefiner::CollectAxes()
   }
 }
 
-void SurfaceRefiner::CollectCorners()
+void SurfaceRefiner::CollectFacetGeometry()
 {
+  // The normal of the largest triangle of each facet is the most accurate one.
+  std::vector<double> largest;
+  for (Id t = 0; t < this->Surface->GetNumberOfTriangles(); ++t)
+  {
+    const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
+    const std::size_t size =
+      std::max(this->FacetNormals.size(), static_cast<std::size_t>(triangle.Facet) + 1);
+    this->FacetNormals.resize(size);
+    largest.resize(size, 0.0);
+    const Vec3& a = this->Points[triangle.Points[0]];
+    const Vec3 normal =
+      Cross(this->Points[triangle.Points[1]] - a, this->Points[triangle.Points[2]] - a);
+    if (Norm(normal) > largest[triangle.Facet] &&
+      this->Options.StructuralEdges.AccuracyAngle == 0.0)
+    {
+      largest[triangle.Facet] = Norm(normal);
+      this->FacetNormals[triangle.Facet] = (1.0 / Norm(normal)) * normal;
+    }
+  }
+
   for (Id p = 0; p < this->NumberOfSurfacePoints; ++p)
   {
     for (Id facet : this->PointFacets[p])
@@ -650,25 +673,56 @@ bool SurfaceRefiner::ResolveByFlip(Id t)
   return false;
 }
 
-Id SurfaceRefiner::FindSharedCorner(Id segment, Id point) const
+/**
+ * The partner of a point on another edge: the point of this edge's line that is as far from the
+ * common perpendicular of the two lines. If the edges meet, that is type R about their corner; if
+ * they are parallel it is type P. Being partners is mutual, so that two edges never climb up a
+ * ladder between them, and a point is outside of the diametral spheres of all pieces that end at
+ * its partner.
+ */
+bool SurfaceRefiner::PlacePartner(Id segment, Id disturbing, double& way) const
 {
-  if (static_cast<std::size_t>(point) >= this->PointEdges.size())
-  {
-    return NoId;
-  }
+  const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
+  const Vec3& a = this->Points[ends[0]];
+  const Vec3& p = this->Points[disturbing];
+  const Vec3 edge = this->Points[ends[1]] - a;
+  const Vec3 direction = (1.0 / Norm(edge)) * edge;
   const std::vector<EdgeIds>& edges = this->Surface->GetInputEdges();
   const Id own = this->Surface->GetSegment(segment).InputEdge;
-  for (Id edge : this->PointEdges[point])
+  // Of several edges at the point the one along this edge matters.
+  double best = 0.0;
+  for (Id other : this->PointEdges[disturbing])
   {
-    for (Id corner : edges[edge])
+    if (other == own)
     {
-      if (edge != own && corner != point && (corner == edges[own][0] || corner == edges[own][1]))
-      {
-        return corner;
-      }
+      continue;
     }
+    const Vec3& begin = this->Points[edges[other][0]];
+    Vec3 line = this->Points[edges[other][1]] - begin;
+    line = (1.0 / Norm(line)) * line;
+    double cosine = Dot(line, direction);
+    if (cosine < 0.0)
+    {
+      line = -1.0 * line;
+      cosine = -cosine;
+    }
+    if (cosine <= best)
+    {
+      continue;
+    }
+    best = cosine;
+    const Vec3 across = Cross(direction, line);
+    const double squaredSine = SquaredNorm(across);
+    const double foot = Dot(p - a, direction);
+    // Distance of p from the common perpendicular along its line, times 1 - cosine: a shift of the
+    // foot that stays small and accurate where the lines are almost parallel.
+    const double along = squaredSine > 0.0
+      ? Dot(Cross(p - a, direction), across) / squaredSine
+      : 0.0;
+    const double shift = squaredSine > 1e-24 ? -along * squaredSine / (1.0 + cosine) : 0.0;
+    way = foot + shift;
   }
-  return NoId;
+  return best > 0.0;
 }
 
 Vec3 SurfaceRefiner::PlaceOnSegment(Id segment, Id disturbing) const
@@ -681,30 +735,22 @@ Vec3 SurfaceRefiner::PlaceOnSegment(Id segment, Id disturbing) const
   if (disturbing != NoId)
   {
     const Vec3& p = this->Points[disturbing];
-    const Id corner = this->FindSharedCorner(segment, disturbing);
-    if (corner != NoId)
+    const double foot = Dot(p - a, direction);
+    const double height = Distance(p, a + foot * direction);
+    const bool isThin = height < ThinGapRatio * length;
+    double way = foot;
+    const bool isPartner = this->PlacePartner(segment, disturbing, way);
+    const double margin = isThin ? 0.0
+      : isPartner              ? SmallestPiece * length
+                               : std::min(height, 0.5 * length);
+    if (way > margin && way < length - margin)
     {
-      // Type R: as far from the corner as the disturbing point.
-      const Vec3& center = this->Points[corner];
-      const double radius = Distance(center, p);
-      const bool isFromA = SquaredNorm(a - center) <= SquaredNorm(b - center);
-      const double way = radius - Distance(isFromA ? a : b, center);
-      if (way > SmallestPiece * length && way < (1.0 - SmallestPiece) * length)
-      {
-        return isFromA ? a + way * direction : b - way * direction;
-      }
+      return a + way * direction;
     }
-    else
+    if (!isPartner && foot > 0.0 && foot < length)
     {
-      // Type P: the foot of the disturbing point, not nearer to the ends than it is to the edge.
-      const double foot = Dot(p - a, direction);
-      const double height = Distance(p, a + foot * direction);
-      const double margin = std::min(height, 0.5 * length);
-      const double way = std::min(std::max(foot, margin), length - margin);
-      if (foot > 0.0 && foot < length)
-      {
-        return a + way * direction;
-      }
+      // Type P, not nearer to the ends than the disturbing point is to the edge.
+      return a + std::min(std::max(foot, margin), length - margin) * direction;
     }
   }
   // From an acute corner only powers of two are used, so that all edges there end up alike.
@@ -894,31 +940,54 @@ bool SurfaceRefiner::RotateAboutCorner(Id t, Id disturbing, Vec3& target) const
   return SquaredNorm(inPlane) > 0.25 * SquaredNorm(arm) && InEquatorialSphere(a, b, c, target) > 0;
 }
 
-bool SurfaceRefiner::MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) const
+/**
+ * Type P for facets: along the normal. If the point's own facet is not parallel, the foot is moved
+ * until both are equally far from the line where the two planes meet, somewhere outside: that is
+ * type R again, and mutual.
+ */
+bool SurfaceRefiner::ProjectOntoFacet(Id t, Id disturbing, Vec3& target) const
 {
   const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
   const Vec3& a = this->Points[ids[0]];
   const Vec3 normal = Cross(this->Points[ids[1]] - a, this->Points[ids[2]] - a);
-  const Vec3 unit = (1.0 / Norm(normal)) * normal;
   const double radius =
     Distance(a, GetCircumcenter(a, this->Points[ids[1]], this->Points[ids[2]]));
   const Vec3& p = this->Points[disturbing];
-  const double height = std::abs(Dot(unit, p - a));
-  // Type R: about the line that the two facets share, if they meet at an acute angle there, or
-  // about a corner that they share.
-  if (this->RotateAboutAxis(t, disturbing, target) ||
-    this->RotateAboutCorner(t, disturbing, target))
-  {
-    // However close: only points that match exactly leave each other alone.
-    return true;
-  }
+  Vec3 unit = (1.0 / Norm(normal)) * normal;
+  unit = Dot(unit, p - a) < 0.0 ? -1.0 * unit : unit;
+  const double height = Dot(unit, p - a);
   if (height > ThinLayerRatio * radius)
   {
     return false;
   }
-  // Type P: along the normal.
-  target = p - Dot(unit, p - a) * unit;
-  return this->GetNearestDistance(target, disturbing) >= MirrorClearance * height;
+  target = p - height * unit;
+  double best = 0.0;
+  Vec3 other;
+  for (Id facet : this->PointFacets[disturbing])
+  {
+    const Vec3& candidate = this->FacetNormals[facet];
+    const double cosine = Dot(candidate, unit);
+    if (std::abs(cosine) > best)
+    {
+      best = std::abs(cosine);
+      other = cosine < 0.0 ? -1.0 * candidate : candidate;
+    }
+  }
+  if (best > 0.5)
+  {
+    // tan(angle / 2) = sin / (1 + cos); the sine is the length of the tilt.
+    const Vec3 tilt = other - best * unit;
+    target = target - (height / (1.0 + best)) * tilt;
+  }
+  return true;
+}
+
+bool SurfaceRefiner::MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) const
+{
+  // However close to other points: only points that match exactly leave each other alone.
+  return this->RotateAboutAxis(t, disturbing, target) ||
+    this->RotateAboutCorner(t, disturbing, target) ||
+    this->ProjectOntoFacet(t, disturbing, target);
 }
 
 bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMirrored)

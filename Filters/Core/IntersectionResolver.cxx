@@ -30,7 +30,7 @@ constexpr double ToleranceRatio = 1e-11;
 constexpr double ToleranceGrowth = 2.0;
 // In so many rounds triangles that overlap up to the tolerance count as intersecting, too. In later
 // ones the tolerance is too large for that.
-constexpr int RoundsWithOverlaps = 3;
+constexpr int RoundsWithOverlaps = 2;
 // The abort function is asked once in so many triangles.
 constexpr Id StepsBetweenChecks = 1024;
 // Determinants are trusted up to this relative error.
@@ -1144,11 +1144,13 @@ private:
         {
           if ((t < s && !active[t]) || t > s)
           {
-            const TriangleIds& a = this->Triangles[s];
-            const TriangleIds& b = this->Triangles[t];
+            // Small pieces are nearly coplanar near any crossing: what they come from has to be.
+            const TriangleIds& a = this->Surface.Triangles[this->Pieces[s].Root];
+            const TriangleIds& b = this->Surface.Triangles[this->Pieces[t].Root];
             if ((IsNearPlane(this->Points, a, b, this->Tolerance) ||
                   IsNearPlane(this->Points, b, a, this->Tolerance)) &&
-              GetOverlapWidth(this->Points, a, b) > 4.0 * this->Tolerance)
+              GetOverlapWidth(this->Points, this->Triangles[s], this->Triangles[t]) >
+                4.0 * this->Tolerance)
             {
               pairs.push_back({ std::min(s, t), std::max(s, t) });
             }

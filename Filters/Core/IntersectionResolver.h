@@ -65,7 +65,7 @@ struct IntersectionResolverOptions
    */
   double Tolerance = 0.0;
   /** Range > 0. */
-  int MaximumRounds = 30;
+  int MaximumRounds = 12;
 };
 
 struct IntersectionResolverReport

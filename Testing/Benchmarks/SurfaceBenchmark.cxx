@@ -4,13 +4,13 @@
  * @brief Measures the stages of the engine on one model or on a surface made here.
  *
  *     SurfaceBenchmark model FILE.vtp [CRITERION [ACCURACY_ANGLE [RESOLVE [SMESH]]]]
- *     SurfaceBenchmark torus TRIANGLES NOISE
+ *     SurfaceBenchmark torus TRIANGLES NOISE [TETRAHEDRALIZE]
  *
  * model: cleans, refines and tetrahedralizes the polygons of the file. SMESH: the same polygons with
  * coincident points merged are written there, as TetGen reads them.
  * torus: a torus of about so many triangles, its points moved along the normal by a smooth wave and
  * by a random part (NOISE, as a ratio of the spacing); refined, then refined again: the second time
- * nothing is left to do but the check.
+ * nothing is left to do but the check. TETRAHEDRALIZE: 0 leaves out the stage after it.
  *
  * Prints one line of "name value" pairs; seconds are processor time, without reading and writing.
  * Exit status: 0 done, 1 refused (the reason on the standard error), 2 wrong use.
@@ -236,7 +236,7 @@ cdm::TriangleMesh MakeTorus(int numberOfTriangles, double noise)
   return torus;
 }
 
-int RunTorus(char* argv[])
+int RunTorus(int argc, char* argv[])
 {
   const cdm::TriangleMesh torus = MakeTorus(std::atoi(argv[2]), std::atof(argv[3]));
   std::cout << "points " << torus.Points.size() << " triangles " << torus.Triangles.size() << " ";
@@ -249,7 +249,8 @@ int RunTorus(char* argv[])
   std::cout << "new " << refined.NewPoints.size() << " again " << checked.NewPoints.size()
             << " unresolved " << checked.UnresolvedTriangles.size() << " checkedtriangles "
             << refined.Surface.Triangles.size() << " ";
-  return Tetrahedralize(checked.Surface) ? 0 : 1;
+  const bool isToBeFilled = argc < 5 || std::atoi(argv[4]) != 0;
+  return !isToBeFilled || Tetrahedralize(checked.Surface) ? 0 : 1;
 }
 } // namespace
 
@@ -261,14 +262,14 @@ int main(int argc, char* argv[])
   {
     status = RunModel(argc, argv);
   }
-  else if (mode == "torus" && argc == 4)
+  else if (mode == "torus" && argc > 3)
   {
-    status = RunTorus(argv);
+    status = RunTorus(argc, argv);
   }
   else
   {
     std::cerr << "usage: SurfaceBenchmark model FILE.vtp [CRITERION [ACCURACY_ANGLE [RESOLVE "
-                 "[SMESH]]]]\n       SurfaceBenchmark torus TRIANGLES NOISE"
+                 "[SMESH]]]]\n       SurfaceBenchmark torus TRIANGLES NOISE [TETRAHEDRALIZE]"
               << std::endl;
   }
   std::cout << std::endl;

@@ -423,6 +423,62 @@ TEST(BoundaryTriangulator, NonPlanarPolygonsAreCounted)
   EXPECT_EQ(0, output.Report.OpenEdges);
 }
 
+TEST(BoundaryTriangulator, AllScales)
+{
+  // T-junctions, a gap, a duplicate and a tolerance that has the unit of the coordinates.
+  for (const double scale : { 1e-9, 1e-6, 1.0 / 3.0, 1.0, 1e3, 1e6 })
+  {
+    SCOPED_TRACE(scale);
+    std::vector<Vec3> points = MakeCubePoints();
+    points.insert(points.end(), { { 0.3, 0, 0 }, { 0.3, 1, 0 }, { 0.7, 1e-7, 0 }, { 0.7, 1, 0 } });
+    std::vector<std::vector<Id>> faces = CubeFaces;
+    faces[0] = { 0, 2, 9, 8 };
+    faces.push_back({ 8, 9, 11, 10 });
+    faces.push_back({ 10, 11, 3, 1 });
+    faces.push_back({ 1, 3, 11, 10 });
+    faces[1] = { 4, 5, 7 };
+    for (Vec3& p : points)
+    {
+      p = scale * p;
+    }
+    BoundaryTriangulatorOptions options;
+    options.MaximumGapEdges = 3;
+    EXPECT_EQ(3, ExpectOk(MakeSoup(points, faces)).Report.TJunctions);
+    options.MergeTolerance = 1e-6 * scale;
+    const BoundaryTriangulatorOutput output = ExpectOk(MakeSoup(points, faces), options);
+    EXPECT_EQ(4, output.Report.TJunctions);
+    EXPECT_EQ(1, output.Report.DuplicatePolygons);
+    EXPECT_EQ(1, output.Report.PatchedRings);
+    EXPECT_EQ(0, output.Report.OpenEdges);
+    EXPECT_NEAR(6.0, GetVolume(output.Surface) / scale / scale / scale, 1e-5);
+  }
+}
+
+TEST(BoundaryTriangulator, TheBorderOfAMoebiusStripIsNoGap)
+{
+  // 12 quadrilaterals that turn over once on their way round: a patch would cross the strip.
+  std::vector<Vec3> points;
+  std::vector<std::vector<Id>> faces;
+  constexpr int n = 12;
+  for (int i = 0; i < n; ++i)
+  {
+    const double angle = 2.0 * 3.14159265358979323846 * i / n;
+    for (const double side : { -1.0, 1.0 })
+    {
+      const double r = 3.0 + side * std::cos(0.5 * angle);
+      points.push_back({ r * std::cos(angle), r * std::sin(angle), side * std::sin(0.5 * angle) });
+    }
+    const Id a = 2 * i;
+    const bool isLast = i == n - 1;
+    faces.push_back({ a, a + 1, isLast ? 0 : a + 3, isLast ? 1 : a + 2 });
+  }
+  BoundaryTriangulatorOptions options;
+  options.MaximumGapEdges = 100;
+  const BoundaryTriangulatorOutput output = ExpectOk(MakeSoup(points, faces), options);
+  EXPECT_EQ(0, output.Report.PatchedRings);
+  EXPECT_EQ(2 * n, output.Report.OpenEdges);
+}
+
 TEST(BoundaryTriangulator, ProgressRisesAndAbortLeavesNothing)
 {
   double last = 0.0;

@@ -33,7 +33,10 @@ GREY = (0.80, 0.82, 0.85)
 # By region id: Bulk, GateOxide, Gate, LeftSpacer, RightSpacer.
 MOS_COLOURS = ((0.49, 0.65, 0.84), (0.96, 0.74, 0.24), (0.82, 0.34, 0.32),
                (0.55, 0.75, 0.48), (0.35, 0.66, 0.58))
-# Insulator, BottomLine, Plug, TopLine.
+# Where the regions go to be seen from all sides.
+MOS_SHIFTS = ((0.0, 0.0, -0.06), (0.0, 0.0, 0.0), (0.0, 0.0, 0.1),
+              (-0.12, 0.0, 0.06), (0.12, 0.0, 0.06))
+# By region id: Insulator, BottomLine, Plug, TopLine.
 VIA_COLOURS = ((0.70, 0.80, 0.88), (0.80, 0.47, 0.27), (0.90, 0.72, 0.33), (0.66, 0.35, 0.38))
 # For ids without a meaning: hues that differ between neighbours.
 FACET_COLOURS = ((0.49, 0.65, 0.84), (0.96, 0.74, 0.24), (0.82, 0.34, 0.32), (0.55, 0.75, 0.48),
@@ -81,6 +84,11 @@ def GetPolygons(surface):
     return [ids[begin:end] for begin, end in zip(ends[:-1], ends[1:])]
 
 
+def GetLines(data):
+    """Point ids of the ends of each line, an array of two columns."""
+    return vtk_to_numpy(data.GetLines().GetConnectivityArray()).reshape(-1, 2)
+
+
 def GetVolumes(mesh):
     """Signed volumes of the tetrahedra."""
     a, b, c, d = (GetPoints(mesh)[ids] for ids in GetTetrahedra(mesh).T)
@@ -101,6 +109,15 @@ def GetRegionVolumes(surface, count):
     return volumes
 
 
+def GetRegionSurface(surface, region, shift=(0.0, 0.0, 0.0)):
+    """The polygons around a region, turned so that their normals point out of it, and moved."""
+    labels = GetCellArray(surface, "BoundaryLabels")
+    polygons = [ids if back == region else ids[::-1]
+                for ids, (front, back) in zip(GetPolygons(surface), labels)
+                if region in (front, back)]
+    return MakeSurface(GetPoints(surface) + numpy.array(shift), polygons)
+
+
 def MakeSurface(points, polygons, colours=None):
     """A vtkPolyData of point ids; with colours, a row of red, green, blue (0 to 1) for each."""
     surface = vtkPolyData()
@@ -114,6 +131,16 @@ def MakeSurface(points, polygons, colours=None):
     if colours is not None:
         SetColours(surface, colours)
     return surface
+
+
+def MakeLines(points, ends):
+    """A vtkPolyData of lines."""
+    lines = MakeSurface(points, [])
+    cells = vtkCellArray()
+    for ids in ends:
+        cells.InsertNextCell(2, [int(i) for i in ids])
+    lines.SetLines(cells)
+    return lines
 
 
 def SetColours(data, colours):
@@ -177,7 +204,7 @@ class Scene:
         self.Renderer = vtkRenderer()
         self.Renderer.SetBackground(*BACKGROUND)
         self.Renderer.AutomaticLightCreationOff()
-        for position, intensity in (((-0.45, 0.75, 1.0), 0.82), ((0.9, -0.1, 0.6), 0.30)):
+        for position, intensity in (((-0.35, 0.75, 1.0), 0.80), ((0.7, -0.3, 1.0), 0.42)):
             light = vtkLight()
             light.SetLightTypeToCameraLight()
             light.SetPosition(*position)
@@ -200,7 +227,7 @@ class Scene:
         actor.SetMapper(mapper)
         look = actor.GetProperty()
         look.SetInterpolationToFlat()
-        look.SetAmbient(0.22)
+        look.SetAmbient(0.24)
         look.SetDiffuse(0.85)
         look.SetLineWidth(1.0 * SAMPLES)
         if colour is None:
