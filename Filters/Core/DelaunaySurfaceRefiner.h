@@ -12,16 +12,19 @@
  *  1. find the structural edges (Def. 6.2), flip to saturation (recursive triangle flip, Def. 6.1);
  *  2. test each triangle by the chosen criterion, with the double sphere (Crit. 6.1) in at most two
  *     searches of the point octree, and remember the sphere that proves it;
- *  3. for a triangle that fails: flip; or split the structural edge that is disturbed (type P:
- *     project the disturbing point, type R: rotate it about the shared vertex); or mirror the
- *     disturbing point into the triangle's facet (type P for thin layers, type R for sharp dihedral
- *     angles); or insert the projected circumcenter found by the walk (Fig. 6.10);
+ *  3. for a triangle that fails: flip; or split the structural edge that is disturbed at the foot or
+ *     the partner of the disturbing point (types P and R); or mirror the disturbing point into the
+ *     triangle's facet, about the edge or corner where the facets meet or along the normal; or
+ *     insert the projected circumcenter found by the walk (Fig. 6.10); or split the longest edge.
+ *     The rules and why they end: README.md beside this file;
  *  4. test again the triangles whose proving sphere holds the new point.
  *
  * Guarantees: exact decisions; input points keep their coordinates and ids; new points follow them.
  * Deterministic.
  * Failure: InvalidInput for a surface that breaks the invariants of TriangleMesh.h. Triangles that
  * stay bad because a limit stops the refinement are listed in UnresolvedTriangles: never silently.
+ * Cost: a triangle that is Delaunay takes one search of the octree, O(log n); a new point takes a few
+ * searches and one query of the spheres that prove the other triangles. About 350 bytes per triangle.
  */
 #ifndef cdmDelaunaySurfaceRefiner_h
 #define cdmDelaunaySurfaceRefiner_h
@@ -41,7 +44,10 @@ enum class SurfaceCriterion
   Delaunay = 0,
   /** Criterion 3.1: the smallest sphere of each triangle is empty. */
   SmallestSphere = 1,
-  /** Criterion 3.2: those of each triangle and of its edges are: closed control volumes. */
+  /**
+   * Criterion 3.2: those of each triangle and of its structural edges are: closed control volumes.
+   * Edges inside of a facet are left out: the criterion for them would forbid obtuse angles.
+   */
   SmallestSphereAndEdges = 2
 };
 

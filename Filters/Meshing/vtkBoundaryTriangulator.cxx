@@ -280,6 +280,7 @@ void vtkBoundaryTriangulator::TakeReport(const cdm::BoundaryTriangulatorReport& 
   this->NumberOfPatchedRings = report.PatchedRings;
   this->NumberOfOpenEdges = report.OpenEdges;
   this->NumberOfNonManifoldEdges = report.NonManifoldEdges;
+  this->NumberOfReversedPolygons = report.ReversedPolygons;
   this->NumberOfSelfIntersections = report.SelfIntersections;
 }
 
@@ -302,5 +303,6 @@ void vtkBoundaryTriangulator::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfPatchedRings: " << this->NumberOfPatchedRings << "\n";
   os << indent << "NumberOfOpenEdges: " << this->NumberOfOpenEdges << "\n";
   os << indent << "NumberOfNonManifoldEdges: " << this->NumberOfNonManifoldEdges << "\n";
+  os << indent << "NumberOfReversedPolygons: " << this->NumberOfReversedPolygons << "\n";
   os << indent << "NumberOfSelfIntersections: " << this->NumberOfSelfIntersections << "\n";
 }

@@ -12,7 +12,8 @@
  *  3. triangulate every polygon by recursive splitting, with exact signs;
  *  4. patch gaps: rings of at most MaximumGapEdges open edges;
  *  5. find all triangles that cross, overlap or touch each other wrongly, exactly; on request split
- *     them along their intersections.
+ *     them along their intersections;
+ *  6. turn over the triangles that are reversed, where BoundaryLabels or closure tell.
  *
  * Inputs: port 0: vtkPolyData. Polygons and triangle strips are used; vertices and lines are ignored
  * with a warning. Optional cell array BoundaryLabels (two whole numbers for each cell): the region
@@ -20,7 +21,8 @@
  *
  * Outputs: port 0: the surface, triangles only, coordinates in double precision. Cell data are those
  * of the polygon that a triangle comes from (for a patched gap: of the polygon at its first edge),
- * BoundaryLabels is a vtkIntArray; point data are those of the input points, interpolated where triangles were split.
+ * BoundaryLabels is a vtkIntArray; point data are those of the input points, interpolated where
+ * triangles were split.
  * Port 1: the problems found, to look at: line segments, or vertices where a segment is a point, and
  * the polygons concerned. Cell arrays: ProblemKind (int, see ProblemKinds), Cell and OtherCell
  * (vtkIdType): the cells of the input that it is about, -1 for none.
@@ -74,7 +76,9 @@ public:
     /** An open edge of a ring that was patched. */
     PatchedGap,
     /** An open edge that was left as it is. */
-    OpenEdge
+    OpenEdge,
+    /** A polygon against the orientation of the others; its triangles were turned over. */
+    ReversedPolygon
   };
 
   ///@{
@@ -138,6 +142,7 @@ public:
   vtkGetMacro(NumberOfPatchedRings, vtkIdType);
   vtkGetMacro(NumberOfOpenEdges, vtkIdType);
   vtkGetMacro(NumberOfNonManifoldEdges, vtkIdType);
+  vtkGetMacro(NumberOfReversedPolygons, vtkIdType);
   vtkGetMacro(NumberOfSelfIntersections, vtkIdType);
   ///@}
 
@@ -163,6 +168,7 @@ protected:
   vtkIdType NumberOfPatchedRings = 0;
   vtkIdType NumberOfOpenEdges = 0;
   vtkIdType NumberOfNonManifoldEdges = 0;
+  vtkIdType NumberOfReversedPolygons = 0;
   vtkIdType NumberOfSelfIntersections = 0;
 
 private:

@@ -9,8 +9,8 @@
  * maximum-edge-length, maximum-new-points, maximum-gap-edges, close-open-boundary (0 or 1),
  * resolve (self-intersections; 0 or 1).
  *
- * One line of "name value" pairs goes to the standard output: points of the cleaned input, points
- * added, tetrahedra, seconds of each stage. Errors and warnings of the filters go to the standard
+ * One line of "name value" pairs goes to the standard output: open edges and points of the cleaned
+ * input, points added, tetrahedra, seconds of each stage. Errors and warnings of the filters go to the standard
  * error. Exit status: 0 meshed, 1 refused by a filter, 2 wrong use or a file that cannot be read or
  * written.
  */
@@ -106,8 +106,9 @@ int main(int argc, char* argv[])
     return 1;
   }
   const vtkIdType points = triangulator->GetOutput()->GetNumberOfPoints();
-  std::cout << "points " << points << " new " << refiner->GetOutput()->GetNumberOfPoints() - points
-            << " unresolved " << refiner->GetNumberOfUnresolvedTriangles() << " ";
+  std::cout << "open " << triangulator->GetNumberOfOpenEdges() << " points " << points << " new "
+            << refiner->GetOutput()->GetNumberOfPoints() - points << " unresolved "
+            << refiner->GetNumberOfUnresolvedTriangles() << " ";
   if (!Run(tetrahedralizer, "tetrahedralize") || !Run(remover, "remove"))
   {
     return 1;

@@ -16,7 +16,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR, vtkPoints
 from vtkmodules.vtkCommonDataModel import (
     VTK_TETRA, vtkCellArray, vtkImageData, vtkPolyData, vtkUnstructuredGrid)
-from vtkmodules.vtkFiltersCore import vtkTubeFilter
+from vtkmodules.vtkFiltersCore import vtkTriangleFilter, vtkTubeFilter
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import (
@@ -82,6 +82,12 @@ def GetPolygons(surface):
     ends = vtk_to_numpy(surface.GetPolys().GetOffsetsArray())
     ids = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
     return [ids[begin:end] for begin, end in zip(ends[:-1], ends[1:])]
+
+
+def GetSortedTriangles(surface):
+    """The triangles as rows of rising point ids, in rising order: equal for equal sets."""
+    triangles = numpy.sort(numpy.array(GetPolygons(surface)), axis=1)
+    return triangles[numpy.lexsort(triangles.T[::-1])]
 
 
 def GetLines(data):
@@ -157,6 +163,13 @@ def CutOpen(mesh, axis, position):
     return SelectTetrahedra(mesh, keep)
 
 
+def Copy(data):
+    """A data set of its own: that of a filter changes when the filter runs again."""
+    copy = data.NewInstance()
+    copy.DeepCopy(data)
+    return copy
+
+
 def SelectTetrahedra(mesh, keep):
     """The tetrahedra for which the array is true, with their RegionId."""
     part = vtkUnstructuredGrid()
@@ -169,6 +182,14 @@ def SelectTetrahedra(mesh, keep):
     regions.SetName("RegionId")
     part.GetCellData().AddArray(regions)
     return part
+
+
+def Triangulate(surface):
+    """VTK draws a polygon as a fan, which is wrong if it is not convex; so its triangles."""
+    triangles = vtkTriangleFilter()
+    triangles.SetInputData(surface)
+    triangles.Update()
+    return triangles.GetOutput()
 
 
 def ExtractOutside(mesh):
@@ -194,6 +215,20 @@ def ColourByValue(values, low, high):
     return numpy.stack([numpy.interp(places, grid, channel) for channel in stops.T], axis=1)
 
 
+def DrawFront(scene, part, front, colours):
+    """A mesh in the making: its tetrahedra by region, and the front in orange with its edges.
+
+    The front turns to the unmeshed side, so it covers the tetrahedra under it.
+    """
+    outside = ExtractOutside(ColourByRegion(part, colours))
+    ids = GetOriginalPointIds(part, outside)
+    taken = set(map(bytes, GetSortedTriangles(front)))
+    keep = [bytes(numpy.sort(triangle)) not in taken for triangle in ids]
+    levels = vtk_to_numpy(outside.GetCellData().GetScalars())[keep] / 255.0
+    scene.AddSurface(MakeSurface(GetPoints(part), ids[keep], levels), edges=True)
+    scene.AddSurface(front, ORANGE, edges=True)
+
+
 class Scene:
     """A picture of WIDTH x HEIGHT pixels: a parallel view of the centre from a direction, up is z.
 
@@ -204,7 +239,7 @@ class Scene:
         self.Renderer = vtkRenderer()
         self.Renderer.SetBackground(*BACKGROUND)
         self.Renderer.AutomaticLightCreationOff()
-        for position, intensity in (((-0.35, 0.75, 1.0), 0.80), ((0.7, -0.3, 1.0), 0.42)):
+        for position, intensity in (((-0.35, 0.75, 1.0), 0.78), ((0.6, -0.3, 1.0), 0.55)):
             light = vtkLight()
             light.SetLightTypeToCameraLight()
             light.SetPosition(*position)
@@ -213,10 +248,13 @@ class Scene:
             self.Renderer.AddLight(light)
         centre = numpy.array(centre, dtype=float)
         direction = numpy.array(direction, dtype=float)
+        direction /= numpy.linalg.norm(direction)
+        # Lines lie this much in front of the surfaces that they belong to.
+        self.LineOffset = 0.002 * height * direction
         camera = self.Renderer.GetActiveCamera()
         camera.ParallelProjectionOn()
         camera.SetFocalPoint(*centre)
-        camera.SetPosition(*(centre + 10.0 * height * direction / numpy.linalg.norm(direction)))
+        camera.SetPosition(*(centre + 10.0 * height * direction))
         camera.SetViewUp(0.0, 0.0, 1.0)
         camera.SetParallelScale(0.5 * height)
 
@@ -227,8 +265,8 @@ class Scene:
         actor.SetMapper(mapper)
         look = actor.GetProperty()
         look.SetInterpolationToFlat()
-        look.SetAmbient(0.24)
-        look.SetDiffuse(0.85)
+        look.SetAmbient(0.26)
+        look.SetDiffuse(0.82)
         look.SetLineWidth(1.0 * SAMPLES)
         if colour is None:
             # Scalars would colour the backs too; so backs are left out, and what is behind shows.
@@ -245,7 +283,7 @@ class Scene:
 
     def AddSurface(self, surface, colour=None, edges=False):
         """Polygons in one colour, or in those of SetColours, with or without their edges."""
-        actor = self._Add(surface, colour)
+        actor = self._Add(Triangulate(surface), colour)
         if edges:
             actor.GetProperty().EdgeVisibilityOn()
             actor.GetProperty().SetEdgeColor(*LINES)
@@ -254,7 +292,7 @@ class Scene:
 
     def AddFarSide(self, surface, colour):
         """Only those polygons that turn their back to the camera."""
-        actor = self._Add(surface, colour)
+        actor = self._Add(Triangulate(surface), colour)
         actor.SetBackfaceProperty(None)
         actor.GetProperty().FrontfaceCullingOn()
 
@@ -262,6 +300,7 @@ class Scene:
         """The edges of polygons, or lines, of a width in pixels."""
         actor = self._Add(surface, colour)
         actor.SetBackfaceProperty(None)
+        actor.SetPosition(*self.LineOffset)
         actor.GetProperty().SetRepresentationToWireframe()
         actor.GetProperty().LightingOff()
         actor.GetProperty().SetLineWidth(width * SAMPLES)

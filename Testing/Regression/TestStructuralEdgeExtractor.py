@@ -52,7 +52,7 @@ Draw(Scene.Scene((0.0, 0.15, -0.15), (0.45, -1.0, 0.5), 1.0), surface, edges, 0.
 
 surface, edges = Extract(Scene.MakeViaPlug())
 assert CountByKind(edges) == [0, 64, 0, 52], CountByKind(edges)
-Draw(Scene.Scene((0.0, 0.0, 0.3), (0.55, -1.0, 0.45), 1.95), surface, edges, 0.008,
+Draw(Scene.Scene((0.0, 0.0, 0.3), (0.55, -1.0, 0.45), 1.75), surface, edges, 0.008,
      "StructuralEdgeExtractorVia.png")
 
 for picture in ("", "Via"):

@@ -49,7 +49,7 @@ assert numpy.allclose(volumes, expected, rtol=1e-12, atol=0.0), volumes
 labels = Scene.GetCellArray(via, "BoundaryLabels")
 walls = [ids for ids, (front, back) in zip(Scene.GetPolygons(via), labels)
          if front == -1 and back == 0]
-scene = Scene.Scene((0.0, 0.0, 0.3), (0.55, -1.0, 0.45), 1.95)
+scene = Scene.Scene((0.0, 0.0, 0.3), (0.55, -1.0, 0.45), 1.75)
 scene.AddFarSide(Scene.MakeSurface(Scene.GetPoints(via), walls), Scene.VIA_COLOURS[0])
 scene.AddWire(Scene.MakeSurface(Scene.GetPoints(via), walls))
 for region in (1, 2, 3):
