@@ -152,6 +152,7 @@ private:
   Status FindFirstFacet(TriangleIds& facet);
   void PrepareFront();
   Status GrowRegion(const SideSeed& seed);
+  bool IsOnHull(Id side);
   Status GrowHull();
   Status Advance(Id region);
   Status CompleteStar(Id vertex, Id region);
@@ -603,7 +604,8 @@ Status AdvancingFront::FindSeeds()
     const Id shell = sides.Shells[side];
     const bool isMeshed =
       !sides.IsOuter[shell] || (this->Options.CloseOpenBoundary && sides.IsOpen[shell]);
-    if (isMeshed && spaces[shell] == UnknownSpace)
+    // All sides around an opening are one shell, and some may look away from all points.
+    if (isMeshed && (spaces[shell] == UnknownSpace || sides.IsOpen[shell]))
     {
       spaces[shell] = static_cast<Id>(this->Seeds.size());
       this->Seeds.push_back({ side, NoId, spaces[shell] });
@@ -1087,6 +1089,14 @@ Status AdvancingFront::Advance(Id region)
   return Status();
 }
 
+bool AdvancingFront::IsOnHull(Id side)
+{
+  const TriangleIds ids = this->GetSideTriangle(side);
+  this->Search.SetVertex(this->Vertices[ids[0]]);
+  this->Search.Find(this->Vertices[ids[1]], this->Vertices[ids[2]], this->Found);
+  return this->Found.Point == NoId;
+}
+
 Status AdvancingFront::GrowRegion(const SideSeed& seed)
 {
   this->CurrentSpace = seed.Space;
@@ -1125,6 +1135,7 @@ Status AdvancingFront::GrowRegion(const SideSeed& seed)
     }
   }
   this->Postponed.clear();
+  this->Search.ForgetNearPoints();
   return Status();
 }
 
@@ -1510,7 +1521,8 @@ Status AdvancingFront::Run()
   }
   for (SideSeed seed : this->Seeds)
   {
-    if (this->SideFacets[seed.Side] != NoId)
+    if (this->SideFacets[seed.Side] != NoId ||
+      (this->Options.CloseOpenBoundary && this->IsOnHull(seed.Side)))
     {
       continue;
     }

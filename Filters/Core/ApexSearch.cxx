@@ -31,71 +31,17 @@ constexpr std::size_t FewCoplanarPoints = 4;
 /** Triangles of a worse condition are calculated in double-double arithmetic. */
 constexpr double GoodCondition = 12.0;
 
-/** Unevaluated sum of two doubles (T. J. Dekker 1971, doi:10.1007/BF01397083). */
-struct DoubleDouble
+/** Errors of |x|^2 and of 2 m x as calculated here, in units of the squared Manhattan norm of x and
+ * of that norm times the largest component of 2 m; some three roundings each. */
+constexpr double SquareError = 6.0 * Epsilon;
+constexpr double ProductError = 3.0 * Epsilon;
+/** Error of a product of some double-doubles. */
+constexpr double PreciseError = 256.0 * Epsilon * Epsilon;
+
+double GetLargest(const double* x)
 {
-  double High = 0.0;
-  double Low = 0.0;
-
-  static DoubleDouble FromSum(double a, double b)
-  {
-    const double s = a + b;
-    const double t = s - a;
-    return { s, (a - (s - t)) + (b - t) };
-  }
-
-  static DoubleDouble FromProduct(double a, double b)
-  {
-    const double p = a * b;
-    return { p, std::fma(a, b, -p) };
-  }
-
-  friend DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b)
-  {
-    const DoubleDouble high = FromSum(a.High, b.High);
-    const DoubleDouble low = FromSum(a.Low, b.Low);
-    const DoubleDouble sum = FromSum(high.High, high.Low + low.High);
-    return FromSum(sum.High, sum.Low + low.Low);
-  }
-  friend DoubleDouble operator-(const DoubleDouble& a) { return { -a.High, -a.Low }; }
-  friend DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) { return a + -b; }
-  friend DoubleDouble operator*(const DoubleDouble& a, const DoubleDouble& b)
-  {
-    const DoubleDouble product = FromProduct(a.High, b.High);
-    return FromSum(product.High, product.Low + (a.High * b.Low + a.Low * b.High));
-  }
-};
-
-struct DoubleDouble3
-{
-  DoubleDouble X[3];
-
-  static DoubleDouble3 FromDifference(const Vec3& a, const Vec3& b)
-  {
-    DoubleDouble3 result;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      result.X[axis] = DoubleDouble::FromSum(a[axis], -b[axis]);
-    }
-    return result;
-  }
-
-  friend DoubleDouble Dot(const DoubleDouble3& a, const DoubleDouble3& b)
-  {
-    return a.X[0] * b.X[0] + a.X[1] * b.X[1] + a.X[2] * b.X[2];
-  }
-  friend DoubleDouble3 Cross(const DoubleDouble3& a, const DoubleDouble3& b)
-  {
-    DoubleDouble3 result;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const int j = (axis + 1) % 3;
-      const int k = (axis + 2) % 3;
-      result.X[axis] = a.X[j] * b.X[k] - a.X[k] * b.X[j];
-    }
-    return result;
-  }
-};
+  return std::max({ std::abs(x[0]), std::abs(x[1]), std::abs(x[2]) });
+}
 
 double GetManhattanNorm(const Vec3& x)
 {
@@ -258,71 +204,129 @@ void ApexSearch::Fill(
   ball.View = { out[0], out[1], out[2], out[3], padded };
 }
 
-void ApexSearch::PreparePencil(const Vec3& u, const Vec3& w)
+bool ApexSearch::PreparePencil(const Vec3& u, const Vec3& w)
 {
   // u and w are rounded differences: relative errors of Epsilon / 2 in each component.
-  Vec3 normal = Cross(u, w);
+  const Vec3 normal = Cross(u, w);
   const double uu = SquaredNorm(u);
   const double ww = SquaredNorm(w);
-  double nn = SquaredNorm(normal);
+  const double nn = SquaredNorm(normal);
   const double conditionSquare = uu * ww / nn;
-  Pencil& pencil = this->Current;
-  if (conditionSquare < GoodCondition * GoodCondition)
+  if (!(conditionSquare < GoodCondition * GoodCondition))
   {
-    const Vec3 t{ ww * u.X - uu * w.X, ww * u.Y - uu * w.Y, ww * u.Z - uu * w.Z };
-    const double scale = 0.5 / nn;
-    const Vec3 offset = scale * Cross(normal, Vec3{ t.X, t.Y, t.Z });
-    const double lengths = std::sqrt(uu * ww);
-    const double sides = std::sqrt(uu) + std::sqrt(ww);
-    // As in FourthPointSearch.cxx: each component of n is off by at most 4 Epsilon |u| |w|, h by
-    // 6 Epsilon k^2 (|u| + |w|), both taken doubled and more.
-    pencil.HeightError = 32.0 * Epsilon * lengths;
-    pencil.OffsetError =
-      32.0 * Epsilon * conditionSquare * sides + 16.0 * Epsilon * GetManhattanNorm(offset);
-    Store(normal, 2.0, pencil.Normal);
-    Store(offset, 2.0, pencil.Offset);
-    this->NormalLength = std::sqrt(nn);
-    return;
+    return false;
   }
-  pencil.HeightError = Infinity;
+  Pencil& pencil = this->Current;
+  const Vec3 t{ ww * u.X - uu * w.X, ww * u.Y - uu * w.Y, ww * u.Z - uu * w.Z };
+  // As in FourthPointSearch.cxx: each component of n is off by at most 4 Epsilon |u| |w|, h by
+  // 6 Epsilon k^2 (|u| + |w|), both taken doubled and more.
+  Store(normal, 2.0, pencil.Normal);
+  Store(Cross(normal, t), 1.0 / nn, pencil.Offset);
+  this->NormalLength = std::sqrt(nn);
+  pencil.HeightError = 32.0 * Epsilon * std::sqrt(uu * ww);
+  pencil.OffsetError = 32.0 * Epsilon * conditionSquare * (std::sqrt(uu) + std::sqrt(ww)) +
+    4.0 * ProductError * GetLargest(pencil.Offset);
+  return true;
 }
 
-double ApexSearch::GetPreciseHeight(Id point, Id b, Id c) const
+void ApexSearch::PreparePrecisely(Id b, Id c)
 {
   const DoubleDouble3 u = DoubleDouble3::FromDifference(this->Tree.GetPoint(b), this->Position);
   const DoubleDouble3 w = DoubleDouble3::FromDifference(this->Tree.GetPoint(c), this->Position);
-  const DoubleDouble3 x = DoubleDouble3::FromDifference(this->Tree.GetPoint(point), this->Position);
-  const double height = Dot(Cross(u, w), x).High;
-  const double error =
-    256.0 * Epsilon * Epsilon * std::sqrt(Dot(u, u).High * Dot(w, w).High * Dot(x, x).High);
-  return std::abs(height) > error ? 2.0 * height : 0.0;
+  const DoubleDouble uu = Dot(u, u);
+  const DoubleDouble ww = Dot(w, w);
+  this->PreciseNormal = Cross(u, w);
+  this->PreciseSquare = Dot(this->PreciseNormal, this->PreciseNormal);
+  DoubleDouble3 t;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    t.X[axis] = ww * u.X[axis] - uu * w.X[axis];
+  }
+  this->PreciseOffset = Cross(this->PreciseNormal, t);
+  this->Lengths = std::sqrt(uu.High * ww.High);
+  this->Sides = std::sqrt(uu.High) + std::sqrt(ww.High);
+  const double nn = this->PreciseSquare.High;
+  Pencil& pencil = this->Current;
+  Store(this->PreciseNormal.GetHigh(), 2.0, pencil.Normal);
+  Store(this->PreciseOffset.GetHigh(), 1.0 / nn, pencil.Offset);
+  this->NormalLength = std::sqrt(nn);
+  pencil.HeightError =
+    2.0 * ProductError * GetLargest(pencil.Normal) + 2.0 * PreciseError * this->Lengths;
+  pencil.OffsetError = 2.0 * ProductError * GetLargest(pencil.Offset) +
+    2.0 * PreciseError * this->Lengths * this->Lengths / nn * this->Sides;
+  this->IsPrecise = true;
+  this->IsHopeless = !(pencil.HeightError < Infinity) || !(pencil.OffsetError < Infinity);
+  if (this->IsHopeless)
+  {
+    // Too flat even for that: every point may be in front, and nothing bounds lambda.
+    std::fill(pencil.Normal, pencil.Normal + 3, 0.0);
+    std::fill(pencil.Offset, pencil.Offset + 3, 0.0);
+    pencil.HeightError = 1.0;
+    pencil.OffsetError = std::numeric_limits<double>::max();
+  }
 }
 
-void ApexSearch::SetSphere(double offset, double height, const Vec3& x)
+int ApexSearch::Measure(Id point, Measured& measured) const
 {
-  // 2 m = 2 h + lambda 2 n; lambda = offset / height is off by (offset error + lambda times height
-  // error) / height.
-  Pencil& pencil = this->Current;
-  const double lambda = offset / height;
-  const double reach = GetManhattanNorm(x);
-  const double heightError = pencil.HeightError * reach;
-  const double offsetError = 8.0 * Epsilon * SquaredNorm(x) + pencil.OffsetError * reach;
-  // A height within its error was calculated with twice the digits.
+  if (this->IsHopeless)
+  {
+    return 0;
+  }
+  const DoubleDouble3 x = DoubleDouble3::FromDifference(this->Tree.GetPoint(point), this->Position);
+  const DoubleDouble xx = Dot(x, x);
+  measured.Height = Dot(this->PreciseNormal, x);
+  measured.Power = xx * this->PreciseSquare - Dot(this->PreciseOffset, x);
+  const double distance = std::sqrt(xx.High);
+  measured.HeightError = PreciseError * this->Lengths * distance;
+  measured.PowerError =
+    PreciseError * this->Lengths * this->Lengths * distance * (distance + this->Sides);
+  const double height = measured.Height.High;
+  return std::abs(height) <= 4.0 * measured.HeightError ? 0 : height > 0.0 ? 1 : -1;
+}
+
+bool ApexSearch::IsAbove(const Measured& a, const Measured& b)
+{
+  const double difference = (a.Power * b.Height - b.Power * a.Height).High;
+  const double error = 2.0 *
+    (a.PowerError * b.Height.High + std::abs(a.Power.High) * b.HeightError +
+      b.PowerError * a.Height.High + std::abs(b.Power.High) * a.HeightError);
+  return difference > error;
+}
+
+void ApexSearch::SetSphere(const Measured& measured)
+{
+  const DoubleDouble lambda = measured.Power / (measured.Height * this->PreciseSquare);
+  const double relativeError = 2.0 * measured.HeightError / measured.Height.High;
   const double lambdaError =
-    (height > 2.0 * heightError
-        ? (offsetError + std::abs(lambda) * heightError) / (height - heightError)
-        : offsetError / height) +
-    4.0 * Epsilon * std::abs(lambda);
-  this->Lambda = lambda;
+    2.0 * measured.PowerError / (measured.Height.High * this->PreciseSquare.High) +
+    std::abs(lambda.High) * relativeError;
+  Pencil& pencil = this->Current;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    pencil.Center[axis] =
+      (this->PreciseOffset.X[axis] / this->PreciseSquare + lambda * this->PreciseNormal.X[axis])
+        .High;
+  }
+  this->Best = measured;
+  this->LambdaLimit = 0.5 * (lambda.High + lambdaError + 4.0 * Epsilon * std::abs(lambda.High));
+  // The center is as good as double can be.
+  pencil.CenterError = ProductError * GetLargest(pencil.Center) + lambdaError * this->NormalLength +
+    2.0 * PreciseError * this->Lengths * this->Lengths / this->PreciseSquare.High * this->Sides +
+    std::abs(lambda.High) * PreciseError * this->Lengths;
+  pencil.HasSphere = true;
+}
+
+void ApexSearch::SetSphere(double lambda, double lambdaError)
+{
+  // 2 m = 2 h + lambda 2 n.
+  Pencil& pencil = this->Current;
   this->LambdaLimit = lambda + 2.0 * lambdaError;
-  double size = 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
     pencil.Center[axis] = pencil.Offset[axis] + lambda * pencil.Normal[axis];
-    size += std::abs(pencil.Center[axis]);
   }
   pencil.CenterError = pencil.OffsetError + std::abs(lambda) * pencil.HeightError +
-    2.0 * lambdaError * this->NormalLength + 32.0 * Epsilon * size;
+    2.0 * lambdaError * this->NormalLength + 2.0 * ProductError * GetLargest(pencil.Center);
   pencil.HasSphere = true;
 }
 
@@ -348,65 +352,36 @@ bool ApexSearch::IsCovered(double ballRadius) const
 
 void ApexSearch::Find(Id b, Id c, Apex& result)
 {
-  const Vec3 u = this->Tree.GetPoint(b) - this->Position;
-  const Vec3 w = this->Tree.GetPoint(c) - this->Position;
-  this->PreparePencil(u, w);
-  Pencil& pencil = this->Current;
-  pencil.HasSphere = false;
   result.Point = NoId;
   result.IsUnique = false;
   result.IsBox = false;
-  if (!(pencil.HeightError < Infinity))
+  this->Current.HasSphere = false;
+  this->IsPrecise = false;
+  this->IsHopeless = false;
+  if (!this->PreparePencil(
+        this->Tree.GetPoint(b) - this->Position, this->Tree.GetPoint(c) - this->Position))
   {
-    // Badly shaped: the same, from the exact differences.
-    const Vec3 pb = this->Tree.GetPoint(b);
-    const Vec3 pc = this->Tree.GetPoint(c);
-    const DoubleDouble3 du = DoubleDouble3::FromDifference(pb, this->Position);
-    const DoubleDouble3 dw = DoubleDouble3::FromDifference(pc, this->Position);
-    const DoubleDouble3 dn = Cross(du, dw);
-    const DoubleDouble uu = Dot(du, du);
-    const DoubleDouble ww = Dot(dw, dw);
-    DoubleDouble3 t;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      t.X[axis] = ww * du.X[axis] - uu * dw.X[axis];
-    }
-    const DoubleDouble3 numerator = Cross(dn, t);
-    const Vec3 normal{ dn.X[0].High, dn.X[1].High, dn.X[2].High };
-    const double nn = Dot(dn, dn).High;
-    const double scale = 0.5 / nn;
-    const Vec3 offset =
-      scale * Vec3{ numerator.X[0].High, numerator.X[1].High, numerator.X[2].High };
-    const double lengths = std::sqrt(uu.High * ww.High);
-    const double sides = std::sqrt(uu.High) + std::sqrt(ww.High);
-    const double condition = lengths / std::sqrt(nn);
-    constexpr double DoubleEpsilon = Epsilon * Epsilon;
-    pencil.HeightError = 16.0 * Epsilon * GetManhattanNorm(normal) + 64.0 * DoubleEpsilon * lengths;
-    pencil.OffsetError = 32.0 * Epsilon * GetManhattanNorm(offset) +
-      256.0 * DoubleEpsilon * condition * condition * sides;
-    Store(normal, 2.0, pencil.Normal);
-    Store(offset, 2.0, pencil.Offset);
-    this->NormalLength = std::sqrt(nn);
-    if (!(pencil.HeightError < Infinity) || !(pencil.OffsetError < Infinity))
-    {
-      // Too flat even for that: every point may be in front, and nothing bounds lambda.
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        pencil.Normal[axis] = 0.0;
-        pencil.Offset[axis] = 0.0;
-      }
-      pencil.HeightError = 1e-300;
-      pencil.OffsetError = std::numeric_limits<double>::max();
-    }
+    this->PreparePrecisely(b, c);
   }
-
   if (this->FindNear(this->Small, b, c, result) || this->FindNear(this->Large, b, c, result))
   {
     return;
   }
-  if (!pencil.HasSphere && this->IsInHullPlane(b, c))
+  const bool isSelected = this->Current.HasSphere;
+  if (!isSelected && this->IsInHullPlane(b, c))
   {
     return;
+  }
+  // What is left is worth the digits: the sphere is large, or the plane full of points.
+  if (!this->IsPrecise)
+  {
+    this->PreparePrecisely(b, c);
+  }
+  Measured measured;
+  this->Current.HasSphere = false;
+  if (isSelected && this->Measure(this->Selected, measured) > 0)
+  {
+    this->SetSphere(measured);
   }
   this->SearchTree(b, c);
   this->Resolve(b, c, result);
@@ -449,13 +424,21 @@ bool ApexSearch::FindNear(const Ball& ball, Id b, Id c, Apex& result)
   const double height = pencil.Normal[0] * x.X + pencil.Normal[1] * x.Y + pencil.Normal[2] * x.Z;
   const double offset = ball.View.W[selected] -
     (pencil.Offset[0] * x.X + pencil.Offset[1] * x.Y + pencil.Offset[2] * x.Z);
-  this->SetSphere(offset, height, x);
+  // lambda = offset / height is off by (offset error + lambda times height error) / height.
+  const double reach = GetManhattanNorm(x);
+  const double heightError = pencil.HeightError * reach;
+  const double offsetError = SquareError * ball.View.W[selected] + pencil.OffsetError * reach;
+  const double lambda = offset / height;
+  this->SetSphere(lambda,
+    (offsetError + std::abs(lambda) * heightError) / (height - heightError) +
+      2.0 * Epsilon * std::abs(lambda));
+  this->Selected = ball.Ids[selected];
   if (!this->IsCovered(ball.Radius))
   {
     return false;
   }
   int found[MostHits];
-  const double limit = ball.Radius * (32.0 * Epsilon * ball.Radius + 1.8 * pencil.CenterError);
+  const double limit = ball.Radius * (3.0 * SquareError * ball.Radius + 1.8 * pencil.CenterError);
   const int count = this->Kernels.Collect(ball.View, pencil, limit, found);
   if (count > MostHits)
   {
@@ -484,8 +467,8 @@ void ApexSearch::SearchTree(Id b, Id c)
   this->Waiting.clear();
   this->Waiting.push_back({ -Infinity, this->Tree.GetNumberOfLevels() - 1, 0 });
   const auto isLater = [](const WaitingNode& x, const WaitingNode& y) { return x.Bound > y.Bound; };
-  LeafView view;
   double bounds[8];
+  this->Measures.clear();
   while (!this->Waiting.empty())
   {
     std::pop_heap(this->Waiting.begin(), this->Waiting.end(), isLater);
@@ -499,8 +482,8 @@ void ApexSearch::SearchTree(Id b, Id c)
     {
       const std::size_t first = static_cast<std::size_t>(node.Index) * PointTree::Width;
       unsigned mask = this->Tree.GetLeafMask(node.Index) &
-        this->Kernels.ViewLeaf(this->Tree.GetX() + first, this->Tree.GetY() + first,
-          this->Tree.GetZ() + first, pencil, view);
+        this->Kernels.ViewLeaf(
+          this->Tree.GetX() + first, this->Tree.GetY() + first, this->Tree.GetZ() + first, pencil);
       for (; mask != 0; mask &= mask - 1)
       {
         const int lane = CountTrailingZeros(mask);
@@ -509,30 +492,41 @@ void ApexSearch::SearchTree(Id b, Id c)
         {
           continue;
         }
-        const Vec3 x = this->Tree.GetPoint(point) - this->Position;
-        double height = view.Height[lane];
-        if (height <= 4.0 * pencil.HeightError * GetManhattanNorm(x))
+        Measured measured{};
+        const int side = this->Measure(point, measured);
+        if (side < 0 || (side > 0 && pencil.HasSphere && IsAbove(measured, this->Best)))
         {
-          // Within the rounding errors of the plane: twice the digits tell the side, and a sphere
-          // that keeps the search near the triangle.
-          height = this->GetPreciseHeight(point, b, c);
-          if (height < 0.0)
+          continue;
+        }
+        if (side > 0 && (!pencil.HasSphere || IsAbove(this->Best, measured)))
+        {
+          // Those that are surely above it are out.
+          std::size_t kept = 0;
+          for (std::size_t i = 0; i < this->Candidates.size(); ++i)
           {
-            continue;
+            const Measured& other = this->Measures[i];
+            if (other.Height.High <= 0.0 || !IsAbove(other, measured))
+            {
+              this->Candidates[kept] = this->Candidates[i];
+              this->Measures[kept] = other;
+              ++kept;
+            }
           }
+          this->Candidates.resize(kept);
+          this->Measures.resize(kept);
+          this->SetSphere(measured);
         }
+        // Heights within their errors are as good as none.
+        measured.Height.High = side > 0 ? measured.Height.High : 0.0;
         this->Candidates.push_back(point);
-        if (height > 0.0 && (!pencil.HasSphere || view.Offset[lane] / height < this->Lambda))
-        {
-          this->SetSphere(view.Offset[lane], height, x);
-        }
+        this->Measures.push_back(measured);
       }
       continue;
     }
     const double* const boxes = this->Tree.GetBoxes(node.Level, node.Index);
     unsigned mask =
       this->Tree.GetMask(node.Level, node.Index) & this->Kernels.TestBoxes(boxes, pencil, bounds);
-    if (mask != 0 && pencil.HasSphere)
+    if (mask != 0 && !this->IsHopeless)
     {
       mask &= this->Kernels.TestSlabs(boxes, this->Tree.GetSlabs(node.Level, node.Index), pencil);
     }
@@ -629,7 +623,7 @@ void ApexSearch::Resolve(Id b, Id c, Apex& result)
     const double power =
       square - (pencil.Center[0] * x.X + pencil.Center[1] * x.Y + pencil.Center[2] * x.Z);
     const bool isIn =
-      !pencil.HasSphere || power <= 32.0 * Epsilon * square + pencil.CenterError * reach;
+      !pencil.HasSphere || power <= SquareError * square + pencil.CenterError * reach;
     if (isIn && height + pencil.HeightError * reach >= 0.0)
     {
       this->Candidates[kept++] = id;

@@ -26,6 +26,7 @@
 #ifndef cdmApexSearch_h
 #define cdmApexSearch_h
 
+#include "DoubleDouble.h"
 #include "PencilKernels.h"
 #include "PointTree.h"
 #include "Types.h"
@@ -58,15 +59,20 @@ public:
   /** Choose the vertex of the triangles to come. */
   void SetVertex(Id vertex);
 
+  /** To be called when points come back into the tree: the gathered ones lack them. */
+  void ForgetNearPoints() { this->Leaf = NoId; }
+
   /** Search in front of the triangle (vertex, b, c). */
   void Find(Id b, Id c, Apex& result);
 
 private:
-  struct Candidate
+  /** A point in a pencil with twice the digits: lambda is power / (2 |n|^2 height). */
+  struct Measured
   {
-    Id Point;
-    double Offset;
-    double Height;
+    DoubleDouble Power;
+    DoubleDouble Height;
+    double PowerError;
+    double HeightError;
   };
   struct WaitingNode
   {
@@ -77,11 +83,14 @@ private:
 
   void GatherLeaf(Id leaf);
   bool CollectNear(const double* box, double radius);
-  void PreparePencil(const Vec3& u, const Vec3& w);
-  void SetSphere(double offset, double height, const Vec3& x);
+  bool PreparePencil(const Vec3& u, const Vec3& w);
+  void PreparePrecisely(Id b, Id c);
+  int Measure(Id point, Measured& measured) const;
+  static bool IsAbove(const Measured& a, const Measured& b);
+  void SetSphere(const Measured& measured);
+  void SetSphere(double lambda, double lambdaError);
   bool IsCovered(double radius) const;
   void SearchTree(Id b, Id c);
-  double GetPreciseHeight(Id point, Id b, Id c) const;
   bool IsInHullPlane(Id b, Id c) const;
   void Resolve(Id b, Id c, Apex& result);
   bool ResolveBox(Id b, Id c, Apex& result) const;
@@ -92,9 +101,20 @@ private:
   Vec3 Position;
   Pencil Current;
   double NormalLength = 0.0;
-  /** Of the sphere of the pencil, and what its true lambda is surely not above. */
-  double Lambda = 0.0;
+  /** What the true lambda of the pencil's sphere is surely not above, in units of 2 n. */
   double LambdaLimit = 0.0;
+  /** The point that the sphere belongs to. */
+  Id Selected = NoId;
+
+  // The pencil with twice the digits: n, n x t (which is 2 h |n|^2), |n|^2, and |u| |w|, |u| + |w|.
+  bool IsPrecise = false;
+  bool IsHopeless = false;
+  DoubleDouble3 PreciseNormal;
+  DoubleDouble3 PreciseOffset;
+  DoubleDouble PreciseSquare;
+  Measured Best;
+  double Lengths = 0.0;
+  double Sides = 0.0;
 
   // Points around the leaf, and around the vertex.
   Id Leaf = NoId;
@@ -129,6 +149,7 @@ private:
   int NextHullPlane = 0;
 
   std::vector<Id> Candidates;
+  std::vector<Measured> Measures;
   std::vector<WaitingNode> Waiting;
 };
 } // namespace cdm

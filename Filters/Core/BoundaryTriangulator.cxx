@@ -166,8 +166,8 @@ public:
       &Triangulation::DropDuplicatePolygons, &Triangulation::TriangulatePolygons,
       &Triangulation::DropDuplicateTriangles, &Triangulation::PatchGaps,
       &Triangulation::FindIntersections, &Triangulation::ResolveIntersections,
-      &Triangulation::CountEdges, &Triangulation::RefuseIntersections,
-      &Triangulation::WriteOutput, &Triangulation::TurnReversedTriangles };
+      &Triangulation::CountEdges, &Triangulation::RefuseIntersections, &Triangulation::WriteOutput,
+      &Triangulation::TurnReversedTriangles };
     for (const Step step : steps)
     {
       const Status status = (this->*step)();
@@ -692,8 +692,7 @@ private:
       this->AddProblem(SurfaceProblemKind::DuplicatePolygon, this->Sources[t], this->Sources[first],
         this->Points[this->Triangles[t][0]], this->Points[this->Triangles[t][1]]);
       if (this->HasLabels() &&
-        !UniteLabels(
-          this->TriangleLabels[first], this->TriangleLabels[t], duplicate.IsReversed))
+        !UniteLabels(this->TriangleLabels[first], this->TriangleLabels[t], duplicate.IsReversed))
       {
         contradictions.push_back(this->Sources[first]);
         contradictions.push_back(this->Sources[t]);
@@ -869,9 +868,7 @@ private:
     {
       bool isFree = true;
       const auto test = [&](Id other)
-      {
-        isFree = isFree && this->CanPatchBeside(t, this->Triangles[other]);
-      };
+      { isFree = isFree && this->CanPatchBeside(t, this->Triangles[other]); };
       tree.VisitOverlaps(GetBox(this->Points, t), test);
       for (Id other = unpatched; other < static_cast<Id>(this->Triangles.size()); ++other)
       {

@@ -14,7 +14,9 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -231,8 +233,7 @@ bool IsNearPlane(
 }
 
 /** Width of the common part of two triangles that are nearly coplanar; rounded. */
-double GetOverlapWidth(
-  const std::vector<Vec3>& points, const TriangleIds& s, const TriangleIds& t)
+double GetOverlapWidth(const std::vector<Vec3>& points, const TriangleIds& s, const TriangleIds& t)
 {
   // Cut s along the edges of t, with heights above them in the plane of t.
   const Vec3& origin = points[t[0]];
@@ -266,8 +267,8 @@ double GetOverlapWidth(
   for (std::size_t k = 1; k < polygon.size(); ++k)
   {
     area = area + Cross(polygon[k - 1] - polygon[0], polygon[k] - polygon[0]);
-    longest = std::max({ longest, Distance(polygon[k], polygon[k - 1]),
-      Distance(polygon[k], polygon[0]) });
+    longest =
+      std::max({ longest, Distance(polygon[k], polygon[k - 1]), Distance(polygon[k], polygon[0]) });
   }
   return longest > 0.0 ? Norm(area) / longest : 0.0;
 }
@@ -309,7 +310,7 @@ bool HasVertex(const TriangleIds& t, Id id)
 class CuttingRound
 {
 public:
-  /** makeParents is told of each new point the piece it lies in. */
+  /** onNewPoint is told of the piece that a new point, the last one, lies in. */
   CuttingRound(std::vector<Vec3>& points, const std::vector<TriangleIds>& triangles,
     double tolerance, std::function<void(Id)> onNewPoint)
     : Points(points), Triangles(triangles), Tolerance(tolerance), Grid(points, tolerance),
@@ -380,8 +381,8 @@ public:
     }
     for (const auto& [key, ids] : this->OnEdge)
     {
-      const auto range = this->FindEdge(
-        { static_cast<Id>(key >> 32), static_cast<Id>(key & 0xFFFFFFFFu) });
+      const auto range =
+        this->FindEdge({ static_cast<Id>(key >> 32), static_cast<Id>(key & 0xFFFFFFFFu) });
       for (auto use = range.first; use != range.second; ++use)
       {
         changed.push_back(use->second);
@@ -392,7 +393,7 @@ public:
     return changed;
   }
 
-  /** The pieces of a triangle; degenerate: those from there on may be on one line. */
+  /** The pieces of a triangle; safe: how many of them, the first ones, surely have an area. */
   std::vector<TriangleIds> Cut(Id t, std::size_t& safe) const
   {
     const TriangleIds& ids = this->Triangles[t];
@@ -443,8 +444,8 @@ public:
 
 private:
   using EdgeTriangle = std::pair<EdgeIds, Id>;
-  using EdgeRange = std::pair<std::vector<EdgeTriangle>::const_iterator,
-    std::vector<EdgeTriangle>::const_iterator>;
+  using EdgeRange =
+    std::pair<std::vector<EdgeTriangle>::const_iterator, std::vector<EdgeTriangle>::const_iterator>;
 
   static EdgeIds MakeEdge(Id a, Id b) { return a < b ? EdgeIds{ a, b } : EdgeIds{ b, a }; }
   static std::uint64_t MakeKey(const EdgeIds& edge)
@@ -482,8 +483,7 @@ private:
 
   bool IsNearPlane(Id s, Id t) const
   {
-    return cdm::IsNearPlane(
-      this->Points, this->Triangles[s], this->Triangles[t], this->Tolerance);
+    return cdm::IsNearPlane(this->Points, this->Triangles[s], this->Triangles[t], this->Tolerance);
   }
 
   /** Triangles that are narrower than the tolerance are closed: the apex divides the long edge. */
@@ -523,8 +523,7 @@ private:
       }
       for (int i = 0; i < 3; ++i)
       {
-        if (MakeEdge(t[i], t[(i + 1) % 3]) != edge &&
-          this->IsNearEdge(point, t[i], t[(i + 1) % 3]))
+        if (MakeEdge(t[i], t[(i + 1) % 3]) != edge && this->IsNearEdge(point, t[i], t[(i + 1) % 3]))
         {
           this->DivideEdge(point, t[i], t[(i + 1) % 3]);
         }
@@ -618,8 +617,7 @@ private:
     }
     const EdgeIds otherEdge =
       MakeEdge(otherIds[contact.OtherEdge], otherIds[(contact.OtherEdge + 1) % 3]);
-    const Id id = this->MakePoint(
-      this->CrossSegments(this->GetAxis(own), edge, otherEdge), own);
+    const Id id = this->MakePoint(this->CrossSegments(this->GetAxis(own), edge, otherEdge), own);
     this->DivideEdge(id, edge[0], edge[1]);
     this->DivideEdge(id, otherEdge[0], otherEdge[1]);
     return id;
@@ -686,8 +684,9 @@ private:
           const Id b = other[(i + 1) % 3];
           isIn = isIn &&
             (this->IsNearEdge(id, a, b) ||
-              sign * ProjectedOrientation(
-                       axis, this->Points[a], this->Points[b], this->Points[id]) >= 0);
+              sign *
+                  ProjectedOrientation(axis, this->Points[a], this->Points[b], this->Points[id]) >=
+                0);
         }
         if (isIn)
         {
@@ -844,8 +843,8 @@ private:
         const EdgeIds a{ first.Points[i], first.Points[i + 1] };
         const EdgeIds b{ second.Points[j], second.Points[j + 1] };
         if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1] ||
-          !DoProjectedSegmentsCross(axis, this->Points[a[0]], this->Points[a[1]],
-            this->Points[b[0]], this->Points[b[1]]))
+          !DoProjectedSegmentsCross(
+            axis, this->Points[a[0]], this->Points[a[1]], this->Points[b[0]], this->Points[b[1]]))
         {
           continue;
         }
@@ -1045,6 +1044,7 @@ public:
           component.push_back(t);
         }
       }
+      std::vector<Id> sheets;
       for (const Id t : component)
       {
         const Id front = sides.Shells[2 * t];
@@ -1052,10 +1052,17 @@ public:
         const bool isKept = isConsistent ? (windings[front] == 0) != (windings[back] == 0)
                                          : sides.IsOuter[front] || sides.IsOuter[back];
         dropped[t] = isTouched && !isKept;
+        if (isKept && sides.IsOuter[front] && sides.IsOuter[back])
+        {
+          sheets.push_back(t);
+        }
+      }
+      if (isTouched && sheets.size() < component.size())
+      {
+        this->DropScraps(std::move(sheets), dropped);
       }
     }
-    this->Report.InternalTriangles =
-      static_cast<Id>(std::count(dropped.begin(), dropped.end(), 1));
+    this->Report.InternalTriangles = static_cast<Id>(std::count(dropped.begin(), dropped.end(), 1));
     this->Erase(dropped);
   }
 
@@ -1077,6 +1084,55 @@ public:
   }
 
 private:
+  /**
+   * Of sheets that stick out of something closed, those made of nothing but cut triangles: what is
+   * left where a surface ran along another one. Others may be parts of the model.
+   */
+  void DropScraps(std::vector<Id> sheets, std::vector<char>& dropped) const
+  {
+    std::sort(sheets.begin(), sheets.end());
+    sheets.erase(std::unique(sheets.begin(), sheets.end()), sheets.end());
+    std::map<EdgeIds, std::vector<Id>> sheetsAt;
+    for (const Id t : sheets)
+    {
+      for (int i = 0; i < 3; ++i)
+      {
+        sheetsAt[this->GetEdge(t, i)].push_back(t);
+      }
+    }
+    std::set<Id> left(sheets.begin(), sheets.end());
+    while (!left.empty())
+    {
+      std::vector<Id> sheet{ *left.begin() };
+      left.erase(left.begin());
+      bool isScrap = true;
+      for (std::size_t k = 0; k < sheet.size(); ++k)
+      {
+        isScrap = isScrap && this->Pieces[sheet[k]].IsTouched;
+        for (int i = 0; i < 3; ++i)
+        {
+          for (const Id next : sheetsAt[this->GetEdge(sheet[k], i)])
+          {
+            if (left.erase(next) > 0)
+            {
+              sheet.push_back(next);
+            }
+          }
+        }
+      }
+      for (const Id t : sheet)
+      {
+        dropped[t] = dropped[t] || isScrap;
+      }
+    }
+  }
+
+  EdgeIds GetEdge(Id t, int i) const
+  {
+    const auto ends = std::minmax(this->Triangles[t][i], this->Triangles[t][(i + 1) % 3]);
+    return { ends.first, ends.second };
+  }
+
   bool FindPairs(const ExecutionContext& context, std::vector<TrianglePair>& pairs)
   {
     std::vector<char> active(this->Pieces.size());
@@ -1097,8 +1153,7 @@ private:
       piece.IsActive = piece.IsDegenerate;
     }
     pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
-                  [this](const TrianglePair& pair)
-                  {
+                  [this](const TrianglePair& pair) {
                     return this->Pieces[pair[0]].IsDegenerate || this->Pieces[pair[1]].IsDegenerate;
                   }),
       pairs.end());
@@ -1271,8 +1326,9 @@ private:
       round.AddPair(pair[0], pair[1]);
     }
     round.ConnectChains();
-    const std::size_t size = this->Pieces.size();
-    std::vector<char> dropped(size, 0);
+    std::vector<char> dropped(this->Pieces.size(), 0);
+    std::vector<TriangleIds> newTriangles;
+    std::vector<Piece> newPieces;
     for (const Id t : round.GetChangedTriangles())
     {
       std::size_t safe = 0;
@@ -1286,21 +1342,18 @@ private:
       char& isCut = this->IsCut[this->Pieces[t].Root];
       this->Report.CutTriangles += isCut == 0;
       isCut = 1;
-      this->PendingTriangles.insert(this->PendingTriangles.end(), cut.begin(), cut.end());
+      newTriangles.insert(newTriangles.end(), cut.begin(), cut.end());
       for (std::size_t i = 0; i < cut.size(); ++i)
       {
-        this->PendingPieces.push_back(this->Pieces[t]);
-        Piece& piece = this->PendingPieces.back();
+        newPieces.push_back(this->Pieces[t]);
+        Piece& piece = newPieces.back();
         piece.IsActive = true;
         piece.IsDegenerate = i >= safe &&
           AreCollinear(this->Points[cut[i][0]], this->Points[cut[i][1]], this->Points[cut[i][2]]);
       }
     }
-    this->Triangles.insert(
-      this->Triangles.end(), this->PendingTriangles.begin(), this->PendingTriangles.end());
-    this->Pieces.insert(this->Pieces.end(), this->PendingPieces.begin(), this->PendingPieces.end());
-    this->PendingTriangles.clear();
-    this->PendingPieces.clear();
+    this->Triangles.insert(this->Triangles.end(), newTriangles.begin(), newTriangles.end());
+    this->Pieces.insert(this->Pieces.end(), newPieces.begin(), newPieces.end());
     dropped.resize(this->Pieces.size(), 0);
     this->Erase(dropped);
   }
@@ -1320,8 +1373,7 @@ private:
     const auto clip = [](double weight) { return weight < negligible ? 0.0 : weight; };
     const Vec3 normal = Cross(b - a, c - a);
     const double area = SquaredNorm(normal);
-    const double longest =
-      std::max({ SquaredNorm(b - a), SquaredNorm(c - b), SquaredNorm(a - c) });
+    const double longest = std::max({ SquaredNorm(b - a), SquaredNorm(c - b), SquaredNorm(a - c) });
     if (area > negligible * negligible * longest * longest)
     {
       const auto getWeight = [&](const Vec3& q, const Vec3& r)
@@ -1412,8 +1464,6 @@ private:
   std::vector<Piece> Pieces;
   /** For each triangle of the input. */
   std::vector<char> IsCut;
-  std::vector<TriangleIds> PendingTriangles;
-  std::vector<Piece> PendingPieces;
   double Tolerance = 0.0;
 };
 } // namespace
@@ -1424,8 +1474,7 @@ Status ResolveIntersections(const IntersectionResolverOptions& options,
 {
   newPoints.clear();
   report = {};
-  if (options.MaximumRounds <= 0 || !(options.Tolerance >= 0.0) ||
-    std::isinf(options.Tolerance))
+  if (options.MaximumRounds <= 0 || !(options.Tolerance >= 0.0) || std::isinf(options.Tolerance))
   {
     return Status::InvalidInput(
       "The number of rounds must be positive and the tolerance not negative.");

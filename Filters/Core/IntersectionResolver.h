@@ -20,22 +20,26 @@
  * Last, of an unlabelled surface only the pieces that bound the outside are kept, unless all are
  * asked for. The boundary of a union: with windings counted (one more on the back of each piece),
  * those with winding 0 on one side only. Where orientations contradict each other, those of which a
- * side belongs to the outer shell (SurfaceSides.h). Parts of the surface that take part in no
- * intersection stay as they are, inner sheets included.
+ * side belongs to the outer shell (SurfaceSides.h), but for scraps: sheets of cut triangles that
+ * stick out of something closed. Parts of the surface that take part in no intersection stay as
+ * they are, inner sheets included.
  *
  * Inputs: the invariants of TriangleMesh.h but for the intersections; SourceCells, for messages.
  * Outputs: pieces have the label and source cell of their triangle. Points are appended; those that
  * are no longer used stay. For each appended point its parents: the corners of an input triangle
  * that it lies in, with its barycentric coordinates.
- * Guarantees: on Ok the invariants of TriangleMesh.h hold; input points are not moved; a
- * triangle without intersections is changed only where a neighbour's cut divides its edge.
- * Deterministic.
- * Failure: InvalidInput names the cells that still intersect after MaximumRounds, or that cover each
- * other with different regions on the same side; the surface is then left as it was.
+ * Guarantees: on Ok the invariants of TriangleMesh.h hold; points of the input are not moved, but
+ * those of intersecting triangles merged if nearer than the tolerance; a triangle without
+ * intersections is changed only where a neighbour's cut divides its edge. Deterministic.
+ * Failure: InvalidInput names the cells that still intersect after MaximumRounds (seen where many
+ * triangles cross at angles of some hundred tolerances over their length), or that cover each other
+ * with different regions on the same side; the surface is then left as it was.
  * Cost: O(n log n) per round for n triangles of bounded overlap, k^2 in a triangle with k cuts.
  *
- * References: L. Valque, S. Lazard, "Removing self-intersections in 3D meshes while preserving
- * floating-point coordinates", 2025, hal-04907149 (rounding in rounds, with coarser snapping).
+ * References: D. Halperin, E. Packer, "Iterated snap rounding", Computational Geometry 23 (2002),
+ * 209-225 (pulling rounded points together, in rounds); J. R. Shewchuk, "Adaptive precision
+ * floating-point arithmetic and fast robust geometric predicates", 1997, doi:10.1007/PL00009321
+ * (exact sums).
  */
 #ifndef cdmIntersectionResolver_h
 #define cdmIntersectionResolver_h

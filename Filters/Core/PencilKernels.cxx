@@ -14,7 +14,7 @@ namespace cdm
 namespace
 {
 /** Error of sums like |x|^2 - 2 m x in units of |x|^2 (Manhattan norm), the share of m apart. */
-constexpr double SquareError = 32.0 * std::numeric_limits<double>::epsilon();
+constexpr double SquareError = 6.0 * std::numeric_limits<double>::epsilon();
 
 #ifdef CDM_HAS_X86_VECTORS
 namespace sse2

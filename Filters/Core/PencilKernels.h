@@ -46,14 +46,6 @@ struct NearPoints
   int Count;
 };
 
-/** Eight points of a leaf seen from a pencil. */
-struct LeafView
-{
-  double Height[8];
-  double Power[8];
-  double Offset[8];
-};
-
 struct PencilKernels
 {
   /**
@@ -79,7 +71,7 @@ struct PencilKernels
   /** Boxes not farther from the given box (low, high) than the square root of the limit. */
   unsigned (*TestDistance)(const double* boxes, const double* box, double limit);
   /** Points of a leaf that may be in front and in the sphere. */
-  unsigned (*ViewLeaf)(const double* x, const double* y, const double* z, const Pencil&, LeafView&);
+  unsigned (*ViewLeaf)(const double* x, const double* y, const double* z, const Pencil&);
 };
 
 /** Index of the lowest bit; the mask must not be 0. */

@@ -162,21 +162,25 @@ CDM_TARGET unsigned TestSlabs(const double* boxes, const double* slabs, const Pe
 {
   constexpr int Width = 8;
   const Lanes zero = Lanes::Set(0.0);
+  const Lanes half = Lanes::Set(0.5);
   unsigned result = 0;
   for (int i = 0; i < Width; i += Lanes::Size)
   {
-    // |x|^2 - 2 m x with x = d + q, d the slab's origin: at least
-    // |d|^2 - 2 m d + low + min (g + 2 d - 2 m) q.
+    // With x = d + q, d the slab's origin and g its slope: |q|^2 - g q is between low and high.
+    // 1. |x|^2 - 2 m x is at least |d|^2 - 2 m d + low + min (g + 2 d - 2 m) q.
     Lanes power = Lanes::Load(slabs + 6 * Width + i);
     Lanes reach = zero;
     Lanes size = zero;
+    // 2. For any weight w >= 0, 2 n x is at most 2 n d + w high + max ((2 n + w g) q - w |q|^2);
+    // the weight that lets the slope vanish across the slab is a good one.
+    Lanes across = zero;
+    Lanes acrossSquare = zero;
     for (int axis = 0; axis < 3; ++axis)
     {
       const Lanes center = Lanes::Set(pencil.Center[axis]);
-      const Lanes v = Lanes::Set(pencil.V[axis]);
       const Lanes origin = Lanes::Load(slabs + axis * Width + i);
       const Lanes slope = Lanes::Load(slabs + (axis + 3) * Width + i);
-      const Lanes d = Lanes::Sub(origin, v);
+      const Lanes d = Lanes::Sub(origin, Lanes::Set(pencil.V[axis]));
       power = Lanes::Add(power, Lanes::Mul(d, Lanes::Sub(d, center)));
       const Lanes factor = Lanes::Sub(Lanes::Add(slope, Lanes::Add(d, d)), center);
       const Lanes low = Lanes::Sub(Lanes::Load(boxes + axis * Width + i), origin);
@@ -185,11 +189,42 @@ CDM_TARGET unsigned TestSlabs(const double* boxes, const double* slabs, const Pe
       const Lanes far = Lanes::Max(Lanes::Sub(zero, low), Lanes::Max(high, zero));
       size = Lanes::Add(size, Lanes::Mul(far, Lanes::Max(slope, Lanes::Sub(zero, slope))));
       reach = Lanes::Add(reach, Lanes::Add(Lanes::Max(d, Lanes::Sub(zero, d)), far));
+      const Lanes outward = Lanes::Sub(Lanes::Add(low, high), slope);
+      across = Lanes::Add(across, Lanes::Mul(Lanes::Set(pencil.Normal[axis]), outward));
+      acrossSquare = Lanes::Add(acrossSquare, Lanes::Mul(outward, outward));
     }
-    const Lanes error =
-      Lanes::Add(Lanes::Mul(Lanes::Set(SquareError), Lanes::Add(Lanes::Mul(reach, reach), size)),
-        Lanes::Mul(Lanes::Set(pencil.CenterError), reach));
-    result |= Lanes::GetBits(Lanes::NotGreater(power, error)) << i;
+    const Lanes square =
+      Lanes::Mul(Lanes::Set(SquareError), Lanes::Add(Lanes::Mul(reach, reach), size));
+    unsigned mask = ~0u;
+    if (pencil.HasSphere)
+    {
+      mask = Lanes::GetBits(Lanes::NotGreater(
+        power, Lanes::Add(square, Lanes::Mul(Lanes::Set(pencil.CenterError), reach))));
+    }
+    const Lanes weight =
+      Lanes::Choose(Lanes::And(Lanes::Less(zero, across), Lanes::Less(zero, acrossSquare)),
+        Lanes::Div(across, acrossSquare), zero);
+    Lanes height = Lanes::Mul(weight, Lanes::Load(slabs + 7 * Width + i));
+    Lanes heightSize = Lanes::Mul(weight, Lanes::Add(Lanes::Mul(reach, reach), size));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Lanes normal = Lanes::Set(pencil.Normal[axis]);
+      const Lanes origin = Lanes::Load(slabs + axis * Width + i);
+      const Lanes slope = Lanes::Load(slabs + (axis + 3) * Width + i);
+      const Lanes low = Lanes::Sub(Lanes::Load(boxes + axis * Width + i), origin);
+      const Lanes high = Lanes::Sub(Lanes::Load(boxes + (axis + 3) * Width + i), origin);
+      const Lanes factor = Lanes::Add(normal, Lanes::Mul(weight, slope));
+      const Lanes top = Lanes::Div(Lanes::Mul(half, factor),
+        Lanes::Choose(Lanes::Less(zero, weight), weight, Lanes::Set(1e-300)));
+      const Lanes q = Lanes::Min(Lanes::Max(top, low), high);
+      height = Lanes::Add(height, Lanes::Mul(q, Lanes::Sub(factor, Lanes::Mul(weight, q))));
+      height =
+        Lanes::Add(height, Lanes::Mul(normal, Lanes::Sub(origin, Lanes::Set(pencil.V[axis]))));
+    }
+    const Lanes heightError = Lanes::Add(Lanes::Mul(Lanes::Set(SquareError), heightSize),
+      Lanes::Mul(Lanes::Set(2.0 * pencil.HeightError), reach));
+    mask &= Lanes::GetBits(Lanes::NotGreater(zero, Lanes::Add(height, heightError)));
+    result |= (mask & ((1u << Lanes::Size) - 1u)) << i;
   }
   return result;
 }
@@ -217,7 +252,7 @@ CDM_TARGET unsigned TestDistance(const double* boxes, const double* box, double 
 }
 
 CDM_TARGET unsigned ViewLeaf(
-  const double* px, const double* py, const double* pz, const Pencil& pencil, LeafView& view)
+  const double* px, const double* py, const double* pz, const Pencil& pencil)
 {
   constexpr int Width = 8;
   const Lanes zero = Lanes::Set(0.0);
@@ -236,14 +271,10 @@ CDM_TARGET unsigned ViewLeaf(
         Lanes::Mul(Lanes::Set(a[2]), z));
     };
     const Lanes height = dot(pencil.Normal);
-    const Lanes offset = Lanes::Sub(square, dot(pencil.Offset));
     const Lanes power = Lanes::Sub(square, dot(pencil.Center));
     const Lanes reach =
       Lanes::Add(Lanes::Add(Lanes::Max(x, Lanes::Sub(zero, x)), Lanes::Max(y, Lanes::Sub(zero, y))),
         Lanes::Max(z, Lanes::Sub(zero, z)));
-    Lanes::Store(view.Height + i, height);
-    Lanes::Store(view.Offset + i, offset);
-    Lanes::Store(view.Power + i, power);
     unsigned mask = Lanes::GetBits(Lanes::NotGreater(
       zero, Lanes::Add(height, Lanes::Mul(Lanes::Set(pencil.HeightError), reach))));
     if (pencil.HasSphere)

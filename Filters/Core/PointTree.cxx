@@ -168,6 +168,7 @@ void PointTree::BuildSlab(int level, Id node)
     }
   }
   double low = Infinity;
+  double high = -Infinity;
   for (Id i = begin; i < end; ++i)
   {
     const Vec3 q = this->GetPoint(i) - origin;
@@ -175,8 +176,9 @@ void PointTree::BuildSlab(int level, Id node)
     const double x = g[0] * q.X;
     const double y = g[1] * q.Y;
     const double z = g[2] * q.Z;
-    low = std::min(low,
-      square - (x + y + z) - 8.0 * Epsilon * (square + std::abs(x) + std::abs(y) + std::abs(z)));
+    const double error = 8.0 * Epsilon * (square + std::abs(x) + std::abs(y) + std::abs(z));
+    low = std::min(low, square - (x + y + z) - error);
+    high = std::max(high, square - (x + y + z) + error);
   }
   double* const slab = this->Levels[level].Slabs.data() +
     static_cast<std::size_t>(node / Width) * SlabStride + node % Width;
@@ -186,6 +188,7 @@ void PointTree::BuildSlab(int level, Id node)
     slab[(axis + 3) * Width] = g[axis];
   }
   slab[6 * Width] = low;
+  slab[7 * Width] = high;
 }
 
 void PointTree::UpdateLeaf(Id leaf)

@@ -8,10 +8,10 @@
  * boxes are tight around the points that are still there. Point i of the tree is the i-th along
  * the curve.
  *
- * Slabs: besides its box each node knows, for one sphere fitted to its points, how far inside of
- * that sphere they lie at most. Points on a curved surface fill a thin slab next to a sphere, while
- * their box is as thick as wide; without slabs a search along a sphere that touches such a surface
- * visits a number of leaves that grows with the fineness.
+ * Slabs: besides its box each node knows, for one sphere fitted to its points, between which of its
+ * concentric spheres they lie. Points on a curved surface fill a thin slab, while their box is as
+ * thick as wide; without slabs a search along a sphere or plane that touches such a surface visits
+ * a number of leaves that grows with the fineness.
  *
  * Invariants: a child is in the mask of its parent if and only if it holds a point that has not
  * dropped out; its box is then the tight box of these.
@@ -36,7 +36,7 @@ public:
   static constexpr int Width = 8;
   /** Numbers of one group of siblings: six box coordinates, then those of the slabs. */
   static constexpr int BoxStride = 6 * Width;
-  static constexpr int SlabStride = 7 * Width;
+  static constexpr int SlabStride = 8 * Width;
 
   /** Positions in the order of the curve. */
   void Build(const std::vector<Vec3>& points, const std::vector<Id>& order);

@@ -354,8 +354,7 @@ int FindProjectionAxis(const Vec3& a, const Vec3& b, const Vec3& c, int& sign)
   return GetProjectionAxis({ a, b, c }, sign);
 }
 
-bool DoProjectedSegmentsCross(
-  int axis, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+bool DoProjectedSegmentsCross(int axis, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
   return ProjectedOrientation(axis, a, b, c) * ProjectedOrientation(axis, a, b, d) < 0 &&
     ProjectedOrientation(axis, c, d, a) * ProjectedOrientation(axis, c, d, b) < 0;

@@ -720,7 +720,7 @@ void FromTetMesh(const cdm::TetMesh& mesh, vtkUnstructuredGrid* output)
     regions->SetValue(i, mesh.Regions[i]);
   }
   output->SetCells(VTK_TETRA, cells);
-  output->GetCellData()->AddArray(regions);
+  output->GetCellData()->SetScalars(regions);
 }
 
 //--------------------------------------------------------------------------------------------------

@@ -2,18 +2,21 @@
 """Measures the surface refinement beside TetGen, and how its cost grows. Prints Markdown.
 
     SurfaceBenchmark.py --program BUILD/bin/SurfaceBenchmark [--models FOLDER] [--tetgen PROGRAM]
-        [--time-limit SECONDS] [--growth TRIANGLES...]
+        [--validator PROGRAM] [--time-limit SECONDS] [--growth TRIANGLES...]
 
 --models: a folder of .vtp files; those that its INDEX.csv, if there is one, marks as valid are
-taken. Without it only the growth is measured. --time-limit: processor time of a TetGen run.
-Times are processor times. TetGen's include reading (not writing); ours are those of the stages.
+taken. Without it only the growth is measured. --validator: judges TetGen's meshes (but those of the
+last run, which are large); what it refuses is marked by a star. --time-limit: of a TetGen run.
+Times are processor times without reading and writing, TetGen's as it prints them.
 """
 import argparse
 import csv
 import glob
+import json
 import os
 import re
 import resource
+import signal
 import statistics
 import subprocess
 import sys
@@ -23,41 +26,40 @@ import tempfile
 TETGEN_RUNS = ["-pDM", "-pD", "-pq1.4AaD3O0"]
 
 
-def cpu_time():
-    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return usage.ru_utime + usage.ru_stime
-
-
 def run(command, time_limit=None):
-    """Standard output and processor time; None for the output if the limit was met."""
+    """Standard output; None if the time limit was met."""
     limit = None
     if time_limit:
         def limit():
-            resource.setrlimit(resource.RLIMIT_CPU, (int(time_limit), int(time_limit)))
-    before = cpu_time()
+            resource.setrlimit(resource.RLIMIT_CPU, (int(time_limit), int(time_limit) + 5))
     process = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                              universal_newlines=True, preexec_fn=limit)
-    seconds = cpu_time() - before
-    met_limit = bool(time_limit) and seconds >= time_limit - 1
-    return None if met_limit and process.returncode != 0 else process.stdout, seconds
+    return None if process.returncode == -signal.SIGXCPU else process.stdout
 
 
 def run_ours(program, *arguments):
-    words = run([program] + [str(argument) for argument in arguments])[0].split()
+    words = run([program] + [str(argument) for argument in arguments]).split()
     return {name: float(value) for name, value in zip(words[0::2], words[1::2])}
 
 
-def run_tetgen(tetgen, switches, smesh, time_limit):
-    """Points added, tetrahedra, seconds; or why there are none."""
-    output, seconds = run([tetgen, switches + "NEF", smesh], time_limit)
+def run_tetgen(arguments, switches, path, smesh):
+    """Points added, tetrahedra, seconds, verdict; or why there are none."""
+    is_judged = arguments.validator and switches != TETGEN_RUNS[-1]
+    output = run([arguments.tetgen, switches + ("kNEF" if is_judged else "NEF"), smesh],
+                 arguments.time_limit)
     if output is None:
-        return "> %g s" % time_limit
-    before = re.search(r"Input points: (\d+)", output)
-    after = re.search(r"Mesh points: (\d+)", output)
-    tetrahedra = re.search(r"Mesh tetrahedra: (\d+)", output)
-    if not (before and after and tetrahedra):
+        return "> %g s" % arguments.time_limit
+    values = [re.search(pattern, output) for pattern in (
+        r"Input points: (\d+)", r"Mesh points: (\d+)", r"Mesh tetrahedra: (\d+)",
+        r"Total running seconds: *(\S+)", r"Output seconds: *(\S+)")]
+    if not all(values):
         return "fails"
-    return int(after[1]) - int(before[1]), int(tetrahedra[1]), seconds
+    before, after, tetrahedra, total, writing = [float(value[1]) for value in values]
+    verdict = ""
+    if is_judged:
+        report = run([arguments.validator, path, smesh.replace(".smesh", ".1.vtk"), "--quiet"])
+        verdict = json.loads(report)["verdict"]
+    return after - before, tetrahedra, total - writing, verdict
 
 
 def find_models(folder):
@@ -70,50 +72,60 @@ def find_models(folder):
     return [os.path.join(folder, row["file"]) for row in valid]
 
 
-def print_ratios(ratios, name, what):
-    if ratios:
-        print("- %s: median of %s %.2f (quartiles %.2f to %.2f), %d models" % (
-            name, what, statistics.median(ratios),
-            *(statistics.quantiles(ratios, n=4)[::2] if len(ratios) > 1 else ratios * 2),
-            len(ratios)))
+def describe(ratios):
+    """Median and quartiles."""
+    if len(ratios) < 2:
+        return "%.2f" % ratios[0]
+    low, middle, high = statistics.quantiles(ratios, n=4, method="inclusive")
+    return "%.2f (%.2f to %.2f)" % (middle, low, high)
 
 
 def compare(arguments):
-    print("| model | points | refined by | tetrahedra | s refine, mesh |"
-          + "".join(" `%s` by | tetrahedra | s |" % switches for switches in TETGEN_RUNS))
-    print("|---|" + "---:|" * (4 + 3 * len(TETGEN_RUNS)))
-    ratios = {switches: {"points": [], "tetrahedra": [], "time": []} for switches in TETGEN_RUNS}
+    print("| model | points | ours: added | tetrahedra | refine s | mesh s |"
+          + "".join(" `%s`: added | tetrahedra | s |" % switches for switches in TETGEN_RUNS))
+    print("|---|" + "---:|" * (5 + 3 * len(TETGEN_RUNS)))
+    ratios = []
     stages = []
     with tempfile.TemporaryDirectory() as folder:
         smesh = os.path.join(folder, "model.smesh")
         for path in find_models(arguments.models):
             ours = run_ours(arguments.program, "model", path, 0, 0, 0, smesh)
+            name = os.path.basename(path)[:-4]
             if "tetrahedra" not in ours:
-                print("| %s | fails |" % os.path.basename(path)[:-4], flush=True)
+                print("| %s | fails |" % name, flush=True)
                 continue
             points = ours["points"] + ours["new"]
             seconds = ours["triangulate"] + ours["refine"] + ours["tetrahedralize"]
-            line = "| %s | %d | %d | %d | %.2f, %.2f |" % (
-                os.path.basename(path)[:-4], ours["points"], ours["new"], ours["tetrahedra"],
-                ours["refine"], ours["tetrahedralize"])
+            line = "| %s | %d | %d | %d | %.2f | %.2f |" % (
+                name, ours["points"], ours["new"], ours["tetrahedra"], ours["refine"],
+                ours["tetrahedralize"])
             if seconds >= 0.1:
                 stages.append(ours["refine"] / ours["tetrahedralize"])
             for switches in TETGEN_RUNS:
-                theirs = run_tetgen(arguments.tetgen, switches, smesh, arguments.time_limit)
+                theirs = run_tetgen(arguments, switches, path, smesh)
                 if isinstance(theirs, str):
                     line += " %s | | |" % theirs
                     continue
-                line += " %d | %d | %.2f |" % theirs
-                ratios[switches]["points"].append(points / (ours["points"] + theirs[0]))
-                ratios[switches]["tetrahedra"].append(ours["tetrahedra"] / theirs[1])
-                if seconds >= 0.1 or theirs[2] >= 0.1:
-                    ratios[switches]["time"].append(seconds / max(theirs[2], 0.01))
+                added, tetrahedra, their_seconds, verdict = theirs
+                line += " %d%s | %d | %.2f |" % (
+                    added, "*" if verdict == "fail" else "", tetrahedra, their_seconds)
+                ratios.append((switches, verdict, points / (ours["points"] + added),
+                               ours["tetrahedra"] / tetrahedra,
+                               seconds / max(their_seconds, 0.001)))
             print(line, flush=True)
-    print("\nOurs divided by TetGen's (times where one of them takes 0.1 s or more):\n")
+    print("\nOurs divided by TetGen's, median (quartiles):\n")
+    print("| TetGen run | models | points | tetrahedra | time |")
+    print("|---|---:|---:|---:|---:|")
     for switches in TETGEN_RUNS:
-        for what in ("points", "tetrahedra", "time"):
-            print_ratios(ratios[switches][what], "`%s`" % switches, what)
-    print_ratios(stages, "refinement beside tetrahedralization", "time")
+        for verdict, comment in ((None, ""), ("ok", ", its mesh passes the validator")):
+            rows = [row for row in ratios
+                    if row[0] == switches and (verdict is None or row[1] == verdict)]
+            if rows:
+                print("| `%s`%s | %d | %s |" % (switches, comment, len(rows), " | ".join(
+                    describe([row[column] for row in rows]) for column in (2, 3, 4))))
+    if stages:
+        print("\nRefinement divided by tetrahedralization, where all takes 0.1 s or more: %s, "
+              "%d models." % (describe(stages), len(stages)))
 
 
 def measure_growth(arguments):
@@ -132,6 +144,7 @@ def main():
     parser.add_argument("--program", required=True)
     parser.add_argument("--models")
     parser.add_argument("--tetgen", default="tetgen")
+    parser.add_argument("--validator")
     parser.add_argument("--time-limit", type=float, default=30.0)
     parser.add_argument("--growth", type=int, nargs="*", default=[10000, 100000, 1000000])
     arguments = parser.parse_args()

@@ -29,8 +29,7 @@ struct Transform
 
   Vec3 operator()(const Vec3& p) const
   {
-    return this->Shift + p.X * this->Columns[0] + p.Y * this->Columns[1] +
-      p.Z * this->Columns[2];
+    return this->Shift + p.X * this->Columns[0] + p.Y * this->Columns[1] + p.Z * this->Columns[2];
   }
 
   static Transform Scale(double factor, const Vec3& shift = {})
@@ -92,8 +91,8 @@ struct Soup : PolygonSoup
       this->Points.push_back(
         { i & 1 ? high.X : low.X, i & 2 ? high.Y : low.Y, i & 4 ? high.Z : low.Z });
     }
-    for (const std::vector<Id>& face : std::vector<std::vector<Id>>{ { 0, 2, 3, 1 },
-           { 4, 5, 7, 6 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 4, 6, 2 }, { 1, 3, 7, 5 } })
+    for (const std::vector<Id>& face : std::vector<std::vector<Id>>{ { 0, 2, 3, 1 }, { 4, 5, 7, 6 },
+           { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 4, 6, 2 }, { 1, 3, 7, 5 } })
     {
       for (const Id id : face)
       {
@@ -200,8 +199,8 @@ double GetArea(const TriangleMesh& surface)
   for (const TriangleIds& t : surface.Triangles)
   {
     area += 0.5 *
-      Norm(Cross(surface.Points[t[1]] - surface.Points[t[0]],
-        surface.Points[t[2]] - surface.Points[t[0]]));
+      Norm(Cross(
+        surface.Points[t[1]] - surface.Points[t[0]], surface.Points[t[2]] - surface.Points[t[0]]));
   }
   return area;
 }
@@ -292,10 +291,24 @@ TEST(IntersectionResolver, CubesThatTouchOrAreNested)
   EXPECT_DOUBLE_EQ(29.5, GetArea(Resolve(soup).Surface));
 }
 
+TEST(IntersectionResolver, ScrapsGoAndSheetsStay)
+{
+  // A triangle through a wall: one half lies inside, the other one bounds nothing.
+  Soup soup;
+  soup.AddBox({ 0, 0, 0 }, { 1, 1, 1 });
+  soup.Add({ { 0.5, 0.25, 0.5 }, { 2.5, 0.25, 0.5 }, { 2.5, 0.75, 0.5 } });
+  EXPECT_DOUBLE_EQ(6.0, GetArea(Resolve(soup).Surface));
+  EXPECT_DOUBLE_EQ(6.5, GetArea(Resolve(soup, ResolvedPieces::All).Surface));
+  // With a triangle behind it that is not cut it may be a part of the model.
+  soup.Add({ { 2.5, 0.25, 0.5 }, { 3.5, 0.25, 0.5 }, { 2.5, 0.75, 0.5 } });
+  BoundaryTriangulatorOutput output = Resolve(soup);
+  EXPECT_LT(6.5, GetArea(output.Surface));
+  EXPECT_LT(0, output.Report.OpenEdges);
+}
+
 TEST(IntersectionResolver, CavitiesStayEmpty)
 {
-  // Two bars and two beams make a frame around nothing; then one bar is turned inside out, so that
-  // windings contradict each other.
+  // Two bars and two beams make a frame around nothing.
   Soup soup;
   soup.AddBox({ 0, 0, 0 }, { 1, 4, 1 });
   soup.AddBox({ 3, 0, 0 }, { 4, 4, 1 });
@@ -585,25 +598,27 @@ TEST(IntersectionResolver, NeedlesAndNearMisses)
 TEST(IntersectionResolver, BadOptionsAndTooFewRounds)
 {
   TriangleMesh surface;
-  surface.Points = { { 0, 0, 0 }, { 4, 0, 0 }, { 0, 4, 0 }, { 1, 1, -1 }, { 1, 1, 1 }, { 9, 9, 1 } };
+  surface.Points = { { 0, 0, 0 }, { 4, 0, 0 }, { 0, 4, 0 }, { 1, 1, -1 }, { 1, 1, 1 },
+    { 9, 9, 1 } };
   surface.Triangles = { { 0, 1, 2 }, { 3, 4, 5 } };
   surface.SourceCells = { 7, 5 };
   IntersectionResolverOptions options;
   IntersectionResolverReport report;
   std::vector<PointParents> newPoints;
   options.MaximumRounds = 0;
-  EXPECT_EQ(StatusCode::InvalidInput,
-    ResolveIntersections(options, {}, surface, newPoints, report).Code);
+  EXPECT_EQ(
+    StatusCode::InvalidInput, ResolveIntersections(options, {}, surface, newPoints, report).Code);
   options = {};
   options.Tolerance = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(StatusCode::InvalidInput,
-    ResolveIntersections(options, {}, surface, newPoints, report).Code);
+  EXPECT_EQ(
+    StatusCode::InvalidInput, ResolveIntersections(options, {}, surface, newPoints, report).Code);
 
   // Vertices nearer than the tolerance are merged first, which takes the only round.
   options = {};
   options.Tolerance = 0.01;
   options.MaximumRounds = 1;
-  surface.Points.insert(surface.Points.end(), { { 1, 1.5, 0.004 }, { 1, 1.5, -0.004 }, { 5, 5, 5 } });
+  surface.Points.insert(
+    surface.Points.end(), { { 1, 1.5, 0.004 }, { 1, 1.5, -0.004 }, { 5, 5, 5 } });
   surface.Triangles.push_back({ 6, 7, 8 });
   surface.SourceCells.push_back(3);
   const TriangleMesh before = surface;

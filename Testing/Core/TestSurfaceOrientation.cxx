@@ -21,9 +21,9 @@ void AddBox(TriangleMesh& mesh, const Vec3& low, const Vec3& high)
     mesh.Points.push_back(
       { i & 1 ? high.X : low.X, i & 2 ? high.Y : low.Y, i & 4 ? high.Z : low.Z });
   }
-  for (const TriangleIds& t : std::vector<TriangleIds>{ { 0, 2, 3 }, { 0, 3, 1 }, { 4, 5, 7 },
-         { 4, 7, 6 }, { 0, 1, 5 }, { 0, 5, 4 }, { 2, 6, 7 }, { 2, 7, 3 }, { 0, 4, 6 }, { 0, 6, 2 },
-         { 1, 3, 7 }, { 1, 7, 5 } })
+  for (const TriangleIds& t :
+    std::vector<TriangleIds>{ { 0, 2, 3 }, { 0, 3, 1 }, { 4, 5, 7 }, { 4, 7, 6 }, { 0, 1, 5 },
+      { 0, 5, 4 }, { 2, 6, 7 }, { 2, 7, 3 }, { 0, 4, 6 }, { 0, 6, 2 }, { 1, 3, 7 }, { 1, 7, 5 } })
   {
     mesh.Triangles.push_back({ first + t[0], first + t[1], first + t[2] });
   }
@@ -104,7 +104,8 @@ TEST(SurfaceOrientation, LabelsDecide)
   {
     SCOPED_TRACE(cell);
     PolygonSoup turned = soup;
-    std::reverse(turned.Connectivity.begin() + 4 * cell, turned.Connectivity.begin() + 4 * cell + 4);
+    std::reverse(
+      turned.Connectivity.begin() + 4 * cell, turned.Connectivity.begin() + 4 * cell + 4);
     ASSERT_TRUE(TriangulateBoundary(turned, {}, {}, output).IsOk());
     EXPECT_EQ(1, output.Report.ReversedPolygons);
     EXPECT_EQ(turned.Labels[cell], output.Surface.Labels[2 * cell]);

@@ -6,8 +6,8 @@
  *     MeshModel INPUT.vtp OUTPUT.vtu [--OPTION VALUE]...
  *
  * Options: criterion (0 Delaunay, 1 smallest sphere, 2 smallest sphere of triangle and edges),
- * maximum-edge-length, maximum-new-points, maximum-gap-edges, close-open-boundary (0 or 1),
- * resolve (self-intersections; 0 or 1).
+ * maximum-edge-length, maximum-new-points, maximum-gap-edges, flatness-ratio (of the sliver
+ * remover; 0: nothing is peeled off).
  *
  * One line of "name value" pairs goes to the standard output: open edges and points of the cleaned
  * input, points added, tetrahedra, seconds of each stage. Errors and warnings of the filters go to the standard
@@ -61,9 +61,10 @@ bool Run(vtkAlgorithm* filter, const char* name)
 
 int main(int argc, char* argv[])
 {
+  vtkNew<vtkSliverRemover> remover;
   std::map<std::string, double> options{ { "--criterion", 0.0 }, { "--maximum-edge-length", 0.0 },
     { "--maximum-new-points", 0.0 }, { "--maximum-gap-edges", 0.0 },
-    { "--close-open-boundary", 0.0 }, { "--resolve", 0.0 } };
+    { "--flatness-ratio", remover->GetFlatnessRatio() } };
   bool isRightUse = argc >= 3 && argc % 2 == 1;
   for (int i = 3; isRightUse && i < argc; i += 2)
   {
@@ -88,7 +89,6 @@ int main(int argc, char* argv[])
   }
   vtkNew<vtkBoundaryTriangulator> triangulator;
   triangulator->SetMaximumGapEdges(static_cast<int>(options["--maximum-gap-edges"]));
-  triangulator->SetResolveSelfIntersections(options["--resolve"] != 0.0);
   triangulator->SetInputConnection(reader->GetOutputPort());
   vtkNew<vtkDelaunaySurfaceRefiner> refiner;
   refiner->SetCriterion(static_cast<int>(options["--criterion"]));
@@ -96,9 +96,8 @@ int main(int argc, char* argv[])
   refiner->SetMaximumNewPoints(static_cast<int>(options["--maximum-new-points"]));
   refiner->SetInputConnection(triangulator->GetOutputPort());
   vtkNew<vtkAdvancingFrontTetrahedralizer> tetrahedralizer;
-  tetrahedralizer->SetCloseOpenBoundary(options["--close-open-boundary"] != 0.0);
   tetrahedralizer->SetInputConnection(refiner->GetOutputPort());
-  vtkNew<vtkSliverRemover> remover;
+  remover->SetFlatnessRatio(options["--flatness-ratio"]);
   remover->SetInputConnection(tetrahedralizer->GetOutputPort());
 
   if (!Run(triangulator, "triangulate") || !Run(refiner, "refine"))

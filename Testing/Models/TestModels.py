@@ -126,7 +126,8 @@ class Runner:
         result = Result(name)
         mesh, errors = self.mesh(path, result, MESH_TIME_LIMIT, **options)
         if mesh:
-            self.judge(path, mesh, result, [])
+            # Patches lie off the input.
+            self.judge(path, mesh, result, [], *(["--allow-hull"] if options else []))
             # What is open bounds no region; if there are closed parts beside it, they are meshed.
             missing = ("missing_vertices", "uncovered_input")
             if result.open_edges > 0 and all(f.startswith(missing) for f in result.failures):

@@ -1,28 +1,28 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the image tests share: the sample devices, colours, a camera, drawing, the picture.
 
-Pictures are drawn SAMPLES times as large and averaged: crisp lines without the multisampling of the
-graphics driver, and the same bytes on each run. Surfaces are drawn from their front; their backs are
-MAGENTA, so that a wrong normal or a hole is seen at once.
+Pictures are drawn SAMPLES times as large and averaged: crisp lines without the multisampling of
+the graphics driver, and the same bytes on each run. Surfaces are drawn from their front; their
+backs are MAGENTA, so that a wrong normal or a hole is seen at once.
 """
 
 import os
 
+import ImageComparison
 import numpy
 import vtkmodules.vtkInteractionStyle  # noqa: F401 (registers the factory)
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 (registers the factory)
 from conforming_delaunay import vtkTechnologyStructureSource
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR, vtkPoints
-from vtkmodules.vtkCommonDataModel import (
-    VTK_TETRA, vtkCellArray, vtkImageData, vtkPolyData, vtkUnstructuredGrid)
+from vtkmodules.vtkCommonDataModel import VTK_TETRA, vtkCellArray, vtkImageData, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter, vtkTubeFilter
-from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import (
     vtkActor, vtkLight, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter)
 
 WIDTH, HEIGHT, SAMPLES = 500, 400, 2
+ALLOWED_PIXELS = 10
 
 BACKGROUND = (0.965, 0.972, 0.980)
 LINES = (0.13, 0.16, 0.21)
@@ -33,11 +33,13 @@ GREY = (0.80, 0.82, 0.85)
 # By region id: Bulk, GateOxide, Gate, LeftSpacer, RightSpacer.
 MOS_COLOURS = ((0.49, 0.65, 0.84), (0.96, 0.74, 0.24), (0.82, 0.34, 0.32),
                (0.55, 0.75, 0.48), (0.35, 0.66, 0.58))
+# Bulk and gate.
+MOS_BOXES = (((-0.4, 0.0, -0.5), (0.4, 0.3, 0.0)), ((-0.09, 0.0, 0.005), (0.09, 0.3, 0.205)))
 # Where the regions go to be seen from all sides.
 MOS_SHIFTS = ((0.0, 0.0, -0.06), (0.0, 0.0, 0.0), (0.0, 0.0, 0.1),
               (-0.12, 0.0, 0.06), (0.12, 0.0, 0.06))
 # By region id: Insulator, BottomLine, Plug, TopLine.
-VIA_COLOURS = ((0.70, 0.80, 0.88), (0.80, 0.47, 0.27), (0.90, 0.72, 0.33), (0.66, 0.35, 0.38))
+VIA_COLOURS = ((0.70, 0.80, 0.88), (0.80, 0.47, 0.27), (0.90, 0.72, 0.33), (0.76, 0.42, 0.45))
 # For ids without a meaning: hues that differ between neighbours.
 FACET_COLOURS = ((0.49, 0.65, 0.84), (0.96, 0.74, 0.24), (0.82, 0.34, 0.32), (0.55, 0.75, 0.48),
                  (0.66, 0.53, 0.78), (0.95, 0.60, 0.40), (0.42, 0.73, 0.74), (0.93, 0.66, 0.74),
@@ -58,6 +60,19 @@ def MakeViaPlug():
     device.SetStructureToViaPlug()
     device.Update()
     return device
+
+
+def MakeMeshPoints(boxes=MOS_BOXES, spacing=0.06):
+    """Mesh points inside of boxes, given by two corners: body-centred lattices."""
+    points = []
+    for low, high in boxes:
+        low, high = numpy.array(low), numpy.array(high)
+        counts = numpy.rint((high - low) / spacing).astype(int)
+        for shift in (0.5, 1.0):
+            places = numpy.indices(counts).reshape(3, -1).T + shift
+            inside = (places < counts - 0.25).all(axis=1)
+            points.append(low + (high - low) / counts * places[inside])
+    return MakeSurface(numpy.concatenate(points), [])
 
 
 def GetPoints(data):
@@ -84,10 +99,16 @@ def GetPolygons(surface):
     return [ids[begin:end] for begin, end in zip(ends[:-1], ends[1:])]
 
 
-def GetSortedTriangles(surface):
-    """The triangles as rows of rising point ids, in rising order: equal for equal sets."""
-    triangles = numpy.sort(numpy.array(GetPolygons(surface)), axis=1)
-    return triangles[numpy.lexsort(triangles.T[::-1])]
+def FindPoints(mesh, data):
+    """For each point of the data the id of the same point of the mesh."""
+    ids = {tuple(point): i for i, point in enumerate(GetPoints(mesh))}
+    return numpy.array([ids[tuple(point)] for point in GetPoints(data)])
+
+
+def GetSorted(cells):
+    """Rows of point ids, each rising and all in rising order: equal for equal sets of cells."""
+    rows = numpy.sort(numpy.asarray(cells), axis=1)
+    return rows[numpy.lexsort(rows.T[::-1])]
 
 
 def GetLines(data):
@@ -99,6 +120,21 @@ def GetVolumes(mesh):
     """Signed volumes of the tetrahedra."""
     a, b, c, d = (GetPoints(mesh)[ids] for ids in GetTetrahedra(mesh).T)
     return numpy.einsum("ij,ij->i", numpy.cross(b - a, c - a), d - a) / 6.0
+
+
+def GetSmallestAngles(mesh):
+    """The smallest dihedral angle of each tetrahedron in degrees, exact for flat ones too."""
+    corners = GetPoints(mesh)[GetTetrahedra(mesh)]
+    angles = []
+    for i, j, k, l in ((0, 1, 2, 3), (0, 2, 1, 3), (0, 3, 1, 2),
+                       (1, 2, 0, 3), (1, 3, 0, 2), (2, 3, 0, 1)):
+        origin = corners[:, i]
+        edge = corners[:, j] - origin
+        a = numpy.cross(edge, corners[:, k] - origin)
+        b = numpy.cross(edge, corners[:, l] - origin)
+        sine = numpy.linalg.norm(numpy.cross(a, b), axis=1)
+        angles.append(numpy.degrees(numpy.arctan2(sine, (a * b).sum(axis=1))))
+    return numpy.min(angles, axis=0)
 
 
 def GetRegionVolumes(surface, count):
@@ -156,11 +192,18 @@ def SetColours(data, colours):
     data.GetCellData().SetScalars(numpy_to_vtk(levels, deep=True, array_type=VTK_UNSIGNED_CHAR))
 
 
-def CutOpen(mesh, axis, position):
-    """The tetrahedra whose centroid lies above the position on the axis; whole, none is cut."""
-    tetrahedra = GetTetrahedra(mesh)
-    keep = GetPoints(mesh)[tetrahedra][:, :, axis].mean(axis=1) > position
-    return SelectTetrahedra(mesh, keep)
+def GetCentroids(mesh):
+    """Centroids of the tetrahedra."""
+    return GetPoints(mesh)[GetTetrahedra(mesh)].mean(axis=1)
+
+
+def GetOutsideFaces(tetrahedra):
+    """Faces of one tetrahedron only, turned outwards, and the index of that tetrahedron."""
+    faces = tetrahedra[:, ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))].reshape(-1, 3)
+    _, first, count = numpy.unique(
+        numpy.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    single = numpy.sort(first[count == 1])
+    return faces[single], single // 4
 
 
 def Copy(data):
@@ -168,20 +211,6 @@ def Copy(data):
     copy = data.NewInstance()
     copy.DeepCopy(data)
     return copy
-
-
-def SelectTetrahedra(mesh, keep):
-    """The tetrahedra for which the array is true, with their RegionId."""
-    part = vtkUnstructuredGrid()
-    part.SetPoints(mesh.GetPoints())
-    cells = vtkCellArray()
-    for ids in GetTetrahedra(mesh)[keep]:
-        cells.InsertNextCell(4, [int(i) for i in ids])
-    part.SetCells(VTK_TETRA, cells)
-    regions = numpy_to_vtk(GetCellArray(mesh, "RegionId")[keep], deep=True)
-    regions.SetName("RegionId")
-    part.GetCellData().AddArray(regions)
-    return part
 
 
 def Triangulate(surface):
@@ -192,18 +221,9 @@ def Triangulate(surface):
     return triangles.GetOutput()
 
 
-def ExtractOutside(mesh):
-    """The faces of one tetrahedron only, with the colours of SetColours; normals point out."""
-    outside = vtkDataSetSurfaceFilter()
-    outside.SetInputData(mesh)
-    outside.Update()
-    return outside.GetOutput()
-
-
 def ColourByRegion(mesh, colours):
-    """Set the colours by RegionId; returns the mesh."""
-    SetColours(mesh, numpy.array(colours)[GetCellArray(mesh, "RegionId")])
-    return mesh
+    """The colour of each tetrahedron."""
+    return numpy.array(colours)[GetCellArray(mesh, "RegionId")]
 
 
 def ColourByValue(values, low, high):
@@ -213,20 +233,6 @@ def ColourByValue(values, low, high):
     places = numpy.clip((numpy.asarray(values) - low) / (high - low), 0.0, 1.0)
     grid = numpy.linspace(0.0, 1.0, len(stops))
     return numpy.stack([numpy.interp(places, grid, channel) for channel in stops.T], axis=1)
-
-
-def DrawFront(scene, part, front, colours):
-    """A mesh in the making: its tetrahedra by region, and the front in orange with its edges.
-
-    The front turns to the unmeshed side, so it covers the tetrahedra under it.
-    """
-    outside = ExtractOutside(ColourByRegion(part, colours))
-    ids = GetOriginalPointIds(part, outside)
-    taken = set(map(bytes, GetSortedTriangles(front)))
-    keep = [bytes(numpy.sort(triangle)) not in taken for triangle in ids]
-    levels = vtk_to_numpy(outside.GetCellData().GetScalars())[keep] / 255.0
-    scene.AddSurface(MakeSurface(GetPoints(part), ids[keep], levels), edges=True)
-    scene.AddSurface(front, ORANGE, edges=True)
 
 
 class Scene:
@@ -290,6 +296,22 @@ class Scene:
             actor.GetProperty().SetLineWidth(0.6 * SAMPLES)
         return actor
 
+    def AddTetrahedra(self, mesh, colours, keep=None, front=None):
+        """The outside of the tetrahedra, or of those that keep is true for, with edges.
+
+        A front, which lies on some of these faces, is drawn instead of them in orange.
+        """
+        keep = numpy.arange(mesh.GetNumberOfCells()) if keep is None else numpy.flatnonzero(keep)
+        faces, owners = GetOutsideFaces(GetTetrahedra(mesh)[keep])
+        if front is not None:
+            ids = FindPoints(mesh, front)
+            covered = {tuple(sorted(ids[triangle])) for triangle in GetPolygons(front)}
+            free = [tuple(sorted(face)) not in covered for face in faces]
+            faces, owners = faces[free], owners[free]
+            self.AddSurface(front, ORANGE, edges=True)
+        colours = numpy.asarray(colours)[keep][owners]
+        self.AddSurface(MakeSurface(GetPoints(mesh), faces, colours), edges=True)
+
     def AddFarSide(self, surface, colour):
         """Only those polygons that turn their back to the camera."""
         actor = self._Add(Triangulate(surface), colour)
@@ -316,8 +338,8 @@ class Scene:
         actor = self._Add(tubes.GetOutput(), colour)
         actor.GetProperty().SetInterpolationToGouraud()
 
-    def Save(self, path):
-        """Draw the picture into a PNG file."""
+    def Draw(self):
+        """The picture, an array of shape (height, width, 3), first row at the bottom."""
         window = vtkRenderWindow()
         window.SetOffScreenRendering(1)
         window.SetMultiSamples(0)
@@ -331,11 +353,17 @@ class Scene:
         grab.Update()
         pixels = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars())
         blocks = pixels.reshape(HEIGHT, SAMPLES, WIDTH, SAMPLES, 3).astype(int)
-        WritePixels(path, (blocks.sum(axis=(1, 3)) + SAMPLES**2 // 2) // SAMPLES**2)
+        return (blocks.sum(axis=(1, 3)) + SAMPLES**2 // 2) // SAMPLES**2
+
+    def Save(self, name):
+        """Draw the picture into a PNG file of this test run; returns its path."""
+        path = GetOutputPath(name)
+        WritePixels(path, self.Draw())
+        return path
 
 
 def WritePixels(path, pixels):
-    """An array of shape (height, width, 3), first row at the bottom, as a PNG file."""
+    """The array of Scene.Draw as a PNG file."""
     height, width, _ = pixels.shape
     image = vtkImageData()
     image.SetDimensions(width, height, 1)
@@ -349,6 +377,17 @@ def WritePixels(path, pixels):
     writer.Write()
 
 
+def AssertSameAsBaselines(*names):
+    """End the program with exit code 1 unless all pictures of this test run are as their baselines.
+
+    Pictures are the same bytes on each run, so few pixels are allowed to differ: a triangle of the
+    meshes here has some dozens.
+    """
+    ImageComparison.FRACTION = ALLOWED_PIXELS / (WIDTH * HEIGHT)
+    for name in names:
+        ImageComparison.AssertSameAsBaseline(name)
+
+
 def GetOutputPath(name):
-    """Where a picture of this test run goes."""
+    """Where a file of this test run goes."""
     return os.path.join(os.environ["CDM_OUTPUT_DIR"], name)

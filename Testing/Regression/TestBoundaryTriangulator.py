@@ -3,7 +3,6 @@
 
 import numpy
 
-import ImageComparison
 import Scene
 from conforming_delaunay import vtkBoundaryTriangulator
 
@@ -26,5 +25,5 @@ assert numpy.allclose(Scene.GetRegionVolumes(surface, 5),
 scene = Scene.Scene((0.0, 0.15, -0.12), (0.45, -1.0, 0.5), 1.1)
 for region, (colour, shift) in enumerate(zip(Scene.MOS_COLOURS, Scene.MOS_SHIFTS)):
     scene.AddSurface(Scene.GetRegionSurface(surface, region, shift), colour, edges=True)
-scene.Save(Scene.GetOutputPath("BoundaryTriangulator.png"))
-ImageComparison.AssertSameAsBaseline("BoundaryTriangulator.png")
+scene.Save("BoundaryTriangulator.png")
+Scene.AssertSameAsBaselines("BoundaryTriangulator.png")

@@ -6,7 +6,6 @@ Red: more than two triangles; blue: sharp. Behind them the far walls.
 
 import numpy
 
-import ImageComparison
 import Scene
 from conforming_delaunay import vtkBoundaryTriangulator, vtkStructuralEdgeExtractor
 
@@ -38,12 +37,13 @@ def Draw(scene, surface, edges, radius, name):
         if (kinds == kind).any():
             part = Scene.MakeLines(Scene.GetPoints(edges), ends[kinds == kind])
             scene.AddTubes(part, colour, radius)
-    scene.Save(Scene.GetOutputPath(name))
+    scene.Save(name)
 
 
 surface, edges = Extract(Scene.MakeMosTransistor())
-# Along y there are 16 edges, one for each corner of the cross-section, with two of them on lines
-# where three regions or more meet; all others lie in the two end faces.
+# The cross-section has 16 corners and 20 lines: 16 edges along y, and 20 in each end face. More
+# than two triangles meet at the 8 corners that are ends of interfaces, and at the 6 interfaces in
+# each end face: 8 + 2 * 6.
 assert CountByKind(edges) == [0, 20, 0, 36], CountByKind(edges)
 angles = Scene.GetCellArray(edges, "DihedralAngle")
 assert ((angles >= 0.0) & (angles <= 180.0)).all()
@@ -51,9 +51,12 @@ Draw(Scene.Scene((0.0, 0.15, -0.15), (0.45, -1.0, 0.5), 1.0), surface, edges, 0.
      "StructuralEdgeExtractor.png")
 
 surface, edges = Extract(Scene.MakeViaPlug())
+# More than two triangles: 24 edges around each end of the plug; of each line 3 edges at both ends
+# and 2 along the face of the box. Sharp: 24 along the plug; 12 of the box, 4 of them in three
+# pieces; of each line 2 more, in two pieces.
 assert CountByKind(edges) == [0, 64, 0, 52], CountByKind(edges)
 Draw(Scene.Scene((0.0, 0.0, 0.3), (0.55, -1.0, 0.45), 1.75), surface, edges, 0.008,
      "StructuralEdgeExtractorVia.png")
 
-for picture in ("", "Via"):
-    ImageComparison.AssertSameAsBaseline("StructuralEdgeExtractor%s.png" % picture)
+Scene.AssertSameAsBaselines(
+    "StructuralEdgeExtractor.png", "StructuralEdgeExtractorVia.png")

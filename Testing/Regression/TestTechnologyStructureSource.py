@@ -6,13 +6,12 @@ A region is drawn from outside: a polygon with swapped labels shows its magenta 
 
 import numpy
 
-import ImageComparison
 import Scene
 
 mos = Scene.MakeMosTransistor().GetOutput()
 assert (mos.GetNumberOfPoints(), mos.GetNumberOfCells()) == (32, 30)
-# Length, width and height of each region; the cross-section of a spacer has 12 corners on a
-# quarter of an ellipse, its area is half of the sine of 30 degrees times 3 times both axes.
+# Length, width and height of each region; a spacer is a quarter of an ellipse in three pieces, so
+# three triangles with 30 degrees at its centre.
 flank = 0.5 * 3 * numpy.sin(numpy.pi / 6) * 0.08 * 0.2 * 0.3
 expected = [0.8 * 0.3 * 0.5, 0.34 * 0.3 * 0.005, 0.18 * 0.3 * 0.2, flank, flank]
 volumes = Scene.GetRegionVolumes(mos, 5)
@@ -23,7 +22,7 @@ for region, (colour, shift) in enumerate(zip(Scene.MOS_COLOURS, Scene.MOS_SHIFTS
     part = Scene.GetRegionSurface(mos, region, shift)
     scene.AddSurface(part, colour)
     scene.AddWire(part)
-scene.Save(Scene.GetOutputPath("TechnologyStructureSource.png"))
+scene.Save("TechnologyStructureSource.png")
 
 # The facets of the same device, each in a colour of its own; those of the inside are behind.
 facets = Scene.GetCellArray(mos, "FacetId")
@@ -35,9 +34,10 @@ shell = Scene.MakeSurface(Scene.GetPoints(mos), polygons, colours)
 scene = Scene.Scene((0.0, 0.15, -0.15), (0.45, -1.0, 0.5), 1.0)
 scene.AddSurface(shell)
 scene.AddWire(shell)
-scene.Save(Scene.GetOutputPath("TechnologyStructureSourceFacets.png"))
+scene.Save("TechnologyStructureSourceFacets.png")
 
-# The via plug: metal in a box of insulator, of which only the far walls and the edges are drawn.
+# The via plug, a prism of 24 triangles, between two lines, in a box of insulator: of the box only
+# the far walls and the edges are drawn.
 via = Scene.MakeViaPlug().GetOutput()
 assert (via.GetNumberOfPoints(), via.GetNumberOfCells()) == (76, 48)
 plug = 0.5 * 24 * numpy.sin(2 * numpy.pi / 24) * 0.15**2 * 0.6
@@ -56,7 +56,9 @@ for region in (1, 2, 3):
     part = Scene.GetRegionSurface(via, region)
     scene.AddSurface(part, Scene.VIA_COLOURS[region])
     scene.AddWire(part)
-scene.Save(Scene.GetOutputPath("TechnologyStructureSourceVia.png"))
+scene.Save("TechnologyStructureSourceVia.png")
 
-for picture in ("", "Facets", "Via"):
-    ImageComparison.AssertSameAsBaseline("TechnologyStructureSource%s.png" % picture)
+Scene.AssertSameAsBaselines(
+    "TechnologyStructureSource.png",
+    "TechnologyStructureSourceFacets.png",
+    "TechnologyStructureSourceVia.png")

@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BenchmarkTetrahedralizer.cxx
+ * @brief User CPU time and peak memory of the tetrahedralizer beside those of other programs.
+ *
+ * Usage: BenchmarkTetrahedralizer [-n points]... [-r repetitions] [-i input]... [-p program]...
+ *                                 [--limit seconds]
+ *
+ * Every measurement runs in a process of its own; the programs take turns, so that what else the
+ * machine does falls on all of them. Prints the median of each, and ratios to ours. A program that
+ * took longer than the limit on some input is left out on the larger ones.
+ */
+#include "Core/AdvancingFrontTetrahedralizer.h"
+
+#ifdef CDM_HAS_CGAL_TRIANGULATION
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#endif
+#ifdef CDM_HAS_TETGEN
+#include <tetgen.h>
+#endif
+#ifdef CDM_HAS_VTK_DELAUNAY3D
+#include <vtkDelaunay3D.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkUnstructuredGrid.h>
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace
+{
+using cdm::Vec3;
+using PointSet = std::vector<Vec3>;
+
+PointSet MakeGrid(std::size_t count, const std::function<Vec3(const Vec3&)>& place)
+{
+  const int side = static_cast<int>(std::lround(std::cbrt(static_cast<double>(count))));
+  PointSet points;
+  for (int i = 0; i < side; ++i)
+  {
+    for (int j = 0; j < side; ++j)
+    {
+      for (int k = 0; k < side; ++k)
+      {
+        points.push_back(place({ double(i), double(j), double(k) }));
+      }
+    }
+  }
+  return points;
+}
+
+PointSet MakePoints(const std::string& input, std::size_t count)
+{
+  std::mt19937_64 generator(1);
+  // Not the distributions of the standard library, which differ from one to the next.
+  const auto uniform = [&generator]() { return std::ldexp(double(generator() >> 11), -53); };
+  const auto normal = [&uniform]()
+  { return std::sqrt(-2.0 * std::log(1.0 - uniform())) * std::cos(6.283185307179586 * uniform()); };
+  const auto inCube = [&uniform]()
+  {
+    const double x = uniform();
+    const double y = uniform();
+    return Vec3{ x, y, uniform() };
+  };
+  PointSet points;
+  if (input == "random")
+  {
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      points.push_back(inCube());
+    }
+  }
+  else if (input == "graded")
+  {
+    // Distances grow by 1:1000 from one corner of a pyramid to its base.
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      const Vec3 p = inCube();
+      const double scale = std::pow(1000.0, p.X - 1.0);
+      points.push_back({ scale, p.Y * scale, p.Z * scale });
+    }
+  }
+  else if (input == "sphere")
+  {
+    // Nine of ten points on the sphere, as far as rounding allows; one within.
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      const double x = normal();
+      const double y = normal();
+      const Vec3 p{ x, y, normal() };
+      const double radius = i % 10 == 0 ? std::cbrt(uniform()) : 1.0;
+      points.push_back((radius / Norm(p)) * p);
+    }
+  }
+  else if (input == "clusters")
+  {
+    PointSet centers;
+    for (int i = 0; i < 100; ++i)
+    {
+      centers.push_back(inCube());
+    }
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      const double x = normal();
+      const double y = normal();
+      points.push_back(centers[i % centers.size()] + 0.003 * Vec3{ x, y, normal() });
+    }
+  }
+  else if (input == "grid")
+  {
+    points = MakeGrid(count, [](const Vec3& p) { return p; });
+  }
+  else if (input == "grid0.1")
+  {
+    points = MakeGrid(count, [](const Vec3& p) { return 0.1 * p; });
+  }
+  else if (input == "rotated")
+  {
+    // By 10 degrees about (1, 2, 3).
+    const Vec3 axis = (1.0 / std::sqrt(14.0)) * Vec3{ 1.0, 2.0, 3.0 };
+    const double angle = 10.0 * 0.017453292519943295;
+    points = MakeGrid(count,
+      [&](const Vec3& p)
+      {
+        return std::cos(angle) * p + std::sin(angle) * Cross(axis, p) +
+          (1.0 - std::cos(angle)) * Dot(axis, p) * axis;
+      });
+  }
+  for (std::size_t i = points.size(); i > 1; --i)
+  {
+    std::swap(points[i - 1], points[generator() % i]);
+  }
+  return points;
+}
+
+double GetUserTime()
+{
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * usage.ru_utime.tv_usec;
+}
+
+struct Result
+{
+  double Seconds = -1.0;
+  double Megabytes = 0.0;
+  double Tetrahedra = 0.0;
+};
+
+/** A program converts the points, starts the clock, and returns the number of its tetrahedra. */
+using Program = std::function<std::size_t(const PointSet&, double& start)>;
+
+Result Measure(const std::string& input, std::size_t count, const Program& program)
+{
+  int ends[2];
+  if (pipe(ends) != 0)
+  {
+    return Result();
+  }
+  const pid_t child = fork();
+  if (child == 0)
+  {
+    close(ends[0]);
+    const PointSet points = MakePoints(input, count);
+    double start = 0.0;
+    Result result;
+    result.Tetrahedra = static_cast<double>(program(points, start));
+    result.Seconds = GetUserTime() - start;
+    const bool isWritten = write(ends[1], &result, sizeof(result)) == sizeof(result);
+    _exit(isWritten ? 0 : 1);
+  }
+  close(ends[1]);
+  Result result;
+  const bool isRead = read(ends[0], &result, sizeof(result)) == sizeof(result);
+  close(ends[0]);
+  int status = 0;
+  rusage usage;
+  wait4(child, &status, 0, &usage);
+  if (!isRead || !WIFEXITED(status) || WEXITSTATUS(status) != 0 || result.Tetrahedra == 0.0)
+  {
+    return Result();
+  }
+  result.Megabytes = static_cast<double>(usage.ru_maxrss) / 1024.0;
+  return result;
+}
+
+std::size_t RunOurs(const PointSet& points, double& start)
+{
+  start = GetUserTime();
+  cdm::AdvancingFrontTetrahedralizerInput input;
+  input.MeshPoints = &points;
+  cdm::AdvancingFrontTetrahedralizerOptions options;
+  options.CloseOpenBoundary = true;
+  cdm::AdvancingFrontTetrahedralizerOutput output;
+  const cdm::Status status = cdm::TetrahedralizeByAdvancingFront(input, options, {}, output);
+  return status.IsOk() ? output.Mesh.Tetrahedra.size() : 0;
+}
+
+#ifdef CDM_HAS_CGAL_TRIANGULATION
+std::size_t RunCgal(const PointSet& points, double& start)
+{
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  std::vector<Kernel::Point_3> converted;
+  for (const Vec3& p : points)
+  {
+    converted.emplace_back(p.X, p.Y, p.Z);
+  }
+  start = GetUserTime();
+  // The constructor sorts the points along a curve.
+  const CGAL::Delaunay_triangulation_3<Kernel> mesh(converted.begin(), converted.end());
+  return mesh.number_of_finite_cells();
+}
+#endif
+
+#ifdef CDM_HAS_TETGEN
+std::size_t RunTetgen(const PointSet& points, double& start)
+{
+  tetgenio in;
+  tetgenio out;
+  in.numberofpoints = static_cast<int>(points.size());
+  in.pointlist = new REAL[3 * points.size()];
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    in.pointlist[3 * i] = points[i].X;
+    in.pointlist[3 * i + 1] = points[i].Y;
+    in.pointlist[3 * i + 2] = points[i].Z;
+  }
+  start = GetUserTime();
+  char switches[] = "Q";
+  tetrahedralize(switches, &in, &out);
+  return static_cast<std::size_t>(out.numberoftetrahedra);
+}
+#endif
+
+#ifdef CDM_HAS_VTK_DELAUNAY3D
+std::size_t RunVtk(const PointSet& points, double& start)
+{
+  vtkNew<vtkPoints> converted;
+  converted->SetDataTypeToDouble();
+  for (const Vec3& p : points)
+  {
+    converted->InsertNextPoint(p.X, p.Y, p.Z);
+  }
+  vtkNew<vtkPolyData> input;
+  input->SetPoints(converted);
+  start = GetUserTime();
+  vtkNew<vtkDelaunay3D> delaunay;
+  delaunay->SetInputData(input);
+  delaunay->Update();
+  return static_cast<std::size_t>(delaunay->GetOutput()->GetNumberOfCells());
+}
+#endif
+
+Result GetMedian(std::vector<Result> results)
+{
+  std::sort(results.begin(), results.end(),
+    [](const Result& a, const Result& b) { return a.Seconds < b.Seconds; });
+  return results[results.size() / 2];
+}
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  std::vector<std::size_t> sizes;
+  std::vector<std::string> inputs;
+  std::vector<std::string> chosen;
+  int repetitions = 5;
+  double limit = 60.0;
+  for (int i = 1; i + 1 < argc; i += 2)
+  {
+    const std::string option = argv[i];
+    const char* const value = argv[i + 1];
+    if (option == "-n")
+    {
+      sizes.push_back(static_cast<std::size_t>(std::atof(value)));
+    }
+    else if (option == "-r")
+    {
+      repetitions = std::atoi(value);
+    }
+    else if (option == "-i")
+    {
+      inputs.push_back(value);
+    }
+    else if (option == "-p")
+    {
+      chosen.push_back(value);
+    }
+    else if (option == "--limit")
+    {
+      limit = std::atof(value);
+    }
+  }
+  if (sizes.empty())
+  {
+    sizes = { 100000, 1000000 };
+  }
+  if (inputs.empty())
+  {
+    inputs = { "random", "graded", "sphere", "clusters", "grid", "grid0.1", "rotated" };
+  }
+  std::vector<std::pair<std::string, Program>> programs{ { "ours", RunOurs } };
+#ifdef CDM_HAS_CGAL_TRIANGULATION
+  programs.emplace_back("CGAL", RunCgal);
+#endif
+#ifdef CDM_HAS_TETGEN
+  programs.emplace_back("TetGen", RunTetgen);
+#endif
+#ifdef CDM_HAS_VTK_DELAUNAY3D
+  programs.emplace_back("vtkDelaunay3D", RunVtk);
+#endif
+  programs.erase(std::remove_if(programs.begin() + 1, programs.end(),
+                   [&chosen](const auto& program)
+                   {
+                     return !chosen.empty() &&
+                       std::find(chosen.begin(), chosen.end(), program.first) == chosen.end();
+                   }),
+    programs.end());
+
+  std::printf(
+    "| input | points | program | s | ratio to ours | tetrahedra/s | MB | B/tetrahedron |\n"
+    "|---|---:|---|---:|---:|---:|---:|---:|\n");
+  std::map<std::pair<std::string, std::string>, bool> isTooSlow;
+  for (std::size_t size : sizes)
+  {
+    for (const std::string& input : inputs)
+    {
+      std::map<std::string, std::vector<Result>> results;
+      for (int repetition = 0; repetition < repetitions; ++repetition)
+      {
+        for (const auto& [name, program] : programs)
+        {
+          if (!isTooSlow[{ name, input }])
+          {
+            results[name].push_back(Measure(input, size, program));
+            isTooSlow[{ name, input }] = results[name].back().Seconds > limit;
+          }
+        }
+      }
+      const double ours = results["ours"].empty() ? -1.0 : GetMedian(results["ours"]).Seconds;
+      for (const auto& [name, program] : programs)
+      {
+        if (results[name].empty())
+        {
+          continue;
+        }
+        const Result median = GetMedian(results[name]);
+        if (median.Seconds < 0.0)
+        {
+          std::printf("| %s | %zu | %s | failed | | | | |\n", input.c_str(), size, name.c_str());
+          continue;
+        }
+        std::printf("| %s | %zu | %s | %.3f | %.2f | %.0f | %.0f | %.0f |\n", input.c_str(), size,
+          name.c_str(), median.Seconds, ours > 0.0 ? median.Seconds / ours : 0.0,
+          median.Tetrahedra / median.Seconds, median.Megabytes,
+          median.Megabytes * 1048576.0 / median.Tetrahedra);
+        std::fflush(stdout);
+      }
+    }
+  }
+  return 0;
+}

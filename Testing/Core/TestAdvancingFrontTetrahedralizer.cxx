@@ -1,0 +1,641 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/AdvancingFrontTetrahedralizer.h"
+
+#include "Core/MeshChecks.h"
+#include "Core/Predicates.h"
+
+#include <gtest/gtest.h>
+
+#if defined(__has_include)
+#if __has_include(<CGAL/Delaunay_triangulation_3.h>)
+#define CDM_HAS_CGAL_TRIANGULATION
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+#endif
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <random>
+#include <set>
+
+namespace
+{
+using namespace cdm;
+
+using PointSet = std::vector<Vec3>;
+
+class Random
+{
+public:
+  explicit Random(std::uint64_t seed) : Generator(seed) {}
+  double GetUniform() { return std::ldexp(double(this->Generator() >> 11), -53); }
+  int GetInteger(int count) { return static_cast<int>(this->Generator() % count); }
+  Vec3 GetPoint()
+  {
+    const double x = this->GetUniform();
+    const double y = this->GetUniform();
+    return { x, y, this->GetUniform() };
+  }
+  Vec3 GetDirection()
+  {
+    for (;;)
+    {
+      const Vec3 p = 2.0 * this->GetPoint() - Vec3{ 1.0, 1.0, 1.0 };
+      const double length = Norm(p);
+      if (length < 1.0 && length > 0.01)
+      {
+        return (1.0 / length) * p;
+      }
+    }
+  }
+  template <typename T>
+  void Shuffle(std::vector<T>& values)
+  {
+    for (std::size_t i = values.size(); i > 1; --i)
+    {
+      std::swap(values[i - 1], values[this->Generator() % i]);
+    }
+  }
+
+private:
+  std::mt19937_64 Generator;
+};
+
+Vec3 Rotate(const Vec3& p, const Vec3& axis, double angle)
+{
+  return std::cos(angle) * p + std::sin(angle) * Cross(axis, p) +
+    (1.0 - std::cos(angle)) * Dot(axis, p) * axis;
+}
+
+PointSet MakeGrid(int side, double spacing)
+{
+  PointSet points;
+  for (int i = 0; i < side; ++i)
+  {
+    for (int j = 0; j < side; ++j)
+    {
+      for (int k = 0; k < side; ++k)
+      {
+        points.push_back({ i * spacing, j * spacing, k * spacing });
+      }
+    }
+  }
+  return points;
+}
+
+Status MeshPointSet(const PointSet& points, AdvancingFrontTetrahedralizerOutput& output)
+{
+  AdvancingFrontTetrahedralizerInput input;
+  input.MeshPoints = &points;
+  AdvancingFrontTetrahedralizerOptions options;
+  options.CloseOpenBoundary = true;
+  return TetrahedralizeByAdvancingFront(input, options, {}, output);
+}
+
+/** Valid, Delaunay, and every point used but copies. */
+void CheckHullMesh(const PointSet& points, const AdvancingFrontTetrahedralizerOutput& output,
+  double volumeTolerance = 1e-9)
+{
+  MeshCheckReport report;
+  ASSERT_TRUE(CheckTetMesh(output.Mesh, &output.Boundary, {}, report).IsOk());
+  EXPECT_TRUE(report.IsValid(volumeTolerance)) << report.GetSummary();
+  const std::set<std::array<double, 3>> distinct = [&points]()
+  {
+    std::set<std::array<double, 3>> result;
+    for (const Vec3& p : points)
+    {
+      result.insert({ p.X, p.Y, p.Z });
+    }
+    return result;
+  }();
+  EXPECT_EQ(report.UnusedPoints, 0);
+  EXPECT_EQ(output.Mesh.Points.size(), distinct.size());
+  EXPECT_EQ(output.Report.UnusedMeshPoints, static_cast<Id>(points.size() - distinct.size()));
+  // The hull is convex: no point beyond any of its triangles, and it is a sphere topologically.
+  EXPECT_EQ(output.Boundary.Triangles.size() % 2, 0u);
+  if (points.size() <= 200)
+  {
+    for (const TriangleIds& t : output.Boundary.Triangles)
+    {
+      for (const Vec3& p : output.Mesh.Points)
+      {
+        ASSERT_LE(Orientation(output.Mesh.Points[t[0]], output.Mesh.Points[t[1]],
+                    output.Mesh.Points[t[2]], p),
+          0);
+      }
+    }
+  }
+}
+
+/** A box as surface: 12 triangles on 8 points. */
+TriangleMesh MakeBox(const Vec3& low, const Vec3& high, TriangleMesh surface = {})
+{
+  const Id first = static_cast<Id>(surface.Points.size());
+  for (int i = 0; i < 8; ++i)
+  {
+    surface.Points.push_back({ (i & 1) != 0 ? high.X : low.X, (i & 2) != 0 ? high.Y : low.Y,
+      (i & 4) != 0 ? high.Z : low.Z });
+  }
+  const Id faces[6][4] = { { 0, 2, 3, 1 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 },
+    { 0, 4, 6, 2 }, { 1, 3, 7, 5 } };
+  for (const Id(&f)[4] : faces)
+  {
+    surface.Triangles.push_back({ first + f[0], first + f[1], first + f[2] });
+    surface.Triangles.push_back({ first + f[0], first + f[2], first + f[3] });
+  }
+  return surface;
+}
+
+PointSet MakeInnerPoints(Random& random, int count, const Vec3& center, double size)
+{
+  PointSet points;
+  for (int i = 0; i < count; ++i)
+  {
+    points.push_back(center + size * (random.GetPoint() - Vec3{ 0.5, 0.5, 0.5 }));
+  }
+  return points;
+}
+
+void CheckSurfaceMesh(const AdvancingFrontTetrahedralizerOutput& output)
+{
+  MeshCheckReport report;
+  ASSERT_TRUE(CheckTetMesh(output.Mesh, &output.Boundary, {}, report).IsOk());
+  EXPECT_TRUE(report.IsValid()) << report.GetSummary();
+}
+
+bool AreEqual(
+  const AdvancingFrontTetrahedralizerOutput& a, const AdvancingFrontTetrahedralizerOutput& b)
+{
+  return a.Mesh.Points == b.Mesh.Points && a.Mesh.Tetrahedra == b.Mesh.Tetrahedra &&
+    a.Mesh.Neighbors == b.Mesh.Neighbors && a.Mesh.Regions == b.Mesh.Regions;
+}
+
+TEST(PointsOnly, RejectsSetsWithoutVolume)
+{
+  AdvancingFrontTetrahedralizerOutput output;
+  EXPECT_EQ(MeshPointSet({}, output).Code, StatusCode::InvalidInput);
+  EXPECT_EQ(MeshPointSet({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 1, 0 } }, output).Code,
+    StatusCode::InvalidInput);
+  PointSet line;
+  PointSet plane;
+  Random random(3);
+  for (int i = 0; i < 50; ++i)
+  {
+    const double t = random.GetInteger(1000);
+    const double s = random.GetInteger(1000);
+    line.push_back(t * Vec3{ 1.0, 2.0, 3.0 });
+    plane.push_back(t * Vec3{ 1.0, 2.0, 3.0 } + s * Vec3{ -3.0, 1.0, 5.0 });
+  }
+  const Status onLine = MeshPointSet(line, output);
+  EXPECT_EQ(onLine.Code, StatusCode::InvalidInput);
+  EXPECT_NE(onLine.Message.find("line"), std::string::npos);
+  const Status inPlane = MeshPointSet(plane, output);
+  EXPECT_EQ(inPlane.Code, StatusCode::InvalidInput);
+  EXPECT_NE(inPlane.Message.find("plane"), std::string::npos);
+}
+
+TEST(PointsOnly, MeshesGrids)
+{
+  for (const double spacing : { 1.0, 0.1, 1e-12, 1e12 })
+  {
+    const PointSet points = MakeGrid(8, spacing);
+    AdvancingFrontTetrahedralizerOutput output;
+    ASSERT_TRUE(MeshPointSet(points, output).IsOk());
+    CheckHullMesh(points, output);
+    EXPECT_EQ(output.Mesh.Tetrahedra.size(), 6u * 7u * 7u * 7u);
+    EXPECT_EQ(output.Report.CosphericalCells, 7 * 7 * 7);
+    EXPECT_EQ(output.Report.LargestCell, 8);
+  }
+}
+
+TEST(PointsOnly, MeshesRotatedGrid)
+{
+  PointSet points = MakeGrid(12, 1.0);
+  const Vec3 axis = (1.0 / std::sqrt(14.0)) * Vec3{ 1.0, 2.0, 3.0 };
+  for (Vec3& p : points)
+  {
+    p = Rotate(p, axis, 0.17453292519943295);
+  }
+  AdvancingFrontTetrahedralizerOutput output;
+  ASSERT_TRUE(MeshPointSet(points, output).IsOk());
+  CheckHullMesh(points, output);
+}
+
+TEST(PointsOnly, MeshesGradedGrid)
+{
+  // Spacings from 1 to 10000.
+  PointSet points;
+  const auto place = [](int i) { return std::pow(10.0, 0.5 * i); };
+  for (int i = 0; i < 9; ++i)
+  {
+    for (int j = 0; j < 9; ++j)
+    {
+      for (int k = 0; k < 9; ++k)
+      {
+        points.push_back({ place(i), place(j), place(k) });
+      }
+    }
+  }
+  AdvancingFrontTetrahedralizerOutput output;
+  ASSERT_TRUE(MeshPointSet(points, output).IsOk());
+  CheckHullMesh(points, output);
+  EXPECT_EQ(output.Mesh.Tetrahedra.size(), 6u * 8u * 8u * 8u);
+}
+
+TEST(PointsOnly, MeshesPointsOnASphere)
+{
+  Random random(5);
+  PointSet points;
+  for (int i = 0; i < 2000; ++i)
+  {
+    points.push_back(random.GetDirection());
+  }
+  AdvancingFrontTetrahedralizerOutput output;
+  ASSERT_TRUE(MeshPointSet(points, output).IsOk());
+  CheckHullMesh(points, output);
+}
+
+TEST(PointsOnly, MeshesOneLargeCell)
+{
+  // All integer points on one sphere: a single degenerate cell.
+  PointSet points;
+  for (int x = -33; x <= 33; ++x)
+  {
+    for (int y = -33; y <= 33; ++y)
+    {
+      for (int z = -33; z <= 33; ++z)
+      {
+        if (x * x + y * y + z * z == 1089)
+        {
+          points.push_back({ double(x), double(y), double(z) });
+        }
+      }
+    }
+  }
+  AdvancingFrontTetrahedralizerOutput output;
+  ASSERT_TRUE(MeshPointSet(points, output).IsOk());
+  CheckHullMesh(points, output);
+  EXPECT_EQ(output.Report.CosphericalCells, 1);
+  EXPECT_EQ(output.Report.LargestCell, static_cast<Id>(points.size()));
+}
+
+TEST(PointsOnly, MeshesNastyConfigurations)
+{
+  const char* const given = std::getenv("CDM_SEED");
+  const std::uint64_t seed = given != nullptr ? std::strtoull(given, nullptr, 10) : 20261121u;
+  std::printf("CDM_SEED=%llu\n", static_cast<unsigned long long>(seed));
+  Random random(seed);
+  for (int round = 0; round < 1500; ++round)
+  {
+    SCOPED_TRACE(round);
+    PointSet points;
+    const int count = 4 + random.GetInteger(56);
+    const int lattice = 1 + random.GetInteger(6);
+    while (static_cast<int>(points.size()) < count)
+    {
+      switch (random.GetInteger(6))
+      {
+        case 0:
+          points.push_back(random.GetPoint());
+          break;
+        case 1: // snapped
+          points.push_back({ double(random.GetInteger(lattice + 1)) / lattice,
+            double(random.GetInteger(lattice + 1)) / lattice,
+            double(random.GetInteger(lattice + 1)) / lattice });
+          break;
+        case 2: // on a sphere, exactly or nearly
+          points.push_back(random.GetInteger(2) != 0
+              ? random.GetDirection()
+              : Vec3{ 0.6 * (2 * random.GetInteger(2) - 1), 0.0,
+                  0.8 * (2 * random.GetInteger(2) - 1) });
+          break;
+        case 3: // in a plane
+        {
+          const Vec3 p = random.GetPoint();
+          points.push_back({ p.X, p.Y, 0.5 });
+          break;
+        }
+        case 4: // on a line, or nearly
+          points.push_back(random.GetUniform() * Vec3{ 1.0, 1.0, 1.0 });
+          break;
+        default: // copies
+          points.push_back(
+            points.empty() ? Vec3{} : points[random.GetInteger(static_cast<int>(points.size()))]);
+          break;
+      }
+    }
+    if (random.GetInteger(3) == 0)
+    {
+      const Vec3 axis = random.GetDirection();
+      const double angle = random.GetUniform();
+      for (Vec3& p : points)
+      {
+        p = Rotate(p, axis, angle);
+      }
+    }
+    const double scale =
+      random.GetInteger(3) == 0 ? std::pow(10.0, random.GetInteger(25) - 12) : 1.0;
+    const Vec3 shift = random.GetInteger(4) == 0 ? 100.0 * random.GetDirection() : Vec3{};
+    for (Vec3& p : points)
+    {
+      p = scale * (p + shift);
+    }
+    AdvancingFrontTetrahedralizerOutput output;
+    const Status status = MeshPointSet(points, output);
+    if (status.Code == StatusCode::InvalidInput)
+    {
+      // Fewer than four points, or without volume: no four of them make a tetrahedron.
+      Id a = 0;
+      bool isFlat = true;
+      for (std::size_t b = 1; b < points.size() && isFlat; ++b)
+      {
+        for (std::size_t c = b + 1; c < points.size() && isFlat; ++c)
+        {
+          for (std::size_t d = c + 1; d < points.size() && isFlat; ++d)
+          {
+            isFlat = Orientation(points[a], points[b], points[c], points[d]) == 0;
+          }
+        }
+      }
+      EXPECT_TRUE(isFlat) << status.Message;
+      continue;
+    }
+    ASSERT_TRUE(status.IsOk()) << status.Message;
+    // The volume of nearly coplanar points is a matter of rounding.
+    CheckHullMesh(points, output, std::numeric_limits<double>::infinity());
+    if (::testing::Test::HasFailure())
+    {
+      return;
+    }
+  }
+}
+
+#ifdef CDM_HAS_CGAL_TRIANGULATION
+TEST(PointsOnly, EqualsCgal)
+{
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  using Vertex = CGAL::Triangulation_vertex_base_with_info_3<Id, Kernel>;
+  using Data =
+    CGAL::Triangulation_data_structure_3<Vertex, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
+  using Triangulation = CGAL::Delaunay_triangulation_3<Kernel, Data>;
+  Random random(11);
+  for (int kind = 0; kind < 3; ++kind)
+  {
+    PointSet points;
+    std::vector<std::pair<Kernel::Point_3, Id>> others;
+    for (Id i = 0; i < 5000; ++i)
+    {
+      Vec3 p = random.GetPoint();
+      p = kind == 1 ? std::pow(1000.0, p.X) * p : p;
+      // On a sphere up to rounding no five are cospherical, most likely.
+      p = kind == 2 && i < 1500 ? random.GetDirection() : p;
+      points.push_back(p);
+      others.emplace_back(Kernel::Point_3(p.X, p.Y, p.Z), i);
+    }
+    AdvancingFrontTetrahedralizerOutput output;
+    ASSERT_TRUE(MeshPointSet(points, output).IsOk());
+    const Triangulation triangulation(others.begin(), others.end());
+    std::set<TetrahedronIds> expected;
+    for (auto cell = triangulation.finite_cells_begin(); cell != triangulation.finite_cells_end();
+         ++cell)
+    {
+      TetrahedronIds ids{ cell->vertex(0)->info(), cell->vertex(1)->info(), cell->vertex(2)->info(),
+        cell->vertex(3)->info() };
+      std::sort(ids.begin(), ids.end());
+      expected.insert(ids);
+    }
+    std::set<TetrahedronIds> found;
+    for (TetrahedronIds ids : output.Mesh.Tetrahedra)
+    {
+      std::sort(ids.begin(), ids.end());
+      found.insert(ids);
+    }
+    EXPECT_EQ(output.Report.CosphericalCells, 0);
+    EXPECT_TRUE(found == expected) << "kind " << kind;
+  }
+}
+#endif
+
+TEST(AdvancingFront, MeshesABoxWithPoints)
+{
+  const TriangleMesh surface = MakeBox({ 0.0, 0.0, 0.0 }, { 1.0, 1.0, 1.0 });
+  Random random(1);
+  PointSet points = MakeInnerPoints(random, 3000, { 0.5, 0.5, 0.5 }, 0.4);
+  points.push_back({ 9.0, 0.5, 0.5 });
+  points.push_back(points.front());
+  AdvancingFrontTetrahedralizerOutput output;
+  ASSERT_TRUE(
+    TetrahedralizeByAdvancingFront({ &surface, &points, nullptr }, {}, {}, output).IsOk());
+  CheckSurfaceMesh(output);
+  EXPECT_EQ(output.Report.NumberOfRegions, 1);
+  EXPECT_EQ(output.Report.UnusedMeshPoints, 2);
+  EXPECT_EQ(output.Boundary.Triangles.size(), 12u);
+  EXPECT_TRUE(output.Front.empty());
+}
+
+TEST(AdvancingFront, LeavesCavitiesAndMeshesNestedRegions)
+{
+  // A box around a box: without labels both are meshed; with labels the inner one may stay empty.
+  TriangleMesh surface =
+    MakeBox({ 0.4, 0.4, 0.4 }, { 0.6, 0.6, 0.6 }, MakeBox({ 0.0, 0.0, 0.0 }, { 1.0, 1.0, 1.0 }));
+  AdvancingFrontTetrahedralizerOutput output;
+  ASSERT_TRUE(
+    TetrahedralizeByAdvancingFront({ &surface, nullptr, nullptr }, {}, {}, output).IsOk());
+  CheckSurfaceMesh(output);
+  EXPECT_EQ(output.Report.NumberOfRegions, 2);
+
+  for (int t = 0; t < 24; ++t)
+  {
+    surface.Labels.push_back(
+      t < 12 ? RegionPair{ OutsideRegion, 7 } : RegionPair{ 7, OutsideRegion });
+  }
+  ASSERT_TRUE(
+    TetrahedralizeByAdvancingFront({ &surface, nullptr, nullptr }, {}, {}, output).IsOk());
+  CheckSurfaceMesh(output);
+  MeshCheckReport report;
+  ASSERT_TRUE(CheckTetMesh(output.Mesh, &output.Boundary, {}, report).IsOk());
+  ASSERT_EQ(report.Regions.size(), 1u);
+  EXPECT_EQ(report.Regions[0].Region, 7);
+  EXPECT_NEAR(report.Regions[0].Volume, 1.0 - 0.008, 1e-12);
+
+  // A seed marks one of them.
+  surface.Labels.clear();
+  const std::vector<RegionSeed> seeds{ { { 0.5, 0.5, 0.5 }, 3 } };
+  ASSERT_TRUE(TetrahedralizeByAdvancingFront({ &surface, nullptr, &seeds }, {}, {}, output).IsOk());
+  ASSERT_TRUE(CheckTetMesh(output.Mesh, nullptr, {}, report).IsOk());
+  ASSERT_EQ(report.Regions.size(), 1u);
+  EXPECT_EQ(report.Regions[0].Region, 3);
+  EXPECT_NEAR(report.Regions[0].Volume, 0.008, 1e-14);
+}
+
+TEST(AdvancingFront, MeshesTouchingRegions)
+{
+  // Two boxes that share a face.
+  TriangleMesh surface;
+  for (int i = 0; i < 12; ++i)
+  {
+    surface.Points.push_back({ double(i % 3), double(i / 3 % 2), double(i / 6) });
+  }
+  const auto add = [&surface](Id a, Id b, Id c, Id d)
+  {
+    surface.Triangles.push_back({ a, b, c });
+    surface.Triangles.push_back({ a, c, d });
+  };
+  add(0, 3, 4, 1);
+  add(1, 4, 5, 2);
+  add(6, 7, 10, 9);
+  add(7, 8, 11, 10);
+  add(0, 1, 7, 6);
+  add(1, 2, 8, 7);
+  add(3, 9, 10, 4);
+  add(4, 10, 11, 5);
+  add(0, 6, 9, 3);
+  add(2, 5, 11, 8);
+  add(1, 4, 10, 7);
+  AdvancingFrontTetrahedralizerOutput output;
+  ASSERT_TRUE(
+    TetrahedralizeByAdvancingFront({ &surface, nullptr, nullptr }, {}, {}, output).IsOk());
+  CheckSurfaceMesh(output);
+  EXPECT_EQ(output.Report.NumberOfRegions, 2);
+}
+
+TEST(AdvancingFront, ClosesOpenBoundary)
+{
+  TriangleMesh surface = MakeBox({ 0.0, 0.0, 0.0 }, { 1.0, 1.0, 1.0 });
+  surface.Triangles.resize(10);
+  AdvancingFrontTetrahedralizerOutput output;
+  EXPECT_EQ(TetrahedralizeByAdvancingFront({ &surface, nullptr, nullptr }, {}, {}, output).Code,
+    StatusCode::InvalidInput);
+  AdvancingFrontTetrahedralizerOptions options;
+  options.CloseOpenBoundary = true;
+  ASSERT_TRUE(
+    TetrahedralizeByAdvancingFront({ &surface, nullptr, nullptr }, options, {}, output).IsOk());
+  CheckSurfaceMesh(output);
+  EXPECT_EQ(output.Boundary.Triangles.size(), 12u);
+  EXPECT_EQ(output.Boundary.SourceCells.back(), NoId);
+}
+
+TEST(AdvancingFront, DependsOnThePointsOnly)
+{
+  TriangleMesh surface = MakeBox({ 0.0, 0.0, 0.0 }, { 1.0, 1.0, 1.0 });
+  Random random(4);
+  PointSet points = MakeInnerPoints(random, 500, { 0.5, 0.5, 0.5 }, 0.4);
+  for (int i = 0; i < 64; ++i)
+  {
+    points.push_back(
+      { 0.375 + 0.0625 * (i % 4), 0.375 + 0.0625 * (i / 4 % 4), 0.375 + 0.0625 * (i / 16) });
+  }
+  AdvancingFrontTetrahedralizerOutput expected;
+  ASSERT_TRUE(
+    TetrahedralizeByAdvancingFront({ &surface, &points, nullptr }, {}, {}, expected).IsOk());
+  CheckSurfaceMesh(expected);
+  for (int round = 0; round < 5; ++round)
+  {
+    random.Shuffle(surface.Triangles);
+    for (TriangleIds& t : surface.Triangles)
+    {
+      std::rotate(t.begin(), t.begin() + random.GetInteger(3), t.end());
+    }
+    AdvancingFrontTetrahedralizerOutput output;
+    ASSERT_TRUE(
+      TetrahedralizeByAdvancingFront({ &surface, &points, nullptr }, {}, {}, output).IsOk());
+    EXPECT_TRUE(AreEqual(expected, output));
+  }
+}
+
+TEST(AdvancingFront, StopsAtSnapshotsAndAborts)
+{
+  const TriangleMesh surface = MakeBox({ 0.0, 0.0, 0.0 }, { 1.0, 1.0, 1.0 });
+  Random random(6);
+  const PointSet points = MakeInnerPoints(random, 20000, { 0.5, 0.5, 0.5 }, 0.4);
+  AdvancingFrontTetrahedralizerOutput whole;
+  ASSERT_TRUE(TetrahedralizeByAdvancingFront({ &surface, &points, nullptr }, {}, {}, whole).IsOk());
+  std::set<TetrahedronIds> all;
+  const auto sorted = [](TetrahedronIds ids, const AdvancingFrontTetrahedralizerOutput& output)
+  {
+    for (Id& id : ids)
+    {
+      id = id < 8 ? id : 8 + output.MeshPointSources[id - 8];
+    }
+    std::sort(ids.begin(), ids.end());
+    return ids;
+  };
+  for (const TetrahedronIds& ids : whole.Mesh.Tetrahedra)
+  {
+    all.insert(sorted(ids, whole));
+  }
+  const auto checkPartial = [&](const AdvancingFrontTetrahedralizerOutput& part)
+  {
+    MeshCheckReport report;
+    ASSERT_TRUE(CheckTetMesh(part.Mesh, nullptr, {}, report).IsOk());
+    EXPECT_EQ(report.InvertedTetrahedra + report.FlatTetrahedra + report.OverfullFacets +
+        report.WrongNeighbors,
+      0);
+    for (const TetrahedronIds& ids : part.Mesh.Tetrahedra)
+    {
+      ASSERT_EQ(all.count(sorted(ids, part)), 1u);
+    }
+    // Each facet has a neighbour, is a boundary triangle, or belongs to the front.
+    std::set<TriangleIds> open;
+    for (TriangleIds t : part.Front)
+    {
+      std::sort(t.begin(), t.end());
+      EXPECT_TRUE(open.insert(t).second);
+    }
+    std::set<TriangleIds> boundary;
+    for (TriangleIds t : part.Boundary.Triangles)
+    {
+      std::sort(t.begin(), t.end());
+      boundary.insert(t);
+    }
+    std::size_t count = 0;
+    for (std::size_t t = 0; t < part.Mesh.Tetrahedra.size(); ++t)
+    {
+      for (int i = 0; i < 4; ++i)
+      {
+        TriangleIds facet = GetFacet(part.Mesh.Tetrahedra[t], i);
+        std::sort(facet.begin(), facet.end());
+        count += open.count(facet);
+        EXPECT_NE(part.Mesh.Neighbors[t][i] != NoId, open.count(facet) + boundary.count(facet) > 0);
+      }
+    }
+    EXPECT_EQ(count, open.size());
+  };
+  for (const Id limit : { 1, 10, 1000, 50000 })
+  {
+    AdvancingFrontTetrahedralizerOptions options;
+    options.MaximumNumberOfTetrahedra = limit;
+    AdvancingFrontTetrahedralizerOutput part;
+    ASSERT_TRUE(
+      TetrahedralizeByAdvancingFront({ &surface, &points, nullptr }, options, {}, part).IsOk());
+    EXPECT_GE(static_cast<Id>(part.Mesh.Tetrahedra.size()), limit);
+    EXPECT_LT(static_cast<Id>(part.Mesh.Tetrahedra.size()), limit + 100);
+    EXPECT_FALSE(part.Front.empty());
+    checkPartial(part);
+  }
+  int calls = 0;
+  const ExecutionContext context(nullptr, [&calls]() { return ++calls > 3; });
+  AdvancingFrontTetrahedralizerOutput part;
+  ASSERT_TRUE(
+    TetrahedralizeByAdvancingFront({ &surface, &points, nullptr }, {}, context, part).IsAborted());
+  EXPECT_FALSE(part.Mesh.Tetrahedra.empty());
+  checkPartial(part);
+}
+
+TEST(AdvancingFront, NamesContradictingLabels)
+{
+  TriangleMesh surface = MakeBox({ 0.0, 0.0, 0.0 }, { 1.0, 1.0, 1.0 });
+  surface.Labels.assign(12, { OutsideRegion, 1 });
+  surface.Labels[5] = { OutsideRegion, 2 };
+  AdvancingFrontTetrahedralizerOutput output;
+  const Status status =
+    TetrahedralizeByAdvancingFront({ &surface, nullptr, nullptr }, {}, {}, output);
+  EXPECT_EQ(status.Code, StatusCode::InvalidInput);
+  EXPECT_FALSE(status.Cells.empty());
+  EXPECT_TRUE(output.Mesh.Tetrahedra.empty());
+}
+} // namespace

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The table in Data/README.md is that of the files in Data: names, sizes, checksums.
+
+With CDM_UPDATE_BASELINES=1 in the environment the sizes and checksums of the table become those of
+the files; origins and units of new files other than baselines are to be filled in by hand.
+"""
+
+import hashlib
+import os
+import re
+import sys
+
+DATA = os.environ["CDM_DATA_DIR"]
+README = os.path.join(DATA, "README.md")
+HEAD = "| file | origin | units | bytes | sha256 |\n|---|---|---|---|---|\n"
+ROW = re.compile(r"^\| `(\S+)` \| (.+) \| (.+) \| (\d+) \| `([0-9a-f]{64})` \|\n", re.MULTILINE)
+
+
+def GetFiles():
+    """Names below Data with size and checksum, without the README itself."""
+    files = {}
+    for folder, _, names in os.walk(DATA):
+        for name in names:
+            path = os.path.join(folder, name)
+            if path != README:
+                with open(path, "rb") as file:
+                    content = file.read()
+                relative = os.path.relpath(path, DATA)
+                files[relative] = (len(content), hashlib.sha256(content).hexdigest())
+    return files
+
+
+def GetOrigin(name):
+    """The image test that draws a baseline."""
+    folder = os.path.dirname(os.path.abspath(__file__))
+    for script in sorted(os.listdir(folder)):
+        if script.startswith("Test") and script.endswith(".py"):
+            with open(os.path.join(folder, script), encoding="utf-8") as file:
+                if '"%s"' % os.path.basename(name) in file.read():
+                    return "drawn by `Testing/Regression/%s`" % script
+    sys.exit("no test draws Data/%s" % name)
+
+
+with open(README, encoding="utf-8") as readme:
+    text = readme.read()
+rows = {name: (origin, units, int(size), checksum)
+        for name, origin, units, size, checksum in ROW.findall(text)}
+files = GetFiles()
+
+if os.environ.get("CDM_UPDATE_BASELINES") == "1":
+    table = ""
+    for name, (size, checksum) in sorted(files.items()):
+        isBaseline = name.startswith("Baselines/")
+        origin, units = rows.get(name, (None, None))[:2]
+        origin = GetOrigin(name) if isBaseline else origin or "unknown"
+        units = "pixels" if isBaseline else units or "unknown"
+        table += "| `%s` | %s | %s | %d | `%s` |\n" % (name, origin, units, size, checksum)
+    begin = text.index(HEAD) + len(HEAD)
+    end = text.find("\n\n", begin - 1)
+    with open(README, "w", encoding="utf-8") as readme:
+        readme.write(text[:begin] + table + (text[end + 1:] if end >= 0 else ""))
+    print("new table of %d files" % len(files))
+    sys.exit(0)
+
+faults = ["%s: not in the table" % name for name in files.keys() - rows.keys()]
+faults += ["%s: in the table, but not there" % name for name in rows.keys() - files.keys()]
+for name in files.keys() & rows.keys():
+    if rows[name][2:] != files[name]:
+        faults.append("%s: %s in the table, but %s" % (name, rows[name][2:], files[name]))
+    if "unknown" in rows[name][:2]:
+        faults.append("%s: of unknown origin or units" % name)
+    if name.startswith("Baselines/") and rows[name][0] != GetOrigin(name):
+        faults.append("%s: has another origin" % name)
+print("\n".join(sorted(faults)) or "%d files are as in Data/README.md" % len(files))
+sys.exit(1 if faults or not files else 0)
