@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ApexSearch.h"
 
-#include "Measures.h"
 #include "Predicates.h"
 
 #include <algorithm>
@@ -15,9 +14,9 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double Epsilon = std::numeric_limits<double>::epsilon();
 
-/** Bounds of the number of points gathered around a leaf: outside, the margin changes. */
 /** Points near one sphere that the kernels list. */
 constexpr int MostHits = 64;
+/** Bounds of the number of points gathered around a leaf: outside, the margin changes. */
 constexpr int FewPoints = 220;
 constexpr int ManyPoints = 280;
 constexpr int MostPoints = 480;
@@ -25,14 +24,19 @@ constexpr int MostPoints = 480;
 constexpr double LargeShare = 1.2;
 constexpr double SmallShare = 0.75;
 
+/** More points near a sphere than this are told apart with twice the digits. */
+constexpr std::size_t FewCandidates = 12;
+
 /** A plane with more points than this on the hull is remembered. */
 constexpr std::size_t FewCoplanarPoints = 4;
 
 /** Triangles of a worse condition are calculated in double-double arithmetic. */
 constexpr double GoodCondition = 12.0;
 
-/** Errors of |x|^2 and of 2 m x as calculated here, in units of the squared Manhattan norm of x and
- * of that norm times the largest component of 2 m; some three roundings each. */
+/**
+ * Errors of |x|^2 and of 2 m x as calculated here, in units of the squared norm of x and of its
+ * Manhattan norm times the largest component of 2 m: some five roundings each.
+ */
 constexpr double SquareError = 6.0 * Epsilon;
 constexpr double ProductError = 3.0 * Epsilon;
 /** Error of a product of some double-doubles. */
@@ -320,6 +324,7 @@ void ApexSearch::SetSphere(double lambda, double lambdaError)
 {
   // 2 m = 2 h + lambda 2 n.
   Pencil& pencil = this->Current;
+  this->Lambda = lambda;
   this->LambdaLimit = lambda + 2.0 * lambdaError;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -372,7 +377,15 @@ void ApexSearch::Find(Id b, Id c, Apex& result)
   {
     return;
   }
-  // What is left is worth the digits: the sphere is large, or the plane full of points.
+  if (isSelected && !this->IsPrecise)
+  {
+    if (this->SearchTree(b, c))
+    {
+      this->Resolve(b, c, result);
+      return;
+    }
+  }
+  // What is left is worth the digits: the plane is full of points, or the sphere.
   if (!this->IsPrecise)
   {
     this->PreparePrecisely(b, c);
@@ -411,6 +424,30 @@ bool ApexSearch::IsInHullPlane(Id b, Id c) const
   return false;
 }
 
+bool ApexSearch::Improve(const Vec3& x, double square)
+{
+  const Pencil& pencil = this->Current;
+  const double height = pencil.Normal[0] * x.X + pencil.Normal[1] * x.Y + pencil.Normal[2] * x.Z;
+  const double offset =
+    square - (pencil.Offset[0] * x.X + pencil.Offset[1] * x.Y + pencil.Offset[2] * x.Z);
+  // lambda = offset / height is off by (offset error + lambda times height error) / height.
+  const double reach = GetManhattanNorm(x);
+  const double heightError = pencil.HeightError * reach;
+  if (height < 2.0 * heightError)
+  {
+    return false;
+  }
+  const double lambda = offset / height;
+  if (!pencil.HasSphere || lambda < this->Lambda)
+  {
+    const double offsetError = SquareError * square + pencil.OffsetError * reach;
+    this->SetSphere(lambda,
+      (offsetError + std::abs(lambda) * heightError) / (height - heightError) +
+        2.0 * Epsilon * std::abs(lambda));
+  }
+  return true;
+}
+
 bool ApexSearch::FindNear(const Ball& ball, Id b, Id c, Apex& result)
 {
   Pencil& pencil = this->Current;
@@ -421,17 +458,8 @@ bool ApexSearch::FindNear(const Ball& ball, Id b, Id c, Apex& result)
     return false;
   }
   const Vec3 x{ ball.View.X[selected], ball.View.Y[selected], ball.View.Z[selected] };
-  const double height = pencil.Normal[0] * x.X + pencil.Normal[1] * x.Y + pencil.Normal[2] * x.Z;
-  const double offset = ball.View.W[selected] -
-    (pencil.Offset[0] * x.X + pencil.Offset[1] * x.Y + pencil.Offset[2] * x.Z);
-  // lambda = offset / height is off by (offset error + lambda times height error) / height.
-  const double reach = GetManhattanNorm(x);
-  const double heightError = pencil.HeightError * reach;
-  const double offsetError = SquareError * ball.View.W[selected] + pencil.OffsetError * reach;
-  const double lambda = offset / height;
-  this->SetSphere(lambda,
-    (offsetError + std::abs(lambda) * heightError) / (height - heightError) +
-      2.0 * Epsilon * std::abs(lambda));
+  pencil.HasSphere = false;
+  this->Improve(x, ball.View.W[selected]);
   this->Selected = ball.Ids[selected];
   if (!this->IsCovered(ball.Radius))
   {
@@ -460,7 +488,7 @@ bool ApexSearch::FindNear(const Ball& ball, Id b, Id c, Apex& result)
   return true;
 }
 
-void ApexSearch::SearchTree(Id b, Id c)
+bool ApexSearch::SearchTree(Id b, Id c)
 {
   Pencil& pencil = this->Current;
   this->Candidates.clear();
@@ -476,7 +504,7 @@ void ApexSearch::SearchTree(Id b, Id c)
     this->Waiting.pop_back();
     if (pencil.HasSphere && node.Bound * (1.0 - 16.0 * Epsilon) > this->LambdaLimit)
     {
-      return;
+      return true;
     }
     if (node.Level < 0)
     {
@@ -490,6 +518,16 @@ void ApexSearch::SearchTree(Id b, Id c)
         const Id point = static_cast<Id>(first) + lane;
         if (point == this->Vertex || point == b || point == c)
         {
+          continue;
+        }
+        if (!this->IsPrecise)
+        {
+          const Vec3 x = this->Tree.GetPoint(point) - this->Position;
+          this->Candidates.push_back(point);
+          if (this->Candidates.size() > FewCandidates || !this->Improve(x, SquaredNorm(x)))
+          {
+            return false;
+          }
           continue;
         }
         Measured measured{};
@@ -538,6 +576,7 @@ void ApexSearch::SearchTree(Id b, Id c)
       std::push_heap(this->Waiting.begin(), this->Waiting.end(), isLater);
     }
   }
+  return true;
 }
 
 bool ApexSearch::ResolveBox(Id b, Id c, Apex& result) const

@@ -56,6 +56,9 @@ class ApexSearch
 public:
   explicit ApexSearch(const PointTree& tree);
 
+  /** To be called when points have come back to the tree. */
+  void Forget() { this->Leaf = NoId; }
+
   /** Choose the vertex of the triangles to come. */
   void SetVertex(Id vertex);
 
@@ -90,7 +93,8 @@ private:
   void SetSphere(const Measured& measured);
   void SetSphere(double lambda, double lambdaError);
   bool IsCovered(double radius) const;
-  void SearchTree(Id b, Id c);
+  bool Improve(const Vec3& x, double square);
+  bool SearchTree(Id b, Id c);
   bool IsInHullPlane(Id b, Id c) const;
   void Resolve(Id b, Id c, Apex& result);
   bool ResolveBox(Id b, Id c, Apex& result) const;
@@ -103,6 +107,8 @@ private:
   double NormalLength = 0.0;
   /** What the true lambda of the pencil's sphere is surely not above, in units of 2 n. */
   double LambdaLimit = 0.0;
+  /** The sphere's lambda as far as double tells. */
+  double Lambda = 0.0;
   /** The point that the sphere belongs to. */
   Id Selected = NoId;
 

@@ -36,11 +36,7 @@ constexpr double ThinGapRatio = 0.1;
 class NearestPointVisitor
 {
 public:
-  NearestPointVisitor(const Vec3& position, Id except)
-    : Position(position)
-    , Except(except)
-  {
-  }
+  NearestPointVisitor(const Vec3& position, Id except) : Position(position), Except(except) {}
 
   double Order(const Box& box) const
   {
@@ -75,9 +71,7 @@ class NearTriangleVisitor
 public:
   NearTriangleVisitor(
     const Vec3& a, const Vec3& b, const Vec3& c, double distance, std::vector<char>& isNear)
-    : Corners{ a, b, c }
-    , Distance(distance)
-    , IsNear(isNear)
+    : Corners{ a, b, c }, Distance(distance), IsNear(isNear)
   {
     this->Bounds.Add(a);
     this->Bounds.Add(b);
@@ -100,7 +94,8 @@ public:
   void Visit(Id id, const Vec3& p)
   {
     if (!this->IsNear[id] &&
-      GetDistanceToTriangle(p, this->Corners[0], this->Corners[1], this->Corners[2]) <= this->Distance)
+      GetDistanceToTriangle(p, this->Corners[0], this->Corners[1], this->Corners[2]) <=
+        this->Distance)
     {
       this->IsNear[id] = 1;
     }
@@ -113,16 +108,30 @@ private:
   std::vector<char>& IsNear;
 };
 
+/**
+ * Takes over each coordinate that differs from that of a matching point by rounding errors only:
+ * what is parallel to an axis stays so exactly, and the cells in between become exactly
+ * cospherical, which stage 4 can make good tetrahedra of.
+ */
+Vec3 SnapToCoordinates(Vec3 position, const Vec3& model, double size)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (std::abs(position[axis] - model[axis]) <= 1e-15 * size)
+    {
+      position[axis] = model[axis];
+    }
+  }
+  return position;
+}
+
 /** Points strictly inside the diametral sphere of an edge, other than its ends. */
 class DiametralSphereVisitor
 {
 public:
   DiametralSphereVisitor(const std::vector<Vec3>& points, const EdgeIds& edge)
-    : Edge(edge)
-    , A(points[edge[0]])
-    , B(points[edge[1]])
-    , Center(0.5 * (this->A + this->B))
-    , Reach(0.5 * Distance(this->A, this->B) * (1.0 + 1e-9))
+    : Edge(edge), A(points[edge[0]]), B(points[edge[1]]), Center(0.5 * (this->A + this->B)),
+      Reach(0.5 * Distance(this->A, this->B) * (1.0 + 1e-9))
   {
   }
 
@@ -167,11 +176,7 @@ public:
   SurfaceRefiner(const DelaunaySurfaceRefinerInput& input,
     const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
     DelaunaySurfaceRefinerOutput& output)
-    : Input(input)
-    , Options(options)
-    , Context(context)
-    , Output(output)
-    , Test(Points, Octree)
+    : Input(input), Options(options), Context(context), Output(output), Test(Points, Octree)
   {
   }
 
@@ -226,6 +231,7 @@ private:
   Id NumberOfSurfacePoints = 0;
   Id NumberOfGivenPoints = 0;
   Id MaximumNewPoints = 0;
+  double Diagonal = 0.0;
   double Flatness = 0.0;
   double MinimumEdge = 0.0;
   PointOctree Octree;
@@ -273,9 +279,9 @@ Status SurfaceRefiner::Prepare()
   }
   std::vector<Id> order(this->Points.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [this](Id i, Id j) {
-    return this->Points[i] != this->Points[j] ? this->Points[i] < this->Points[j] : i < j;
-  });
+  std::sort(order.begin(), order.end(),
+    [this](Id i, Id j)
+    { return this->Points[i] != this->Points[j] ? this->Points[i] < this->Points[j] : i < j; });
   std::vector<Id> coincident;
   for (std::size_t i = 1; i < order.size(); ++i)
   {
@@ -309,9 +315,9 @@ Status SurfaceRefiner::Prepare()
       std::move(degenerate));
   }
 
-  const double diagonal = GetBoundingBoxDiagonal(this->Points);
-  this->Flatness = this->Options.StructuralEdges.FlatnessRatio * diagonal;
-  this->MinimumEdge = this->Options.MinimumEdgeRatio * diagonal;
+  this->Diagonal = GetBoundingBoxDiagonal(this->Points);
+  this->Flatness = this->Options.StructuralEdges.FlatnessRatio * this->Diagonal;
+  this->MinimumEdge = this->Options.MinimumEdgeRatio * this->Diagonal;
   StructuralEdgesOutput edges;
   const Status status = ExtractStructuralEdges(
     surface, this->Options.StructuralEdges, this->Context.Part(0.0, 0.05), edges);
@@ -341,8 +347,7 @@ void SurfaceRefiner::DropCloseMeshPoints()
     return;
   }
   const std::vector<Vec3>& meshPoints = *this->Input.MeshPoints;
-  const double clearance =
-    this->Options.MeshPointClearanceRatio * GetBoundingBoxDiagonal(this->Points);
+  const double clearance = this->Options.MeshPointClearanceRatio * this->Diagonal;
   // Copies of points and points that are no numbers are of no use either.
   std::vector<char> isDropped(meshPoints.size(), 0);
   std::vector<Id> order;
@@ -354,9 +359,9 @@ void SurfaceRefiner::DropCloseMeshPoints()
     }
     isDropped[i] = !IsFinite(meshPoints[i]);
   }
-  std::sort(order.begin(), order.end(), [&meshPoints](Id i, Id j) {
-    return meshPoints[i] != meshPoints[j] ? meshPoints[i] < meshPoints[j] : i < j;
-  });
+  std::sort(order.begin(), order.end(),
+    [&meshPoints](Id i, Id j)
+    { return meshPoints[i] != meshPoints[j] ? meshPoints[i] < meshPoints[j] : i < j; });
   PointOctree octree;
   for (std::size_t i = 0; i < order.size(); ++i)
   {
@@ -368,8 +373,8 @@ void SurfaceRefiner::DropCloseMeshPoints()
   }
   for (const TriangleIds& ids : this->Input.Surface->Triangles)
   {
-    NearTriangleVisitor visitor(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]],
-      clearance, isDropped);
+    NearTriangleVisitor visitor(
+      this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]], clearance, isDropped);
     octree.Visit(visitor);
   }
   for (std::size_t i = 0; i < meshPoints.size(); ++i)
@@ -516,7 +521,8 @@ bool SurfaceRefiner::CanFlip(Id use) const
     return true;
   }
   const double angle = this->Options.StructuralEdges.AccuracyAngle;
-  return angle > 0.0 && IsSmoothEdge(a, b, c, d, angle, 0.0) && IsSmoothEdge(d, c, a, b, angle, 0.0);
+  return angle > 0.0 && IsSmoothEdge(a, b, c, d, angle, 0.0) &&
+    IsSmoothEdge(d, c, a, b, angle, 0.0);
 }
 
 bool SurfaceRefiner::ShouldFlip(Id use) const
@@ -716,9 +722,8 @@ bool SurfaceRefiner::PlacePartner(Id segment, Id disturbing, double& way) const
     const double foot = Dot(p - a, direction);
     // Distance of p from the common perpendicular along its line, times 1 - cosine: a shift of the
     // foot that stays small and accurate where the lines are almost parallel.
-    const double along = squaredSine > 0.0
-      ? Dot(Cross(p - a, direction), across) / squaredSine
-      : 0.0;
+    const double along =
+      squaredSine > 0.0 ? Dot(Cross(p - a, direction), across) / squaredSine : 0.0;
     const double shift = squaredSine > 1e-24 ? -along * squaredSine / (1.0 + cosine) : 0.0;
     way = foot + shift;
   }
@@ -741,11 +746,11 @@ Vec3 SurfaceRefiner::PlaceOnSegment(Id segment, Id disturbing) const
     double way = foot;
     const bool isPartner = this->PlacePartner(segment, disturbing, way);
     const double margin = isThin ? 0.0
-      : isPartner              ? SmallestPiece * length
-                               : std::min(height, 0.5 * length);
+      : isPartner                ? SmallestPiece * length
+                                 : std::min(height, 0.5 * length);
     if (way > margin && way < length - margin)
     {
-      return a + way * direction;
+      return SnapToCoordinates(a + way * direction, p, this->Diagonal);
     }
     if (!isPartner && foot > 0.0 && foot < length)
     {
@@ -792,8 +797,7 @@ bool SurfaceRefiner::SplitSegment(Id segment, Id disturbing)
   for (int attempt = 0; attempt < 2; ++attempt)
   {
     if (std::min(Distance(position, a), Distance(position, b)) >= this->MinimumEdge &&
-      this->GetNearestDistance(position) > 0.0 &&
-      this->Surface->CanSplitSegment(segment, position))
+      this->GetNearestDistance(position) > 0.0 && this->Surface->CanSplitSegment(segment, position))
     {
       const double weight = Distance(position, a) / length;
       const PointParents parents{ { ends[0], ends[1], NoId }, { 1.0 - weight, weight, 0.0 } };
@@ -815,7 +819,8 @@ bool SurfaceRefiner::ResolveByEdge(Id t)
   Id bestSegment = NoId;
   Id bestPoint = NoId;
   double bestDepth = Infinity;
-  const auto consider = [&](Id segment, Id point) {
+  const auto consider = [&](Id segment, Id point)
+  {
     const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
     const Vec3& a = this->Points[ends[0]];
     const Vec3& b = this->Points[ends[1]];
@@ -917,8 +922,8 @@ bool SurfaceRefiner::RotateAboutCorner(Id t, Id disturbing, Vec3& target) const
     {
       const double distance = Distance(p, this->Points[candidate]);
       if (candidate != disturbing && distance < nearest &&
-        std::binary_search((isSmaller ? corners : others).begin(),
-          (isSmaller ? corners : others).end(), candidate))
+        std::binary_search(
+          (isSmaller ? corners : others).begin(), (isSmaller ? corners : others).end(), candidate))
       {
         nearest = distance;
         corner = candidate;
@@ -950,8 +955,7 @@ bool SurfaceRefiner::ProjectOntoFacet(Id t, Id disturbing, Vec3& target) const
   const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
   const Vec3& a = this->Points[ids[0]];
   const Vec3 normal = Cross(this->Points[ids[1]] - a, this->Points[ids[2]] - a);
-  const double radius =
-    Distance(a, GetCircumcenter(a, this->Points[ids[1]], this->Points[ids[2]]));
+  const double radius = Distance(a, GetCircumcenter(a, this->Points[ids[1]], this->Points[ids[2]]));
   const Vec3& p = this->Points[disturbing];
   Vec3 unit = (1.0 / Norm(normal)) * normal;
   unit = Dot(unit, p - a) < 0.0 ? -1.0 * unit : unit;
@@ -986,8 +990,7 @@ bool SurfaceRefiner::MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) co
 {
   // However close to other points: only points that match exactly leave each other alone.
   return this->RotateAboutAxis(t, disturbing, target) ||
-    this->RotateAboutCorner(t, disturbing, target) ||
-    this->ProjectOntoFacet(t, disturbing, target);
+    this->RotateAboutCorner(t, disturbing, target) || this->ProjectOntoFacet(t, disturbing, target);
 }
 
 bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMirrored)
@@ -1029,6 +1032,19 @@ bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMir
       const Vec3 n = Cross(this->Points[ids[1]] - p, this->Points[ids[2]] - p);
       const double slope = Dot(n, normal);
       position = slope != 0.0 ? target + (Dot(n, p - target) / slope) * normal : target;
+      // A plane across an axis is met exactly, and so are the coordinates of a matching point.
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const double coordinate = p[axis];
+        if (this->Points[ids[1]][axis] == coordinate && this->Points[ids[2]][axis] == coordinate)
+        {
+          position[axis] = coordinate;
+        }
+      }
+      if (isMirrored)
+      {
+        position = SnapToCoordinates(position, this->Points[disturbing], this->Diagonal);
+      }
       place = surface.Locate(current, position);
       if (place.second)
       {
@@ -1041,9 +1057,8 @@ bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMir
     {
       const Id segment = -1 - adjacent;
       const EdgeIds& ends = surface.GetSegment(segment).Points;
-      const auto isDisturbedBy = [&](const Vec3& p) {
-        return InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], p) >= 0;
-      };
+      const auto isDisturbedBy = [&](const Vec3& p)
+      { return InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], p) >= 0; };
       const bool isDisturbed = disturbing != NoId && isDisturbedBy(this->Points[disturbing]);
       // On a curved facet the walk may lead to an edge that has nothing to do with the triangle.
       return (isDisturbed || isDisturbedBy(target) || isDisturbedBy(a) ||
@@ -1133,8 +1148,7 @@ bool SurfaceRefiner::SplitLongestEdge(Id t)
   const EdgeIds ends{ ids[longest], ids[(longest + 1) % 3] };
   const Vec3 a = this->Points[ends[0]];
   const Vec3 edge = this->Points[ends[1]] - a;
-  const double foot =
-    Dot(this->Points[this->Surface->GetApex(use)] - a, edge) / SquaredNorm(edge);
+  const double foot = Dot(this->Points[this->Surface->GetApex(use)] - a, edge) / SquaredNorm(edge);
   for (double weight : { std::min(std::max(foot, 0.25), 0.75), 0.5 })
   {
     const Vec3 position = a + weight * edge;
@@ -1142,8 +1156,7 @@ bool SurfaceRefiner::SplitLongestEdge(Id t)
       this->Surface->CanSplitSmoothEdge(use, position))
     {
       const PointParents parents{ { ends[0], ends[1], NoId }, { 1.0 - weight, weight, 0.0 } };
-      const Id point =
-        this->AddPoint(position, parents, { this->Surface->GetTriangle(t).Facet });
+      const Id point = this->AddPoint(position, parents, { this->Surface->GetTriangle(t).Facet });
       ++this->Output.Report.FacetPoints;
       std::vector<Id> uses;
       this->Surface->SplitSmoothEdge(use, point, uses);
@@ -1203,7 +1216,8 @@ bool SurfaceRefiner::FindTooCoarse(Id t, Id& segment) const
 
 void SurfaceRefiner::Process(Id t)
 {
-  const auto getCircumcenter = [this](Id triangle) {
+  const auto getCircumcenter = [this](Id triangle)
+  {
     const TriangleIds& ids = this->Surface->GetTriangle(triangle).Points;
     return GetCircumcenter(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]);
   };
@@ -1245,7 +1259,7 @@ void SurfaceRefiner::Process(Id t)
       // Too coarse is no fault: if a limit forbids to refine, the triangle stays as it is.
       const bool isRefined = segment != NoId
         ? this->SplitSegment(segment, NoId)
-        : this->ResolveInFacet(t, NoId, getCircumcenter(t), false);
+        : this->ResolveInFacet(t, NoId, getCircumcenter(t), false) || this->SplitLongestEdge(t);
       if (isRefined)
       {
         this->Enqueue(t);
@@ -1271,8 +1285,7 @@ void SurfaceRefiner::Process(Id t)
     : !this->Found.Cocircular.empty()       ? this->Found.Cocircular.front()
                                             : NoId;
   Vec3 target;
-  const bool isMirrored =
-    disturbing != NoId && this->MirrorDisturbingPoint(t, disturbing, target);
+  const bool isMirrored = disturbing != NoId && this->MirrorDisturbingPoint(t, disturbing, target);
   if ((isMirrored && this->ResolveInFacet(t, disturbing, target, true)) ||
     this->ResolveInFacet(t, disturbing, getCircumcenter(t), false) || this->SplitLongestEdge(t))
   {
@@ -1314,9 +1327,8 @@ void SurfaceRefiner::Finish()
 {
   // Mesh points lie between the given and the new points of the surface: take them out.
   const Id shift = this->NumberOfGivenPoints - this->NumberOfSurfacePoints;
-  const auto renumber = [this, shift](Id id) {
-    return id >= this->NumberOfGivenPoints ? id - shift : id;
-  };
+  const auto renumber = [this, shift](Id id)
+  { return id >= this->NumberOfGivenPoints ? id - shift : id; };
   TriangleMesh& surface = this->Output.Surface;
   this->Surface->Export(surface);
   if (this->Input.Surface->Labels.empty())
@@ -1328,8 +1340,8 @@ void SurfaceRefiner::Finish()
     ids = { renumber(ids[0]), renumber(ids[1]), renumber(ids[2]) };
   }
   surface.Points.assign(this->Points.begin(), this->Points.begin() + this->NumberOfSurfacePoints);
-  surface.Points.insert(surface.Points.end(), this->Points.begin() + this->NumberOfGivenPoints,
-    this->Points.end());
+  surface.Points.insert(
+    surface.Points.end(), this->Points.begin() + this->NumberOfGivenPoints, this->Points.end());
   for (PointParents& parents : this->Output.NewPoints)
   {
     for (Id& id : parents.Ids)
@@ -1342,8 +1354,8 @@ void SurfaceRefiner::Finish()
     const RefinableSurface::Segment& segment = this->Surface->GetSegment(s);
     const Id a = renumber(segment.Points[0]);
     const Id b = renumber(segment.Points[1]);
-    this->Output.StructuralEdges.push_back({ { std::min(a, b), std::max(a, b) }, segment.Kind,
-      segment.Chain, segment.DihedralAngle });
+    this->Output.StructuralEdges.push_back(
+      { { std::min(a, b), std::max(a, b) }, segment.Kind, segment.Chain, segment.DihedralAngle });
   }
   std::sort(this->Output.StructuralEdges.begin(), this->Output.StructuralEdges.end(),
     [](const StructuralEdge& x, const StructuralEdge& y) { return x.Points < y.Points; });
@@ -1372,7 +1384,7 @@ Status SurfaceRefiner::Run()
   }
   return status;
 }
-}
+} // namespace
 
 Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,
   const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
@@ -1386,4 +1398,4 @@ Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,
   }
   return status;
 }
-}
+} // namespace cdm

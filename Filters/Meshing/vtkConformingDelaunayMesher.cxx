@@ -315,6 +315,11 @@ int vtkConformingDelaunayMesher::RequestData(
   vtkNew<vtkSliverRemover> remover;
   remover->SetInputConnection(tetrahedralizer->GetOutputPort());
   remover->SetDihedralAngleTarget(this->DihedralAngleTarget);
+  if (this->Criterion != Delaunay)
+  {
+    // Peeling turns a diagonal of the boundary, which the stronger criteria do not allow.
+    remover->SetFlatnessRatio(0.0);
+  }
 
   cdm::Status status = RunStage(this, triangulator, "Boundary triangulation", 0.0, 0.1);
   if (status.IsOk())

@@ -10,9 +10,9 @@
  * remover; 0: nothing is peeled off).
  *
  * One line of "name value" pairs goes to the standard output: open edges and points of the cleaned
- * input, points added, tetrahedra, seconds of each stage. Errors and warnings of the filters go to the standard
- * error. Exit status: 0 meshed, 1 refused by a filter, 2 wrong use or a file that cannot be read or
- * written.
+ * input, points added, tetrahedra, seconds of each stage. Errors and warnings of the filters go to
+ * the standard error. Exit status: 0 meshed, 1 refused by a filter, 2 wrong use or a file that
+ * cannot be read or written.
  */
 #include <vtkAdvancingFrontTetrahedralizer.h>
 #include <vtkBoundaryTriangulator.h>
