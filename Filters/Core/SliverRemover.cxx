@@ -238,7 +238,7 @@ bool Remover::FindPeeledEdges(
   const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
   const std::array<Vec3, 4> points{ this->GetPoint(ids[0]), this->GetPoint(ids[1]),
     this->GetPoint(ids[2]), this->GetPoint(ids[3]) };
-  if (GetSmallestHeight(points[0], points[1], points[2], points[3]) > this->Flatness)
+  if (GetSmallestHeight(points[0], points[1], points[2], points[3]) >= this->Flatness)
   {
     return false;
   }
