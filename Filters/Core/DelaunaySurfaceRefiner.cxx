@@ -1239,8 +1239,11 @@ void SurfaceRefiner::Process(Id t)
         this->Octree.Visit(visitor);
         if (visitor.Found != NoId)
         {
-          this->Enqueue(t);
-          if (!this->SplitSegment(segment, visitor.Found))
+          if (this->SplitSegment(segment, visitor.Found))
+          {
+            this->Enqueue(t);
+          }
+          else
           {
             this->IsUnresolved[t] = 1;
           }
