@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AdvancingFrontTetrahedralizer.h"
 
-#include "ApexSearch.h"
-#include "CosphericalCell.h"
-#include "Measures.h"
-#include "PointTree.h"
+#include "DelaunayTetrahedralization.h"
 #include "Predicates.h"
 #include "SpatialSort.h"
-#include "StarTable.h"
 #include "SurfaceDelaunayTest.h"
 #include "SurfaceSides.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
+#include <cstdint>
 #include <numeric>
 #include <string>
 
@@ -21,9 +16,6 @@ namespace cdm
 {
 namespace
 {
-/** Facet ids of 4 * tetrahedron + i have to fit into an Id. */
-constexpr std::size_t MaximumTetrahedra = std::size_t(1) << 29;
-
 /** How often the context is asked, in tetrahedra or triangles. */
 constexpr std::size_t ReportInterval = 4096;
 
@@ -40,80 +32,20 @@ int GetRelativeTurn(const TriangleIds& s, const TriangleIds& t)
   return s[1] == t[(first + 1) % 3] ? 1 : -1;
 }
 
-/** The eight corners of a box: its faces, counter-clockwise seen from outside. */
-constexpr int BoxFaces[6][4] = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 },
-  { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
-
-/** What is known of the space that a side of the surface looks into before it is reached. */
-constexpr Id UnknownSpace = -2;
-constexpr Id OutsideSpace = -1;
-
-/**
- * A set of small numbers that gives its smallest one: the vertices that the front has reached.
- * One bit for each number, in a tree of words.
- */
-class OrderedSet
+/** The fan of a convex polygon from its lowest point, in the polygon's orientation. */
+std::vector<TriangleIds> MakeFan(const std::vector<Id>& polygon)
 {
-public:
-  void Reset(std::size_t size)
+  const std::size_t count = polygon.size();
+  const std::size_t lowest =
+    static_cast<std::size_t>(std::min_element(polygon.begin(), polygon.end()) - polygon.begin());
+  std::vector<TriangleIds> fan;
+  for (std::size_t i = 1; i + 1 < count; ++i)
   {
-    this->Levels.clear();
-    do
-    {
-      size = (size + 63) / 64;
-      this->Levels.emplace_back(size, 0);
-    } while (size > 1);
+    fan.push_back(
+      { polygon[lowest], polygon[(lowest + i) % count], polygon[(lowest + i + 1) % count] });
   }
-
-  void Insert(Id number)
-  {
-    std::size_t i = static_cast<std::size_t>(number);
-    for (std::vector<std::uint64_t>& level : this->Levels)
-    {
-      std::uint64_t& word = level[i / 64];
-      const std::uint64_t before = word;
-      word |= std::uint64_t(1) << (i % 64);
-      if (before != 0)
-      {
-        return;
-      }
-      i /= 64;
-    }
-  }
-
-  bool IsEmpty() const { return this->Levels.back()[0] == 0; }
-
-  Id PopSmallest()
-  {
-    std::size_t i = 0;
-    for (std::size_t level = this->Levels.size(); level-- > 0;)
-    {
-      i = 64 * i + CountTrailingZeros64(this->Levels[level][i]);
-    }
-    const Id smallest = static_cast<Id>(i);
-    for (std::vector<std::uint64_t>& level : this->Levels)
-    {
-      std::uint64_t& word = level[i / 64];
-      word &= ~(std::uint64_t(1) << (i % 64));
-      if (word != 0)
-      {
-        break;
-      }
-      i /= 64;
-    }
-    return smallest;
-  }
-
-private:
-  static std::size_t CountTrailingZeros64(std::uint64_t word)
-  {
-    const unsigned low = static_cast<unsigned>(word);
-    return low != 0 ? CountTrailingZeros(low)
-                    : 32 + CountTrailingZeros(static_cast<unsigned>(word >> 32));
-  }
-
-  std::vector<std::vector<std::uint64_t>> Levels;
-};
+  return fan;
+}
 
 class AdvancingFront
 {
@@ -122,126 +54,101 @@ public:
     const AdvancingFrontTetrahedralizerOptions& options, const ExecutionContext& context,
     AdvancingFrontTetrahedralizerOutput& output)
     : Input(input), Options(options), Context(context), Output(output), Surface(output.Boundary),
-      Points(output.Mesh.Points), Mesh(output.Mesh), Search(Tree), Cell(Points)
+      Points(output.Mesh.Points)
   {
   }
 
   Status Run();
 
 private:
-  /** A seed of growth: a side of the surface, its region, and the space it looks into. */
-  struct SideSeed
+  /** Where the front starts: a tetrahedron, and the surface triangle that it was found by. */
+  struct Seed
   {
-    Id Side;
+    Id Tetrahedron;
     Id Region;
-    Id Space;
+    Id Triangle;
   };
-  /** A facet of the front in the list of its first vertex; (vertex, B, C) looks out. */
-  struct OpenFacet
+  /** States of the tetrahedra of all points while the front advances. */
+  enum State : unsigned char
   {
-    Id B;
-    Id C;
-    Id Facet;
-    Id Next;
+    Unreached,
+    InFront,
+    Meshed,
+    BeyondHull
   };
 
   Status CollectPoints();
-  Status TurnDiagonals();
+  Status TetrahedralizePoints();
+  Status CheckSurface();
+  Status TurnDiagonals(const std::vector<Id>& doubtful);
+  void FindFacetsOfSurface();
+  bool IsSurelyStronglyDelaunay(Id triangle) const;
   Status FindSeeds();
-  bool LocateSeed(const Vec3& position, Id& side) const;
-  Status FindFirstFacet(TriangleIds& facet);
-  void PrepareFront();
-  Status GrowRegion(const SideSeed& seed);
-  bool IsOnHull(Id side);
-  Status GrowHull();
-  Status Advance(Id region);
-  Status CompleteStar(Id vertex, Id region);
-  Status OpenStar(Id vertex);
-  Status CompleteFacet(Id b, Id c, Id region, Id sourceFacet);
-  Status SplitCell(Id b, Id c, Id region);
-  Status AddBox(Id region);
-  Status AddTetrahedron(const TetrahedronIds& tetrahedron, Id region);
-  Status AttachToStar(Id b, Id c, Id facet);
-  Status AttachToSurface(Id triangle, const TriangleIds& outward, Id facet, Id region);
-  void AddHullTriangle(const TriangleIds& outward, Id facet, Id region);
-  bool IsFinished(Id vertex) const;
-  bool IsFinishedForNow(Id vertex) const;
-  Status CollectFront();
+  Status FindGivenSeeds();
+  Status FindSeedsOfShells();
+  static Status MakeNothingEnclosedError(const SurfaceSides& sides);
+  Status MeshRegions();
+  Status Advance(const Seed& seed);
+  void TakeAll();
+  Status AttachToSurface(Id side, Id region);
+  Status MakeHullError(const Seed& seed, const TriangleIds& points) const;
+  void CollectFront();
   void Finish();
-  void SortHull();
-  void SortTetrahedra();
-  TriangleIds GetSideTriangle(Id side) const
-  {
-    const TriangleIds& t = this->Surface.Triangles[side / 2];
-    return side % 2 == 0 ? t : TriangleIds{ t[0], t[2], t[1] };
-  }
+  void CollectTetrahedra();
+  void CollectPointsUsed();
+  void CompleteBoundary();
   Id GetSideLabel(Id side) const
   {
     const RegionPair& labels = this->Surface.Labels[side / 2];
     return side % 2 == 0 ? labels.Front : labels.Back;
   }
-  /** Cell of the stage's input that a surface triangle stands for. */
-  Id GetSourceCell(Id triangle) const { return this->Surface.SourceCells[triangle]; }
   bool IsLimitReached() const
   {
     return this->Options.MaximumNumberOfTetrahedra > 0 &&
-      static_cast<Id>(this->Mesh.Tetrahedra.size()) >= this->Options.MaximumNumberOfTetrahedra;
+      this->NumberOfTetrahedra >= this->Options.MaximumNumberOfTetrahedra;
   }
-  TriangleIds ToPoints(Id a, Id b, Id c) const
+  /** A facet in points, the lowest one first. */
+  TriangleIds GetFacetPoints(Id facet) const
   {
-    return { this->Order[a], this->Order[b], this->Order[c] };
+    const TriangleIds ids = GetFacet(this->All.Tetrahedra[facet / 4], facet % 4);
+    TriangleIds points{ this->Order[ids[0]], this->Order[ids[1]], this->Order[ids[2]] };
+    std::rotate(points.begin(), std::min_element(points.begin(), points.end()), points.end());
+    return points;
   }
   bool HasSurface() const { return this->NumberOfSurfaceTriangles > 0; }
+  bool HasSeeds() const { return this->Input.Seeds != nullptr && !this->Input.Seeds->empty(); }
+
+  /** Neighbors beyond a side of the surface are this, less the side. */
+  static constexpr Id FirstBarrier = -2;
 
   const AdvancingFrontTetrahedralizerInput& Input;
   const AdvancingFrontTetrahedralizerOptions& Options;
   const ExecutionContext& Context;
   AdvancingFrontTetrahedralizerOutput& Output;
 
-  /** Works on the output's boundary: the surface, then triangles that close open borders. */
+  /** Works on the output's boundary, with points still empty. */
   TriangleMesh& Surface;
   std::vector<Vec3>& Points;
-  TetMesh& Mesh;
   bool HasLabels = false;
   Id NumberOfSurfacePoints = 0;
   Id NumberOfSurfaceTriangles = 0;
 
-  /**
-   * Vertices are points in the order of a Hilbert curve, without copies: the point of each vertex,
-   * and the vertex of each point or NoId. Until the end tetrahedra are made of vertices.
-   */
+  /** Vertices are points in the order of a Hilbert curve, without copies: the point of each. */
   std::vector<Id> Order;
-  std::vector<Id> Vertices;
-  PointTree Tree;
-  ApexSearch Search;
-  CosphericalCell Cell;
-  Apex Found;
+  std::vector<Vec3> VertexPoints;
+  DelaunayTetrahedralization All;
+  std::vector<unsigned char> States;
+  std::vector<Id> Regions;
 
-  /** For each side of the surface: the tetrahedron facet attached to it, or NoId. */
+  /** For each side of the surface: the facet of the tetrahedron there, or NoId. */
   std::vector<Id> SideFacets;
-  /** Region that the front reached the side with. */
-  std::vector<Id> SideRegions;
-  /** What each side looks into, as far as it is known before. */
-  std::vector<Id> SideSpaces;
-  std::vector<SideSeed> Seeds;
-  /** Surface triangles around each vertex. */
-  std::vector<Id> IncidentStarts;
-  std::vector<Id> Incident;
-
-  /** Vertices with facets of the front, and the list of those of which it is the first one. */
-  OrderedSet Reached;
-  std::vector<Id> Lists;
-  std::vector<OpenFacet> OpenFacets;
-  Id FreeFacet = NoId;
-  /** The vertex whose star is being completed, and the facets around it. */
-  Id Vertex = NoId;
-  StarTable Star;
-  std::vector<StarTable::Entry> Stack;
-  Id CurrentSpace = UnknownSpace;
-  Id CurrentRegion = NoId;
-  /** Vertices that dropped out for the present region only. */
-  std::vector<Id> Postponed;
+  std::vector<Seed> Seeds;
+  /** Tetrahedra that the front has reached. */
+  std::vector<Id> Front;
+  Id NumberOfTetrahedra = 0;
   bool IsStopped = false;
+  /** Facets that close an open boundary. */
+  std::vector<Id> HullFacets;
 };
 
 Status AdvancingFront::CollectPoints()
@@ -267,8 +174,9 @@ Status AdvancingFront::CollectPoints()
   }
   if (surface.Triangles.empty() && !this->Options.CloseOpenBoundary)
   {
-    return Status::InvalidInput("The surface has no triangles; there is nothing to mesh. Switch "
-                                "CloseOpenBoundary on to mesh the convex hull of points.");
+    return Status::InvalidInput(
+      "The surface is empty: it has no triangles. Switch CloseOpenBoundary on to mesh the convex "
+      "hull of points.");
   }
   for (std::size_t i = 0; i < this->Points.size(); ++i)
   {
@@ -418,12 +326,8 @@ private:
   std::vector<std::pair<EdgeIds, Id>> Uses;
 };
 
-Status AdvancingFront::TurnDiagonals()
+Status AdvancingFront::TurnDiagonals(const std::vector<Id>& doubtful)
 {
-  if (!this->HasSurface())
-  {
-    return Status();
-  }
   const FacetPolygons polygons(this->Surface, this->HasLabels);
   PointOctree octree;
   for (Id point : this->Order)
@@ -435,14 +339,15 @@ Status AdvancingFront::TurnDiagonals()
   std::vector<Id> offending;
   std::vector<char> isDone(this->Surface.Triangles.size(), 0);
   std::vector<Id> polygonTriangles;
-  const ExecutionContext part = this->Context.Part(0.0, 0.1);
-  for (Id t = 0; t < this->NumberOfSurfaceTriangles; ++t)
+  const ExecutionContext part = this->Context.Part(0.6, 0.75);
+  for (std::size_t i = 0; i < doubtful.size(); ++i)
   {
-    if (t % ReportInterval == 0 &&
-      !part.Continue(double(t) / this->NumberOfSurfaceTriangles, "Checking the surface"))
+    if (i % ReportInterval == 0 &&
+      !part.Continue(double(i) / double(doubtful.size()), "Checking the surface"))
     {
       return Status::Aborted();
     }
+    const Id t = doubtful[i];
     if (isDone[t])
     {
       continue;
@@ -475,8 +380,7 @@ Status AdvancingFront::TurnDiagonals()
       [&](Id x, Id y)
       { return ProjectedOrientation(axis, a, this->Points[x], this->Points[y]) == turn; });
     outline.insert(outline.begin(), first[0]);
-    std::vector<TriangleIds> fan;
-    AppendFan(outline, fan);
+    const std::vector<TriangleIds> fan = MakeFan(outline);
     if (fan.size() != polygonTriangles.size())
     {
       return Status::InvalidInput("Triangles of a flat facet overlap; check the surface with "
@@ -484,15 +388,15 @@ Status AdvancingFront::TurnDiagonals()
         polygonTriangles);
     }
     const RegionPair labels = this->HasLabels ? this->Surface.Labels[t] : RegionPair{};
-    for (std::size_t i = 0; i < fan.size(); ++i)
+    for (std::size_t k = 0; k < fan.size(); ++k)
     {
-      const Id triangle = polygonTriangles[i];
+      const Id triangle = polygonTriangles[k];
       TriangleIds before = this->Surface.Triangles[triangle];
-      TriangleIds after = fan[i];
+      TriangleIds after = fan[k];
       std::sort(before.begin(), before.end());
       std::sort(after.begin(), after.end());
       this->Output.Report.TurnedDiagonals += before != after;
-      this->Surface.Triangles[triangle] = fan[i];
+      this->Surface.Triangles[triangle] = fan[k];
       if (this->HasLabels)
       {
         this->Surface.Labels[triangle] = labels;
@@ -511,888 +415,393 @@ Status AdvancingFront::TurnDiagonals()
   return Status();
 }
 
-bool AdvancingFront::LocateSeed(const Vec3& position, Id& side) const
+Status AdvancingFront::TetrahedralizePoints()
 {
-  // Look at the centroid of some triangle: the first triangle met on the way faces the seed.
-  double nearest = std::numeric_limits<double>::infinity();
-  Vec3 target;
-  for (Id t = 0; t < this->NumberOfSurfaceTriangles; ++t)
+  this->VertexPoints.reserve(this->Order.size());
+  for (Id point : this->Order)
   {
-    const TriangleIds& ids = this->Surface.Triangles[t];
-    const Vec3 centroid =
-      (1.0 / 3.0) * (this->Points[ids[0]] + this->Points[ids[1]] + this->Points[ids[2]]);
-    const double distance = Distance(centroid, position);
-    if (distance < nearest)
+    this->VertexPoints.push_back(this->Points[point]);
+  }
+  const Status status = BuildDelaunayTetrahedralization(this->VertexPoints, this->Order,
+    this->Options.NumberOfThreads, this->Context.Part(0.05, 0.6), this->All);
+  if (!status.IsOk())
+  {
+    // A surface of a few points or in a plane has nothing within.
+    return status.Code == StatusCode::InvalidInput && this->HasSurface()
+      ? MakeNothingEnclosedError(
+          FindSurfaceSides({ this->Points, this->Surface.Triangles, {}, {} }))
+      : status;
+  }
+  const Id infinite = static_cast<Id>(this->Order.size());
+  this->States.assign(this->All.Tetrahedra.size(), Unreached);
+  for (std::size_t t = 0; t < this->States.size(); ++t)
+  {
+    const TetrahedronIds& ids = this->All.Tetrahedra[t];
+    if (ids[0] == infinite || ids[1] == infinite || ids[2] == infinite || ids[3] == infinite)
     {
-      nearest = distance;
-      target = centroid;
+      this->States[t] = BeyondHull;
     }
   }
-  double first = std::numeric_limits<double>::infinity();
-  side = NoId;
+  return status;
+}
+
+void AdvancingFront::FindFacetsOfSurface()
+{
+  // The triangles by their first vertex.
+  const std::size_t count = this->Order.size();
+  std::vector<Id> vertices(this->Points.size(), NoId);
+  for (std::size_t vertex = 0; vertex < count; ++vertex)
+  {
+    vertices[this->Order[vertex]] = static_cast<Id>(vertex);
+  }
+  std::vector<Id> starts(count + 2, 0);
+  std::vector<char> isOnSurface(count + 1, 0);
+  const auto getFirst = [&vertices](const TriangleIds& ids) {
+    return std::min({ vertices[ids[0]], vertices[ids[1]], vertices[ids[2]] });
+  };
+  for (const TriangleIds& ids : this->Surface.Triangles)
+  {
+    ++starts[getFirst(ids) + 2];
+    for (Id point : ids)
+    {
+      isOnSurface[vertices[point]] = 1;
+    }
+  }
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  std::vector<Id> triangles(this->Surface.Triangles.size());
   for (Id t = 0; t < this->NumberOfSurfaceTriangles; ++t)
   {
-    const TriangleIds& ids = this->Surface.Triangles[t];
-    const Vec3& a = this->Points[ids[0]];
-    const Vec3& b = this->Points[ids[1]];
-    const Vec3& c = this->Points[ids[2]];
-    const int facing = Orientation(a, b, c, position);
-    const int turns[3] = { Orientation(position, a, b, target), Orientation(position, b, c, target),
-      Orientation(position, c, a, target) };
-    const bool isHit = (turns[0] >= 0 && turns[1] >= 0 && turns[2] >= 0) ||
-      (turns[0] <= 0 && turns[1] <= 0 && turns[2] <= 0);
-    if (facing == 0 || !isHit)
+    triangles[starts[getFirst(this->Surface.Triangles[t]) + 1]++] = t;
+  }
+
+  this->SideFacets.assign(2 * this->Surface.Triangles.size(), NoId);
+  for (std::size_t t = 0; t < this->All.Tetrahedra.size(); ++t)
+  {
+    const TetrahedronIds& tetrahedron = this->All.Tetrahedra[t];
+    if (tetrahedron[0] == NoId ||
+      isOnSurface[tetrahedron[0]] + isOnSurface[tetrahedron[1]] + isOnSurface[tetrahedron[2]] +
+          isOnSurface[tetrahedron[3]] <
+        3)
     {
       continue;
     }
-    const Vec3 normal = Cross(b - a, c - a);
-    const double way = Dot(normal, a - position) / Dot(normal, target - position);
-    if (way > 0.0 && way < first)
+    for (int i = 0; i < 4; ++i)
     {
-      first = way;
-      side = 2 * t + (facing > 0 ? 0 : 1);
+      const TriangleIds ids = GetFacet(tetrahedron, i);
+      if (!isOnSurface[ids[0]] || !isOnSurface[ids[1]] || !isOnSurface[ids[2]])
+      {
+        continue;
+      }
+      const Id first = std::min({ ids[0], ids[1], ids[2] });
+      TriangleIds points{ this->Order[ids[0]], this->Order[ids[1]], this->Order[ids[2]] };
+      const TriangleIds outward = points;
+      std::sort(points.begin(), points.end());
+      for (Id k = starts[first]; k < starts[first + 1]; ++k)
+      {
+        const TriangleIds& triangle = this->Surface.Triangles[triangles[k]];
+        TriangleIds sorted = triangle;
+        std::sort(sorted.begin(), sorted.end());
+        if (sorted == points)
+        {
+          // The tetrahedron lies behind its outward facet.
+          const bool isInFront = GetRelativeTurn(triangle, outward) < 0;
+          this->SideFacets[2 * triangles[k] + (isInFront ? 0 : 1)] = static_cast<Id>(4 * t + i);
+          break;
+        }
+      }
     }
   }
-  return side != NoId;
 }
 
-Status AdvancingFront::FindSeeds()
+/** True if one of the two tetrahedra at the triangle is a cell of four points. */
+bool AdvancingFront::IsSurelyStronglyDelaunay(Id triangle) const
 {
-  this->SideSpaces.assign(2 * this->Surface.Triangles.size(), UnknownSpace);
-  if (!this->HasSurface())
+  if (this->SideFacets[2 * triangle] == NoId || this->SideFacets[2 * triangle + 1] == NoId)
   {
-    return Status();
+    return false;
   }
-  if (this->Input.Seeds != nullptr && !this->Input.Seeds->empty())
+  if (!this->All.HasCosphericalPoints)
   {
-    for (const RegionSeed& seed : *this->Input.Seeds)
-    {
-      Id side = NoId;
-      if (!IsFinite(seed.Position) || !this->LocateSeed(seed.Position, side))
-      {
-        return Status::InvalidInput("A region seed faces no triangle of the surface; move it into "
-                                    "the region that it is to mark.",
-          {}, { static_cast<Id>(&seed - this->Input.Seeds->data()) });
-      }
-      this->Seeds.push_back({ side, seed.Region, UnknownSpace });
-    }
-    return Status();
+    return true;
   }
-  if (this->HasLabels)
+  const auto& p = this->VertexPoints;
+  for (Id side = 2 * triangle; side < 2 * triangle + 2; ++side)
   {
-    for (Id side = 0; side < 2 * this->NumberOfSurfaceTriangles; ++side)
+    const Id t = this->SideFacets[side] / 4;
+    bool isAlone = this->States[t] != BeyondHull;
+    const TetrahedronIds& ids = this->All.Tetrahedra[t];
+    for (int i = 0; i < 4 && isAlone; ++i)
     {
-      const Id label = this->GetSideLabel(side);
-      this->SideSpaces[side] = label == OutsideRegion ? OutsideSpace : label;
-      if (label != OutsideRegion)
-      {
-        this->Seeds.push_back({ side, label, label });
-      }
+      const Id facet = this->All.Neighbors[t][i];
+      isAlone = this->States[facet / 4] == BeyondHull ||
+        InSphere(p[ids[0]], p[ids[1]], p[ids[2]], p[ids[3]],
+          p[this->All.Tetrahedra[facet / 4][facet % 4]]) != 0;
     }
-    if (this->Seeds.empty())
+    if (isAlone)
     {
-      return Status::InvalidInput(
-        "All BoundaryLabels are -1 (outside): no region is left to be meshed.");
-    }
-    return Status();
-  }
-  const TriangleMesh withPoints{ this->Points, this->Surface.Triangles, {}, {} };
-  const SurfaceSides sides = FindSurfaceSides(withPoints);
-  std::vector<Id> spaces(sides.IsOuter.size(), UnknownSpace);
-  for (Id side = 0; side < 2 * this->NumberOfSurfaceTriangles; ++side)
-  {
-    const Id shell = sides.Shells[side];
-    const bool isMeshed =
-      !sides.IsOuter[shell] || (this->Options.CloseOpenBoundary && sides.IsOpen[shell]);
-    // All sides around an opening are one shell, and some may look away from all points.
-    if (isMeshed && (spaces[shell] == UnknownSpace || sides.IsOpen[shell]))
-    {
-      spaces[shell] = static_cast<Id>(this->Seeds.size());
-      this->Seeds.push_back({ side, NoId, spaces[shell] });
+      return true;
     }
   }
-  if (this->Seeds.empty())
-  {
-    return Status::InvalidInput("The surface encloses nothing: it has " +
-        std::to_string(sides.OpenTriangles.size()) +
-        " triangles with an open edge. Close it (MaximumGapEdges of vtkBoundaryTriangulator "
-        "patches "
-        "gaps), or switch CloseOpenBoundary on to mesh up to the convex hull.",
-      sides.OpenTriangles);
-  }
-  if (!sides.OpenTriangles.empty())
-  {
-    // Open shells may look into the same space as others.
-    for (SideSeed& seed : this->Seeds)
-    {
-      seed.Space = UnknownSpace;
-    }
-    return Status();
-  }
+  return false;
+}
 
-  // The outer shell of a component that lies in the bounds of no other one looks outside.
-  std::vector<Box> bounds(sides.IsOuter.size());
-  std::vector<Id> outer;
-  for (Id side = 0; side < 2 * this->NumberOfSurfaceTriangles; ++side)
+Status AdvancingFront::CheckSurface()
+{
+  std::vector<std::pair<TriangleIds, Id>> sorted;
+  for (Id t = 0; t < this->NumberOfSurfaceTriangles; ++t)
   {
-    const Id shell = sides.Shells[side];
-    if (sides.IsOuter[shell])
+    TriangleIds ids = this->Surface.Triangles[t];
+    std::sort(ids.begin(), ids.end());
+    sorted.emplace_back(ids, t);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+  {
+    if (sorted[i].first == sorted[i - 1].first)
     {
-      if (bounds[shell].IsEmpty())
-      {
-        outer.push_back(shell);
-      }
-      for (Id point : this->Surface.Triangles[side / 2])
-      {
-        bounds[shell].Add(this->Points[point]);
-      }
+      return Status::InvalidInput("Two triangles of the surface have the same points; clean the "
+                                  "surface with vtkBoundaryTriangulator first.",
+        { sorted[i].second });
     }
   }
-  constexpr std::size_t ManyShells = 2000;
-  for (std::size_t i = 0; i < outer.size() && outer.size() < ManyShells; ++i)
+  this->FindFacetsOfSurface();
+  std::vector<Id> doubtful;
+  for (Id t = 0; t < this->NumberOfSurfaceTriangles; ++t)
   {
-    const Box& inside = bounds[outer[i]];
-    bool isInside = false;
-    for (std::size_t j = 0; j < outer.size(); ++j)
+    if (!this->IsSurelyStronglyDelaunay(t))
     {
-      const Box& outside = bounds[outer[j]];
-      bool isWithin = i != j;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        isWithin = isWithin && outside.Low[axis] <= inside.Low[axis] &&
-          inside.High[axis] <= outside.High[axis];
-      }
-      isInside = isInside || isWithin;
+      doubtful.push_back(t);
     }
-    spaces[outer[i]] = isInside ? UnknownSpace : OutsideSpace;
+  }
+  if (!doubtful.empty())
+  {
+    const Status status = this->TurnDiagonals(doubtful);
+    if (!status.IsOk())
+    {
+      return status;
+    }
+    this->FindFacetsOfSurface();
   }
   for (Id side = 0; side < 2 * this->NumberOfSurfaceTriangles; ++side)
   {
-    this->SideSpaces[side] = spaces[sides.Shells[side]];
+    if (this->SideFacets[side] == NoId)
+    {
+      return Status::InternalError("A boundary triangle is no facet of the mesh.", { side / 2 });
+    }
   }
   return Status();
 }
 
-Status AdvancingFront::AttachToSurface(Id triangle, const TriangleIds& outward, Id facet, Id region)
+Status AdvancingFront::FindGivenSeeds()
 {
-  // The tetrahedron lies behind its outward facet.
-  const bool isFront = GetRelativeTurn(this->Surface.Triangles[triangle], outward) < 0;
-  const Id side = 2 * triangle + (isFront ? 0 : 1);
-  if (this->SideFacets[side] != NoId)
+  for (const RegionSeed& seed : *this->Input.Seeds)
   {
-    return Status::InternalError("Two tetrahedra lie on the same side of a boundary triangle.",
-      { this->GetSourceCell(triangle) });
+    const Id t = IsFinite(seed.Position)
+      ? LocateInTetrahedralization(this->VertexPoints, this->All, seed.Position)
+      : NoId;
+    if (t == NoId)
+    {
+      return Status::InvalidInput("A region seed lies outside of all points; move it into the "
+                                  "region that it is to mark.",
+        {}, { static_cast<Id>(&seed - this->Input.Seeds->data()) });
+    }
+    this->Seeds.push_back({ t, seed.Region, NoId });
   }
-  if (this->HasLabels && triangle < this->NumberOfSurfaceTriangles &&
-    (this->Input.Seeds == nullptr || this->Input.Seeds->empty()) &&
-    this->GetSideLabel(side) != region)
+  return Status();
+}
+
+Status AdvancingFront::MakeNothingEnclosedError(const SurfaceSides& sides)
+{
+  return Status::InvalidInput("The surface encloses nothing: it has " +
+      std::to_string(sides.OpenTriangles.size()) +
+      " triangles with an open edge. Close it (MaximumGapEdges of vtkBoundaryTriangulator patches "
+      "gaps), or switch CloseOpenBoundary on to mesh up to the convex hull.",
+    sides.OpenTriangles);
+}
+
+Status AdvancingFront::FindSeedsOfShells()
+{
+  const TriangleMesh withPoints{ this->Points, this->Surface.Triangles, {}, {} };
+  const SurfaceSides sides = FindSurfaceSides(withPoints);
+  for (Id side = 0; side < 2 * this->NumberOfSurfaceTriangles; ++side)
+  {
+    const Id shell = sides.Shells[side];
+    if (!sides.IsOuter[shell] || (this->Options.CloseOpenBoundary && sides.IsOpen[shell]))
+    {
+      this->Seeds.push_back({ this->SideFacets[side] / 4, NoId, side / 2 });
+    }
+  }
+  return this->Seeds.empty() ? MakeNothingEnclosedError(sides) : Status();
+}
+
+Status AdvancingFront::FindSeeds()
+{
+  if (this->HasSeeds())
+  {
+    return this->FindGivenSeeds();
+  }
+  if (!this->HasSurface())
+  {
+    Id first = 0;
+    while (this->All.Tetrahedra[first][0] == NoId || this->States[first] == BeyondHull)
+    {
+      ++first;
+    }
+    this->Seeds.push_back({ first, 0, NoId });
+    return Status();
+  }
+  if (!this->HasLabels)
+  {
+    return this->FindSeedsOfShells();
+  }
+  for (Id side = 0; side < 2 * this->NumberOfSurfaceTriangles; ++side)
+  {
+    const Id label = this->GetSideLabel(side);
+    if (label != OutsideRegion)
+    {
+      this->Seeds.push_back({ this->SideFacets[side] / 4, label, side / 2 });
+    }
+  }
+  return this->Seeds.empty()
+    ? Status::InvalidInput("All BoundaryLabels are -1 (outside): no region is left to be meshed.")
+    : Status();
+}
+
+Status AdvancingFront::AttachToSurface(Id side, Id region)
+{
+  if (this->HasLabels && !this->HasSeeds() && this->GetSideLabel(side) != region)
   {
     return Status::InvalidInput("Region " + std::to_string(region) +
         " is not closed, or its BoundaryLabels contradict each other: it reaches a triangle whose "
         "label on that side is " +
         std::to_string(this->GetSideLabel(side)) + ".",
-      { this->GetSourceCell(triangle) });
-  }
-  this->SideFacets[side] = facet;
-  this->SideRegions[side] = region;
-  const Id other = this->SideFacets[side ^ 1];
-  if (other != NoId)
-  {
-    this->Mesh.Neighbors[facet / 4][facet % 4] = other;
-    this->Mesh.Neighbors[other / 4][other % 4] = facet;
+      { side / 2 });
   }
   return Status();
 }
 
-void AdvancingFront::AddHullTriangle(const TriangleIds& outward, Id facet, Id region)
+/**
+ * Attaches to each facet of the front its fourth point until the front is empty. What the front
+ * reaches first comes first if it may be stopped: then it can be looked at.
+ */
+Status AdvancingFront::Advance(const Seed& seed)
 {
-  this->Surface.Triangles.push_back(outward);
-  this->Surface.SourceCells.push_back(NoId);
-  if (this->HasLabels)
-  {
-    this->Surface.Labels.push_back({ OutsideRegion, region });
-  }
-  this->SideFacets.push_back(NoId);
-  this->SideFacets.push_back(facet);
-  this->SideRegions.push_back(OutsideRegion);
-  this->SideRegions.push_back(region);
-}
-
-Status AdvancingFront::AttachToStar(Id b, Id c, Id facet)
-{
-  StarTable::Entry& entry = this->Star.Find(b, c);
-  if (entry.Value == StarTable::Nothing)
-  {
-    entry = { b, c, facet };
-    this->Stack.push_back(entry);
-    return Status();
-  }
-  if (entry.Value <= StarTable::FirstBarrier)
-  {
-    return this->AttachToSurface(StarTable::FirstBarrier - entry.Value,
-      this->ToPoints(this->Vertex, b, c), facet, this->CurrentRegion);
-  }
-  if (entry.Value == StarTable::Closed || entry.B == b)
-  {
-    return Status::InternalError("The front ran into itself: tetrahedra overlap.", {},
-      { this->Order[this->Vertex], this->Order[b], this->Order[c] });
-  }
-  const Id other = entry.Value;
-  this->Mesh.Neighbors[facet / 4][facet % 4] = other;
-  this->Mesh.Neighbors[other / 4][other % 4] = facet;
-  entry.Value = StarTable::Closed;
-  return Status();
-}
-
-Status AdvancingFront::AddTetrahedron(const TetrahedronIds& tetrahedron, Id region)
-{
-  if (this->Mesh.Tetrahedra.size() >= MaximumTetrahedra)
-  {
-    return Status::InvalidInput(
-      "The mesh needs more than 536870912 tetrahedra, which 32-bit facet ids cannot number.");
-  }
-  const Id index = static_cast<Id>(this->Mesh.Tetrahedra.size());
-  this->Mesh.Tetrahedra.push_back(tetrahedron);
-  this->Mesh.Regions.push_back(region);
-  this->Mesh.Neighbors.push_back({ NoId, NoId, NoId, NoId });
-  for (int i = 0; i < 4; ++i)
-  {
-    const Id facet = 4 * index + i;
-    const TriangleIds outward = GetFacet(tetrahedron, i);
-    // Facets around the present vertex meet at once, others when their first vertex is due.
-    int first = 0;
-    if (outward[1] == this->Vertex || outward[2] == this->Vertex)
-    {
-      first = outward[1] == this->Vertex ? 1 : 2;
-    }
-    else if (outward[0] != this->Vertex)
-    {
-      first = outward[0] < outward[1] ? (outward[0] < outward[2] ? 0 : 2)
-                                      : (outward[1] < outward[2] ? 1 : 2);
-    }
-    const Id a = outward[first];
-    const Id b = outward[first == 2 ? 0 : first + 1];
-    const Id c = outward[first == 0 ? 2 : first - 1];
-    if (a == this->Vertex)
-    {
-      const Status status = this->AttachToStar(b, c, facet);
-      if (!status.IsOk())
-      {
-        return status;
-      }
-      continue;
-    }
-    Id place = this->FreeFacet;
-    if (place != NoId)
-    {
-      this->FreeFacet = this->OpenFacets[place].Next;
-      this->OpenFacets[place] = { b, c, facet, this->Lists[a] };
-    }
-    else
-    {
-      place = static_cast<Id>(this->OpenFacets.size());
-      this->OpenFacets.push_back({ b, c, facet, this->Lists[a] });
-    }
-    if (this->Lists[a] == NoId)
-    {
-      this->Reached.Insert(a);
-    }
-    this->Lists[a] = place;
-  }
-  return Status();
-}
-
-Status AdvancingFront::AddBox(Id region)
-{
-  const Id* const corners = this->Found.Corners;
-  ++this->Output.Report.CosphericalCells;
-  this->Output.Report.LargestCell = std::max<Id>(this->Output.Report.LargestCell, 8);
-  int lowest = 0;
-  for (int corner = 1; corner < 8; ++corner)
-  {
-    if (this->Order[corners[corner]] < this->Order[corners[lowest]])
-    {
-      lowest = corner;
-    }
-  }
-  for (const int(&face)[4] : BoxFaces)
-  {
-    int start = 0;
-    bool hasLowest = face[0] == lowest;
-    for (int i = 1; i < 4; ++i)
-    {
-      hasLowest = hasLowest || face[i] == lowest;
-      if (this->Order[corners[face[i]]] < this->Order[corners[face[start]]])
-      {
-        start = i;
-      }
-    }
-    for (int i = 1; i < 3 && !hasLowest; ++i)
-    {
-      const Status status =
-        this->AddTetrahedron({ corners[face[start]], corners[face[(start + i + 1) % 4]],
-                               corners[face[(start + i) % 4]], corners[lowest] },
-          region);
-      if (!status.IsOk())
-      {
-        return status;
-      }
-    }
-  }
-  return Status();
-}
-
-Status AdvancingFront::SplitCell(Id b, Id c, Id region)
-{
-  const TriangleIds base = this->ToPoints(this->Vertex, b, c);
-  std::vector<Id> ids(base.begin(), base.end());
-  for (Id vertex : this->Found.Cospherical)
-  {
-    ids.push_back(this->Order[vertex]);
-  }
-  for (Id vertex : this->Found.Cocircular)
-  {
-    ids.push_back(this->Order[vertex]);
-  }
-  std::sort(ids.begin(), ids.end());
-  std::vector<TetrahedronIds> tetrahedra;
-  if (!this->Cell.Split(base, ids, tetrahedra))
-  {
-    return Status::InternalError("A set of cospherical points has no convex hull.", {}, ids);
-  }
-  ++this->Output.Report.CosphericalCells;
-  this->Output.Report.LargestCell =
-    std::max(this->Output.Report.LargestCell, static_cast<Id>(ids.size()));
-  for (TetrahedronIds& tetrahedron : tetrahedra)
-  {
-    for (Id& id : tetrahedron)
-    {
-      id = this->Vertices[id];
-    }
-    const Status status = this->AddTetrahedron(tetrahedron, region);
-    if (!status.IsOk())
-    {
-      return status;
-    }
-  }
-  return Status();
-}
-
-Status AdvancingFront::CompleteFacet(Id b, Id c, Id region, Id sourceFacet)
-{
-  this->Search.Find(b, c, this->Found);
-  if (this->Found.IsUnique)
-  {
-    return this->AddTetrahedron({ this->Vertex, b, c, this->Found.Point }, region);
-  }
-  if (this->Found.Point != NoId)
-  {
-    return this->Found.IsBox ? this->AddBox(region) : this->SplitCell(b, c, region);
-  }
-  const TriangleIds base = this->ToPoints(this->Vertex, b, c);
-  if (sourceFacet != NoId && this->Options.CloseOpenBoundary)
-  {
-    this->AddHullTriangle(base, sourceFacet, region);
-    this->Star.Find(b, c).Value = StarTable::Closed;
-    return Status();
-  }
-  return Status::InvalidInput("Region " + std::to_string(region) +
-      " is not closed: the front reached the convex hull of the points. Close the surface, correct "
-      "its BoundaryLabels, or switch CloseOpenBoundary on.",
-    {}, { base[0], base[1], base[2] });
-}
-
-void AdvancingFront::PrepareFront()
-{
-  const std::size_t count = this->Order.size();
-  this->Vertices.assign(this->Points.size(), NoId);
-  for (std::size_t vertex = 0; vertex < count; ++vertex)
-  {
-    this->Vertices[this->Order[vertex]] = static_cast<Id>(vertex);
-  }
-  // Memory that is not used is not touched; growing would copy.
-  const std::size_t expected = 7 * count;
-  this->Mesh.Tetrahedra.reserve(expected);
-  this->Mesh.Regions.reserve(expected);
-  this->Mesh.Neighbors.reserve(expected);
-  this->Tree.Build(this->Points, this->Order);
-  this->Lists.assign(count, NoId);
-  this->Reached.Reset(count);
-  this->SideFacets.assign(2 * this->Surface.Triangles.size(), NoId);
-  this->SideRegions.assign(2 * this->Surface.Triangles.size(), OutsideRegion);
-  if (this->HasSurface())
-  {
-    this->IncidentStarts.assign(count + 1, 0);
-    for (const TriangleIds& ids : this->Surface.Triangles)
-    {
-      for (Id point : ids)
-      {
-        ++this->IncidentStarts[this->Vertices[point] + 1];
-      }
-    }
-    std::partial_sum(
-      this->IncidentStarts.begin(), this->IncidentStarts.end(), this->IncidentStarts.begin());
-    this->Incident.resize(this->IncidentStarts.back());
-    std::vector<Id> places(this->IncidentStarts.begin(), this->IncidentStarts.end() - 1);
-    for (Id t = 0; t < this->NumberOfSurfaceTriangles; ++t)
-    {
-      for (Id point : this->Surface.Triangles[t])
-      {
-        this->Incident[places[this->Vertices[point]]++] = t;
-      }
-    }
-  }
-}
-
-bool AdvancingFront::IsFinished(Id vertex) const
-{
-  if (!this->HasSurface())
-  {
-    return true;
-  }
-  for (Id i = this->IncidentStarts[vertex]; i < this->IncidentStarts[vertex + 1]; ++i)
-  {
-    for (Id side = 2 * this->Incident[i]; side < 2 * this->Incident[i] + 2; ++side)
-    {
-      if (this->SideFacets[side] == NoId && this->SideSpaces[side] != OutsideSpace)
-      {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-bool AdvancingFront::IsFinishedForNow(Id vertex) const
-{
-  for (Id i = this->IncidentStarts[vertex]; i < this->IncidentStarts[vertex + 1]; ++i)
-  {
-    for (Id side = 2 * this->Incident[i]; side < 2 * this->Incident[i] + 2; ++side)
-    {
-      const Id space = this->SideSpaces[side];
-      if (this->SideFacets[side] == NoId &&
-        (space == UnknownSpace || this->CurrentSpace == UnknownSpace ||
-          space == this->CurrentSpace))
-      {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-Status AdvancingFront::OpenStar(Id vertex)
-{
-  this->Vertex = vertex;
-  this->Star.Clear();
-  this->Stack.clear();
-  if (this->HasSurface())
-  {
-    for (Id i = this->IncidentStarts[vertex]; i < this->IncidentStarts[vertex + 1]; ++i)
-    {
-      const TriangleIds& ids = this->Surface.Triangles[this->Incident[i]];
-      const Id point = this->Order[vertex];
-      const int first = ids[0] == point ? 0 : ids[1] == point ? 1 : 2;
-      const Id b = this->Vertices[ids[(first + 1) % 3]];
-      const Id c = this->Vertices[ids[(first + 2) % 3]];
-      this->Star.Find(b, c) = { b, c, StarTable::FirstBarrier - this->Incident[i] };
-    }
-  }
-  Id place = this->Lists[vertex];
-  this->Lists[vertex] = NoId;
-  while (place != NoId)
-  {
-    OpenFacet& open = this->OpenFacets[place];
-    const Id next = open.Next;
-    const Id facet = open.Facet;
-    const Id b = open.B;
-    const Id c = open.C;
-    open.Next = this->FreeFacet;
-    this->FreeFacet = place;
-    place = next;
-    if (facet < 0)
-    {
-      // The seed: a side of the surface, or the first facet of all.
-      this->Stack.push_back({ b, c, facet });
-      continue;
-    }
-    const Status status = this->AttachToStar(b, c, facet);
-    if (!status.IsOk())
-    {
-      return status;
-    }
-  }
-  return Status();
-}
-
-Status AdvancingFront::CompleteStar(Id vertex, Id region)
-{
-  Status status = this->OpenStar(vertex);
-  if (!status.IsOk() || this->Stack.empty())
-  {
-    return status;
-  }
-  this->Search.SetVertex(vertex);
-  while (!this->Stack.empty())
+  const bool isInOrder = this->Options.MaximumNumberOfTetrahedra > 0;
+  const ExecutionContext part = this->Context.Part(0.75, 0.9);
+  const double expected = static_cast<double>(this->All.Tetrahedra.size());
+  this->Front.assign(1, seed.Tetrahedron);
+  this->States[seed.Tetrahedron] = InFront;
+  for (std::size_t next = 0; next < this->Front.size();)
   {
     if (this->IsLimitReached())
     {
       this->IsStopped = true;
       return Status();
     }
-    const StarTable::Entry facet = this->Stack.back();
-    this->Stack.pop_back();
-    if (facet.Value >= 0 && this->Mesh.Neighbors[facet.Value / 4][facet.Value % 4] != NoId)
+    if (this->NumberOfTetrahedra % ReportInterval == 0 &&
+      !part.Continue(this->NumberOfTetrahedra / expected, "Advancing the front"))
     {
-      continue;
+      return Status::Aborted();
     }
-    status = this->CompleteFacet(facet.B, facet.C, region, facet.Value >= 0 ? facet.Value : NoId);
-    if (!status.IsOk())
+    const Id t = isInOrder ? this->Front[next++] : this->Front.back();
+    if (!isInOrder)
     {
-      return status;
+      this->Front.pop_back();
     }
-  }
-  return Status();
-}
-
-Status AdvancingFront::Advance(Id region)
-{
-  // About 6.7 tetrahedra per point are usual.
-  const double expected = 6.7 * static_cast<double>(this->Order.size());
-  std::size_t steps = 0;
-  while (!this->Reached.IsEmpty())
-  {
-    if (++steps % (ReportInterval / 8) == 0)
+    this->States[t] = Meshed;
+    this->Regions[t] = seed.Region;
+    ++this->NumberOfTetrahedra;
+    for (int i = 0; i < 4; ++i)
     {
-      const double done = static_cast<double>(this->Mesh.Tetrahedra.size()) / expected;
-      if (!this->Context.Part(0.1, 0.95).Continue(std::min(done, 0.99), "Advancing the front"))
+      const Id beyond = this->All.Neighbors[t][i];
+      if (beyond < 0)
       {
-        return Status::Aborted();
+        const Status status = this->AttachToSurface(FirstBarrier - beyond, seed.Region);
+        if (!status.IsOk())
+        {
+          return status;
+        }
+        continue;
       }
-    }
-    const Id vertex = this->Reached.PopSmallest();
-    const Status status = this->CompleteStar(vertex, region);
-    if (!status.IsOk() || this->IsStopped)
-    {
-      return status;
-    }
-    if (this->IsFinished(vertex))
-    {
-      this->Tree.Remove(vertex);
-    }
-    else if (this->IsFinishedForNow(vertex))
-    {
-      this->Tree.Remove(vertex);
-      this->Postponed.push_back(vertex);
-    }
-  }
-  return Status();
-}
-
-bool AdvancingFront::IsOnHull(Id side)
-{
-  const TriangleIds ids = this->GetSideTriangle(side);
-  this->Search.SetVertex(this->Vertices[ids[0]]);
-  this->Search.Find(this->Vertices[ids[1]], this->Vertices[ids[2]], this->Found);
-  return this->Found.Point == NoId;
-}
-
-Status AdvancingFront::GrowRegion(const SideSeed& seed)
-{
-  this->CurrentSpace = seed.Space;
-  this->CurrentRegion = seed.Region;
-  const TriangleIds ids = this->GetSideTriangle(seed.Side);
-  const TriangleIds base{ this->Vertices[ids[0]], this->Vertices[ids[1]], this->Vertices[ids[2]] };
-  const int first = static_cast<int>(std::min_element(base.begin(), base.end()) - base.begin());
-  this->Lists[base[first]] = static_cast<Id>(this->OpenFacets.size());
-  this->OpenFacets.push_back({ base[(first + 1) % 3], base[(first + 2) % 3], NoId, NoId });
-  this->Reached.Insert(base[first]);
-  const std::size_t before = this->Mesh.Tetrahedra.size();
-  Status status = this->Advance(seed.Region);
-  if (!status.IsOk())
-  {
-    if (status.Cells.empty() && status.Code == StatusCode::InvalidInput &&
-      this->Mesh.Tetrahedra.size() == before)
-    {
-      status.Cells.push_back(this->GetSourceCell(seed.Side / 2));
-    }
-    return status;
-  }
-  if (this->IsStopped)
-  {
-    return Status();
-  }
-  if (this->SideFacets[seed.Side] == NoId)
-  {
-    return Status::InternalError(
-      "A boundary triangle is no facet of the mesh.", { this->GetSourceCell(seed.Side / 2) });
-  }
-  for (Id vertex : this->Postponed)
-  {
-    if (!this->IsFinished(vertex))
-    {
-      this->Tree.Restore(vertex);
-    }
-  }
-  this->Postponed.clear();
-  this->Search.ForgetNearPoints();
-  return Status();
-}
-
-Status AdvancingFront::FindFirstFacet(TriangleIds& facet)
-{
-  const char* const tooFew = "A mesh needs four points that do not coincide.";
-  const char* const collinear = "All points lie on one line: they have no tetrahedra.";
-  const char* const coplanar = "All points lie in one plane: they have no tetrahedra.";
-  const Id count = static_cast<Id>(this->Order.size());
-  if (count < 4)
-  {
-    return Status::InvalidInput(tooFew);
-  }
-  // Two points whose smallest sphere is empty: start near the first point, and take what disturbs.
-  const Vec3 a = this->Tree.GetPoint(0);
-  Id second = 1;
-  for (Id i = 1; i < count; ++i)
-  {
-    if (Distance(a, this->Tree.GetPoint(i)) < Distance(a, this->Tree.GetPoint(second)))
-    {
-      second = i;
-    }
-  }
-  for (Id i = 1; i < count; ++i)
-  {
-    if (i != second &&
-      InDiametralSphere(a, this->Tree.GetPoint(second), this->Tree.GetPoint(i)) > 0)
-    {
-      second = i;
-      i = 0;
-    }
-  }
-  // The third point likewise: what disturbs makes the sphere smaller.
-  const Vec3 b = this->Tree.GetPoint(second);
-  Id third = NoId;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (Id i = 1; i < count; ++i)
-  {
-    const Vec3 p = this->Tree.GetPoint(i);
-    if (i == second)
-    {
-      continue;
-    }
-    const double radius = Norm(GetCircumcenterOffset(a, b, p));
-    if ((third == NoId || radius < smallest) && !AreCollinear(a, b, p))
-    {
-      third = i;
-      smallest = radius;
-    }
-  }
-  if (third == NoId)
-  {
-    return Status::InvalidInput(collinear);
-  }
-  for (Id i = 1; i < count; ++i)
-  {
-    if (i != second && i != third &&
-      InEquatorialSphere(a, b, this->Tree.GetPoint(third), this->Tree.GetPoint(i)) > 0)
-    {
-      third = i;
-      i = 0;
-    }
-  }
-  // Points on its sphere make a cell of their own: then take the triangle of its hull at the edge,
-  // which is one of the subdivision since the edge's smallest sphere is empty.
-  std::vector<Id> cell{ third };
-  bool isFlat = true;
-  bool isFlatSet = true;
-  Vec3 c = this->Tree.GetPoint(third);
-  for (Id i = 1; i < count; ++i)
-  {
-    if (i == second || i == third)
-    {
-      continue;
-    }
-    const Vec3 p = this->Tree.GetPoint(i);
-    const bool isCoplanar = (isFlat || isFlatSet) && Orientation(a, b, c, p) == 0;
-    isFlatSet = isFlatSet && isCoplanar;
-    if (InEquatorialSphere(a, b, c, p) == 0)
-    {
-      isFlat = isFlat && isCoplanar;
-      cell.push_back(i);
-    }
-  }
-  if (isFlatSet)
-  {
-    return Status::InvalidInput(coplanar);
-  }
-  for (Id i : cell)
-  {
-    if (i != third && Orientation(a, b, this->Tree.GetPoint(third), this->Tree.GetPoint(i)) < 0)
-    {
-      third = i;
-    }
-  }
-  facet = { 0, second, third };
-  return Status();
-}
-
-Status AdvancingFront::GrowHull()
-{
-  TriangleIds facet;
-  Status status = this->FindFirstFacet(facet);
-  if (!status.IsOk())
-  {
-    return status;
-  }
-  this->CurrentRegion = 0;
-  this->Vertex = facet[0];
-  this->Search.SetVertex(facet[0]);
-  this->Search.Find(facet[1], facet[2], this->Found);
-  if (this->Found.Point == NoId)
-  {
-    std::swap(facet[1], facet[2]);
-  }
-  this->Lists[facet[0]] = 0;
-  this->OpenFacets.push_back({ facet[1], facet[2], NoId, NoId });
-  this->Reached.Insert(facet[0]);
-  return this->Advance(0);
-}
-
-void AdvancingFront::SortTetrahedra()
-{
-  // A numbering that depends on the tetrahedra alone: each starts with its first vertex along the
-  // curve, then the first of the others as far as the orientation allows; all in the order of their
-  // vertices. The twelve even permutations, by the place of the first and the second vertex:
-  static constexpr signed char Turns[12][4] = { { 0, 1, 2, 3 }, { 0, 2, 3, 1 }, { 0, 3, 1, 2 },
-    { 1, 0, 3, 2 }, { 1, 3, 2, 0 }, { 1, 2, 0, 3 }, { 2, 0, 1, 3 }, { 2, 1, 3, 0 }, { 2, 3, 0, 1 },
-    { 3, 0, 2, 1 }, { 3, 2, 1, 0 }, { 3, 1, 0, 2 } };
-  TetMesh& mesh = this->Mesh;
-  const Id count = static_cast<Id>(mesh.Tetrahedra.size());
-  std::vector<unsigned char> turns(count);
-  std::vector<Id> starts(this->Order.size() + 1, 0);
-  for (Id t = 0; t < count; ++t)
-  {
-    TetrahedronIds& ids = mesh.Tetrahedra[t];
-    const int first = static_cast<int>(std::min_element(ids.begin(), ids.end()) - ids.begin());
-    int turn = 3 * first;
-    for (int other = 3 * first + 1; other < 3 * first + 3; ++other)
-    {
-      turn = ids[Turns[other][1]] < ids[Turns[turn][1]] ? other : turn;
-    }
-    const TetrahedronIds old = ids;
-    for (int i = 0; i < 4; ++i)
-    {
-      ids[i] = old[Turns[turn][i]];
-    }
-    turns[t] = static_cast<unsigned char>(turn);
-    ++starts[ids[0] + 1];
-  }
-  std::partial_sum(starts.begin(), starts.end(), starts.begin());
-  std::vector<Id> places(count);
-  {
-    std::vector<Id> order(count);
-    std::vector<Id> next(starts.begin(), starts.end() - 1);
-    for (Id t = 0; t < count; ++t)
-    {
-      order[next[mesh.Tetrahedra[t][0]]++] = t;
-    }
-    for (std::size_t vertex = 0; vertex + 1 < starts.size(); ++vertex)
-    {
-      std::sort(order.begin() + starts[vertex], order.begin() + starts[vertex + 1],
-        [&mesh](Id i, Id j) { return mesh.Tetrahedra[i] < mesh.Tetrahedra[j]; });
-    }
-    for (Id i = 0; i < count; ++i)
-    {
-      places[order[i]] = i;
-    }
-  }
-  unsigned char inverse[12][4];
-  for (int turn = 0; turn < 12; ++turn)
-  {
-    for (int i = 0; i < 4; ++i)
-    {
-      inverse[turn][static_cast<int>(Turns[turn][i])] = static_cast<unsigned char>(i);
-    }
-  }
-  for (Id t = 0; t < count; ++t)
-  {
-    const TetrahedronIds old = mesh.Neighbors[t];
-    for (int i = 0; i < 4; ++i)
-    {
-      const Id facet = old[Turns[turns[t]][i]];
-      mesh.Neighbors[t][i] =
-        facet == NoId ? NoId : 4 * places[facet / 4] + inverse[turns[facet / 4]][facet % 4];
-    }
-  }
-  // In place: a copy would be the largest array of all.
-  for (Id t = 0; t < count; ++t)
-  {
-    while (places[t] != t)
-    {
-      const Id place = places[t];
-      std::swap(mesh.Tetrahedra[t], mesh.Tetrahedra[place]);
-      std::swap(mesh.Neighbors[t], mesh.Neighbors[place]);
-      std::swap(mesh.Regions[t], mesh.Regions[place]);
-      std::swap(places[t], places[place]);
-    }
-  }
-}
-
-Status AdvancingFront::CollectFront()
-{
-  // Facets wait in the lists until their first vertex is due: let them meet now.
-  for (Id vertex = 0; vertex < static_cast<Id>(this->Lists.size()); ++vertex)
-  {
-    if (this->Lists[vertex] != NoId)
-    {
-      const Status status = this->OpenStar(vertex);
-      if (!status.IsOk())
+      unsigned char& state = this->States[beyond / 4];
+      if (state == Unreached)
       {
-        return status;
+        state = InFront;
+        this->Front.push_back(beyond / 4);
       }
-    }
-  }
-  std::vector<Id> closed;
-  for (Id facet : this->SideFacets)
-  {
-    if (facet != NoId)
-    {
-      closed.push_back(facet);
-    }
-  }
-  std::sort(closed.begin(), closed.end());
-  for (std::size_t t = 0; t < this->Mesh.Tetrahedra.size(); ++t)
-  {
-    for (int i = 0; i < 4; ++i)
-    {
-      if (this->Mesh.Neighbors[t][i] == NoId &&
-        !std::binary_search(closed.begin(), closed.end(), static_cast<Id>(4 * t + i)))
+      else if (state == BeyondHull)
       {
-        const TriangleIds outward = GetFacet(this->Mesh.Tetrahedra[t], i);
-        this->Output.Front.push_back(this->ToPoints(outward[0], outward[1], outward[2]));
+        if (!this->Options.CloseOpenBoundary)
+        {
+          return this->MakeHullError(seed, this->GetFacetPoints(4 * t + i));
+        }
+        this->HullFacets.push_back(4 * t + i);
       }
     }
   }
   return Status();
 }
 
-void AdvancingFront::Finish()
+/** Where the front would end up if there is nothing to stop it. */
+void AdvancingFront::TakeAll()
 {
-  this->SortTetrahedra();
+  this->Regions.assign(this->States.size(), 0);
+  const Id infinite = static_cast<Id>(this->Order.size());
+  for (std::size_t t = 0; t < this->States.size(); ++t)
+  {
+    const TetrahedronIds& ids = this->All.Tetrahedra[t];
+    if (this->States[t] == BeyondHull)
+    {
+      const auto place = std::find(ids.begin(), ids.end(), infinite) - ids.begin();
+      this->HullFacets.push_back(this->All.Neighbors[t][place]);
+    }
+    else if (ids[0] != NoId)
+    {
+      this->States[t] = Meshed;
+      ++this->NumberOfTetrahedra;
+    }
+  }
+  this->Output.Report.NumberOfRegions = 1;
+}
 
-  // Only mesh points that are used stay.
+Status AdvancingFront::MakeHullError(const Seed& seed, const TriangleIds& points) const
+{
+  return Status::InvalidInput("Region " + std::to_string(seed.Region) +
+      " is not closed: the front reached the convex hull of the points. Close the surface, correct "
+      "its BoundaryLabels, or switch CloseOpenBoundary on.",
+    seed.Triangle == NoId ? std::vector<Id>() : std::vector<Id>{ seed.Triangle },
+    { points[0], points[1], points[2] });
+}
+
+void AdvancingFront::CollectFront()
+{
+  for (std::size_t t = 0; t < this->States.size(); ++t)
+  {
+    for (int i = 0; i < 4 && this->States[t] == Meshed; ++i)
+    {
+      const Id beyond = this->All.Neighbors[t][i];
+      if (beyond >= 0 && this->States[beyond / 4] != Meshed &&
+        this->States[beyond / 4] != BeyondHull)
+      {
+        this->Output.Front.push_back(this->GetFacetPoints(static_cast<Id>(4 * t + i)));
+      }
+    }
+  }
+  std::sort(this->Output.Front.begin(), this->Output.Front.end());
+}
+
+/** Only mesh points that are used stay. Afterwards Order has the final points. */
+void AdvancingFront::CollectPointsUsed()
+{
   std::vector<Id> places(this->Points.size(), NoId);
+  for (std::size_t t = 0; t < this->States.size(); ++t)
   {
-    std::vector<char> isUsed(this->Order.size(), 0);
-    for (const TetrahedronIds& ids : this->Mesh.Tetrahedra)
+    if (this->States[t] == Meshed)
     {
-      for (Id vertex : ids)
+      for (Id vertex : this->All.Tetrahedra[t])
       {
-        isUsed[vertex] = 1;
+        places[this->Order[vertex]] = 0;
       }
-    }
-    for (std::size_t vertex = 0; vertex < isUsed.size(); ++vertex)
-    {
-      places[this->Order[vertex]] = isUsed[vertex] ? 0 : NoId;
     }
   }
   Id count = this->NumberOfSurfacePoints;
@@ -1419,73 +828,176 @@ void AdvancingFront::Finish()
   {
     point = places[point];
   }
-  for (TetrahedronIds& ids : this->Mesh.Tetrahedra)
-  {
-    for (Id& id : ids)
-    {
-      id = this->Order[id];
-    }
-  }
-  for (TriangleIds& ids : this->Output.Front)
-  {
-    for (Id& id : ids)
-    {
-      id = places[id];
-    }
-    // A numbering that does not depend on the tetrahedron.
-    std::rotate(ids.begin(), std::min_element(ids.begin(), ids.end()), ids.end());
-  }
-  std::sort(this->Output.Front.begin(), this->Output.Front.end());
+}
 
-  // The completed boundary carries what its sides really border on. Sides that the front has not
-  // reached yet keep their label.
-  const std::vector<RegionPair> given = std::move(this->Surface.Labels);
-  this->Surface.Labels.resize(this->Surface.Triangles.size());
-  for (std::size_t t = 0; t < this->Surface.Triangles.size(); ++t)
+/**
+ * Numbers the tetrahedra by their vertices alone: each starts with its first vertex along the curve,
+ * then the first of the others, and all are in the order of their vertices.
+ */
+void AdvancingFront::CollectTetrahedra()
+{
+  TetMesh& mesh = this->Output.Mesh;
+  const std::size_t slots = this->States.size();
+  const std::size_t count = static_cast<std::size_t>(this->NumberOfTetrahedra);
+  // How each is turned: the place of its first vertex and, after that, of the second one.
+  static constexpr unsigned char Turns[12][4] = { { 0, 1, 2, 3 }, { 0, 2, 3, 1 }, { 0, 3, 1, 2 },
+    { 1, 0, 3, 2 }, { 1, 3, 2, 0 }, { 1, 2, 0, 3 }, { 2, 0, 1, 3 }, { 2, 1, 3, 0 }, { 2, 3, 0, 1 },
+    { 3, 0, 2, 1 }, { 3, 2, 1, 0 }, { 3, 1, 0, 2 } };
+  constexpr unsigned char NotMeshed = 12;
+  std::vector<Id> starts(this->Order.size() + 2, 0);
+  for (std::size_t t = 0; t < slots; ++t)
   {
-    RegionPair labels = t < given.size() ? given[t] : RegionPair{};
-    labels.Front = this->SideFacets[2 * t] != NoId ? this->SideRegions[2 * t] : labels.Front;
-    labels.Back = this->SideFacets[2 * t + 1] != NoId ? this->SideRegions[2 * t + 1] : labels.Back;
-    this->Surface.Labels[t] = labels;
-  }
-  for (TriangleIds& ids : this->Surface.Triangles)
-  {
-    for (Id& id : ids)
+    if (this->States[t] != Meshed)
     {
-      id = places[id];
+      this->States[t] = NotMeshed;
+      continue;
+    }
+    const TetrahedronIds& ids = this->All.Tetrahedra[t];
+    int first = ids[1] < ids[0] ? 1 : 0;
+    first = ids[2] < ids[first] ? 2 : first;
+    first = ids[3] < ids[first] ? 3 : first;
+    int turn = 3 * first;
+    turn = ids[Turns[3 * first + 1][1]] < ids[Turns[turn][1]] ? 3 * first + 1 : turn;
+    turn = ids[Turns[3 * first + 2][1]] < ids[Turns[turn][1]] ? 3 * first + 2 : turn;
+    this->States[t] = static_cast<unsigned char>(turn);
+    ++starts[ids[first] + 2];
+  }
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  std::vector<Id> order(count);
+  for (std::size_t t = 0; t < slots; ++t)
+  {
+    if (this->States[t] != NotMeshed)
+    {
+      order[starts[this->All.Tetrahedra[t][Turns[this->States[t]][0]] + 1]++] = static_cast<Id>(t);
     }
   }
-  this->SortHull();
+  // Two tetrahedra with the same first three vertices would lie on the same side of a facet.
+  struct Item
+  {
+    std::uint64_t Key;
+    Id Source;
+  };
+  constexpr std::size_t ManyItems = 32;
+  std::vector<Item> items;
+  mesh.Tetrahedra.resize(count);
+  mesh.Regions.resize(count);
+  for (std::size_t vertex = 0; vertex < this->Order.size(); ++vertex)
+  {
+    items.clear();
+    for (Id i = starts[vertex]; i < starts[vertex + 1]; ++i)
+    {
+      const Id t = order[i];
+      const TetrahedronIds& ids = this->All.Tetrahedra[t];
+      const unsigned char* const turn = Turns[this->States[t]];
+      const Item item{ (static_cast<std::uint64_t>(ids[turn[1]]) << 32) |
+          static_cast<std::uint32_t>(ids[turn[2]]),
+        t };
+      // They are few: seven, on average.
+      std::size_t k = items.size();
+      items.push_back(item);
+      for (; k > 0 && k < ManyItems && items[k - 1].Key > item.Key; --k)
+      {
+        items[k] = items[k - 1];
+      }
+      items[k] = item;
+    }
+    if (items.size() > ManyItems)
+    {
+      std::sort(
+        items.begin(), items.end(), [](const Item& x, const Item& y) { return x.Key < y.Key; });
+    }
+    Id place = starts[vertex];
+    for (const Item& item : items)
+    {
+      const TetrahedronIds& ids = this->All.Tetrahedra[item.Source];
+      const unsigned char* const turn = Turns[this->States[item.Source]];
+      mesh.Tetrahedra[place] = { this->Order[ids[turn[0]]], this->Order[ids[turn[1]]],
+        this->Order[ids[turn[2]]], this->Order[ids[turn[3]]] };
+      mesh.Regions[place] = this->Regions[item.Source];
+      // From here on its place.
+      this->Regions[item.Source] = place++;
+    }
+  }
+  this->All.Tetrahedra = std::vector<TetrahedronIds>();
+  order = std::vector<Id>();
+  const std::vector<Id>& places = this->Regions;
+  unsigned char inverse[12][4];
+  for (int turn = 0; turn < 12; ++turn)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      inverse[turn][Turns[turn][i]] = static_cast<unsigned char>(i);
+    }
+  }
+  mesh.Neighbors.resize(count);
+  for (std::size_t t = 0; t < slots; ++t)
+  {
+    if (this->States[t] == NotMeshed)
+    {
+      continue;
+    }
+    TetrahedronIds& neighbors = mesh.Neighbors[places[t]];
+    for (int i = 0; i < 4; ++i)
+    {
+      Id facet = this->All.Neighbors[t][Turns[this->States[t]][i]];
+      facet = facet < 0 ? this->SideFacets[(FirstBarrier - facet) ^ 1] : facet;
+      const unsigned char turn = this->States[facet / 4];
+      neighbors[i] = turn == NotMeshed ? NoId : 4 * places[facet / 4] + inverse[turn][facet % 4];
+    }
+  }
+}
+
+void AdvancingFront::CompleteBoundary()
+{
+  // It carries what its sides really border on. Sides that the front has not reached keep their
+  // label.
+  this->Surface.Labels.resize(static_cast<std::size_t>(this->NumberOfSurfaceTriangles));
+  for (Id side = 0; side < 2 * this->NumberOfSurfaceTriangles; ++side)
+  {
+    const Id t = this->SideFacets[side] / 4;
+    if (this->States[t] == Meshed)
+    {
+      RegionPair& labels = this->Surface.Labels[side / 2];
+      (side % 2 == 0 ? labels.Front : labels.Back) = this->Regions[t];
+    }
+  }
+  for (Id side = 0; side < 2 * this->NumberOfSurfaceTriangles; side += 2)
+  {
+    this->Output.Report.UnusedTriangles += this->States[this->SideFacets[side] / 4] != Meshed &&
+        this->States[this->SideFacets[side + 1] / 4] != Meshed
+      ? 1
+      : 0;
+  }
+  std::vector<std::pair<TriangleIds, Id>> hull;
+  hull.reserve(this->HullFacets.size());
+  for (Id facet : this->HullFacets)
+  {
+    hull.emplace_back(this->GetFacetPoints(facet), this->Regions[facet / 4]);
+  }
+  std::sort(hull.begin(), hull.end());
+  for (const auto& [ids, region] : hull)
+  {
+    this->Surface.Triangles.push_back(ids);
+    this->Surface.SourceCells.push_back(NoId);
+    this->Surface.Labels.push_back({ OutsideRegion, region });
+  }
   this->Surface.Points = this->Points;
 }
 
-void AdvancingFront::SortHull()
+void AdvancingFront::Finish()
 {
-  // Triangles that close the boundary were found in the order of the growth.
-  const std::size_t begin = static_cast<std::size_t>(this->NumberOfSurfaceTriangles);
-  std::vector<std::pair<TriangleIds, RegionPair>> hull;
-  for (std::size_t t = begin; t < this->Surface.Triangles.size(); ++t)
+  this->CollectPointsUsed();
+  this->CompleteBoundary();
+  if (this->IsStopped)
   {
-    TriangleIds ids = this->Surface.Triangles[t];
-    std::rotate(ids.begin(), std::min_element(ids.begin(), ids.end()), ids.end());
-    hull.emplace_back(ids, this->Surface.Labels[t]);
+    this->CollectFront();
   }
-  std::sort(
-    hull.begin(), hull.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
-  for (std::size_t i = 0; i < hull.size(); ++i)
-  {
-    this->Surface.Triangles[begin + i] = hull[i].first;
-    this->Surface.Labels[begin + i] = hull[i].second;
-  }
+  this->CollectTetrahedra();
 }
 
-Status AdvancingFront::Run()
+Status AdvancingFront::MeshRegions()
 {
-  Status status = this->CollectPoints();
-  if (status.IsOk())
-  {
-    status = this->TurnDiagonals();
-  }
+  Status status = this->HasSurface() ? this->CheckSurface() : Status();
   if (status.IsOk())
   {
     status = this->FindSeeds();
@@ -1494,58 +1006,62 @@ Status AdvancingFront::Run()
   {
     return status;
   }
-  std::vector<std::pair<TriangleIds, Id>> sorted;
-  for (Id t = 0; t < this->NumberOfSurfaceTriangles; ++t)
+  for (Id side = 0; side < 2 * this->NumberOfSurfaceTriangles; ++side)
   {
-    TriangleIds ids = this->Surface.Triangles[t];
-    std::sort(ids.begin(), ids.end());
-    sorted.emplace_back(ids, t);
+    const Id facet = this->SideFacets[side];
+    this->All.Neighbors[facet / 4][facet % 4] = FirstBarrier - side;
   }
-  std::sort(sorted.begin(), sorted.end());
-  for (std::size_t i = 1; i < sorted.size(); ++i)
-  {
-    if (sorted[i].first == sorted[i - 1].first)
-    {
-      return Status::InvalidInput("Two triangles of the surface have the same points; clean the "
-                                  "surface with vtkBoundaryTriangulator first.",
-        { this->GetSourceCell(sorted[i].second) });
-    }
-  }
-  this->PrepareFront();
+  this->Regions.assign(this->States.size(), NoId);
   std::vector<Id> regions;
   Id nextRegion = 0;
-  if (!this->HasSurface())
+  for (Seed seed : this->Seeds)
   {
-    regions.push_back(0);
-    status = this->GrowHull();
-  }
-  for (SideSeed seed : this->Seeds)
-  {
-    if (this->SideFacets[seed.Side] != NoId ||
-      (this->Options.CloseOpenBoundary && this->IsOnHull(seed.Side)))
+    const bool isBeyondHull = this->States[seed.Tetrahedron] == BeyondHull;
+    if (isBeyondHull && !this->Options.CloseOpenBoundary)
+    {
+      return this->MakeHullError(seed, this->Surface.Triangles[seed.Triangle]);
+    }
+    if (isBeyondHull || this->States[seed.Tetrahedron] == Meshed)
     {
       continue;
     }
     seed.Region = seed.Region == NoId ? nextRegion++ : seed.Region;
     regions.push_back(seed.Region);
-    status = this->GrowRegion(seed);
+    status = this->Advance(seed);
     if (!status.IsOk() || this->IsStopped)
     {
       break;
     }
   }
-  if (status.IsAborted() || this->IsStopped)
+  this->IsStopped = this->IsStopped || status.IsAborted();
+  SortUnique(regions);
+  this->Output.Report.NumberOfRegions = static_cast<Id>(regions.size());
+  return status;
+}
+
+Status AdvancingFront::Run()
+{
+  Status status = this->CollectPoints();
+  if (status.IsOk())
   {
-    const Status collected = this->CollectFront();
-    status = collected.IsOk() ? status : collected;
+    status = this->TetrahedralizePoints();
   }
-  if (!status.IsOk() && !status.IsAborted())
+  if (!status.IsOk())
   {
     return status;
   }
-  SortUnique(regions);
-  this->Output.Report.NumberOfRegions = static_cast<Id>(regions.size());
-  this->Finish();
+  if (this->HasSurface() || this->HasSeeds() || this->Options.MaximumNumberOfTetrahedra > 0)
+  {
+    status = this->MeshRegions();
+  }
+  else
+  {
+    this->TakeAll();
+  }
+  if (status.IsOk() || status.IsAborted())
+  {
+    this->Finish();
+  }
   return status;
 }
 } // namespace

@@ -50,13 +50,41 @@ Kernel::Point_2 Project(int axis, const Vec3& p)
 __extension__ using Int128 = __int128;
 __extension__ using UInt128 = unsigned __int128;
 
-/** Two's complement integer of N 64-bit words, the lowest first. */
-template <int N>
-struct WideInteger
+/** High * 2^64 + Low. */
+struct Int192
 {
-  std::uint64_t Words[N];
+  Int128 High;
+  std::uint64_t Low;
 
-  bool IsNegative() const { return (this->Words[N - 1] >> 63) != 0; }
+  bool IsNegative() const { return this->High < 0; }
+
+  friend Int192 operator+(const Int192& a, const Int192& b)
+  {
+    const std::uint64_t low = a.Low + b.Low;
+    return { a.High + b.High + (low < a.Low ? 1 : 0), low };
+  }
+  friend Int192 operator-(const Int192& a, const Int192& b)
+  {
+    return { a.High - b.High - (a.Low < b.Low ? 1 : 0), a.Low - b.Low };
+  }
+};
+
+Int192 Multiply(Int128 a, std::int64_t b)
+{
+  const std::uint64_t low = static_cast<std::uint64_t>(a);
+  const std::int64_t high = static_cast<std::int64_t>(a >> 64);
+  const UInt128 product = UInt128(low) * static_cast<std::uint64_t>(b);
+  const std::uint64_t carry = static_cast<std::uint64_t>(product >> 64);
+  return { Int128(high) * b + Int128(carry) - (b < 0 ? Int128(low) : Int128(0)),
+    static_cast<std::uint64_t>(product) };
+}
+
+/** Sum of products of 320 bits, in two's complement. */
+class Sum320
+{
+public:
+  void Add(const Int192& a, UInt128 b) { this->Accumulate(a, b, a.IsNegative()); }
+  void Subtract(const Int192& a, UInt128 b) { this->Accumulate(a, b, !a.IsNegative()); }
 
   int GetSign() const
   {
@@ -65,84 +93,67 @@ struct WideInteger
     {
       any |= word;
     }
-    return any == 0 ? 0 : this->IsNegative() ? -1 : 1;
+    return any == 0 ? 0 : (this->Words[4] >> 63) != 0 ? -1 : 1;
   }
 
-  friend WideInteger operator+(const WideInteger& a, const WideInteger& b)
+private:
+  void Accumulate(const Int192& a, UInt128 b, bool isSubtracted)
   {
-    WideInteger sum;
-    UInt128 carry = 0;
-    for (int i = 0; i < N; ++i)
+    const Int192 magnitude = a.IsNegative() ? Int192{ 0, 0 } - a : a;
+    const std::uint64_t words[3] = { magnitude.Low, static_cast<std::uint64_t>(magnitude.High),
+      static_cast<std::uint64_t>(magnitude.High >> 64) };
+    const std::uint64_t factors[2] = { static_cast<std::uint64_t>(b),
+      static_cast<std::uint64_t>(b >> 64) };
+    std::uint64_t product[5] = { 0, 0, 0, 0, 0 };
+    for (int j = 0; j < 2; ++j)
     {
-      carry += UInt128(a.Words[i]) + b.Words[i];
-      sum.Words[i] = static_cast<std::uint64_t>(carry);
+      UInt128 carry = 0;
+      for (int i = 0; i < 3; ++i)
+      {
+        carry += UInt128(words[i]) * factors[j] + product[i + j];
+        product[i + j] = static_cast<std::uint64_t>(carry);
+        carry >>= 64;
+      }
+      product[3 + j] = static_cast<std::uint64_t>(carry);
+    }
+    const std::uint64_t flip = isSubtracted ? ~std::uint64_t(0) : 0;
+    UInt128 carry = isSubtracted ? 1 : 0;
+    for (int i = 0; i < 5; ++i)
+    {
+      carry += UInt128(this->Words[i]) + (product[i] ^ flip);
+      this->Words[i] = static_cast<std::uint64_t>(carry);
       carry >>= 64;
     }
-    return sum;
   }
 
-  friend WideInteger operator-(const WideInteger& a)
-  {
-    WideInteger negative;
-    UInt128 carry = 1;
-    for (int i = 0; i < N; ++i)
-    {
-      carry += static_cast<std::uint64_t>(~a.Words[i]);
-      negative.Words[i] = static_cast<std::uint64_t>(carry);
-      carry >>= 64;
-    }
-    return negative;
-  }
-
-  friend WideInteger operator-(const WideInteger& a, const WideInteger& b) { return a + -b; }
+  std::uint64_t Words[5] = { 0, 0, 0, 0, 0 };
 };
 
-template <int N, int M>
-WideInteger<N + M> Multiply(WideInteger<N> a, WideInteger<M> b)
+template <typename Integer>
+int GetSign(Integer value)
 {
-  const bool isNegative = a.IsNegative() != b.IsNegative();
-  a = a.IsNegative() ? -a : a;
-  b = b.IsNegative() ? -b : b;
-  WideInteger<N + M> product{};
-  for (int i = 0; i < N; ++i)
-  {
-    UInt128 carry = 0;
-    for (int j = 0; j < M; ++j)
-    {
-      carry += UInt128(a.Words[i]) * b.Words[j] + product.Words[i + j];
-      product.Words[i + j] = static_cast<std::uint64_t>(carry);
-      carry >>= 64;
-    }
-    product.Words[i + M] = static_cast<std::uint64_t>(carry);
-  }
-  return isNegative ? -product : product;
+  return value > 0 ? 1 : value < 0 ? -1 : 0;
 }
 
-WideInteger<1> ToWide(std::int64_t value)
+int GetSign(const Int192& value)
 {
-  return { { static_cast<std::uint64_t>(value) } };
-}
-
-WideInteger<2> ToWide(Int128 value)
-{
-  return { { static_cast<std::uint64_t>(static_cast<UInt128>(value)),
-    static_cast<std::uint64_t>(static_cast<UInt128>(value) >> 64) } };
+  return value.High != 0 ? GetSign(value.High) : value.Low != 0 ? 1 : 0;
 }
 
 /** Differences of the coordinates of some points in units of a common power of two. */
 class IntegerDifferences
 {
 public:
-  /** Differences below this keep all determinants within their words. */
-  static constexpr std::int64_t Limit = std::int64_t(1) << 60;
-
   /** From point 0; false if there is no unit that is small and large enough. */
   template <int N>
   bool Set(const Vec3* const (&points)[N])
   {
-    // A coordinate is an odd multiple of two to the power of its exponent.
+    // A coordinate is an odd multiple of two to the power of its exponent. Without branches: these
+    // loops take as long as the determinant.
+    constexpr std::uint64_t Leading = std::uint64_t(1) << 52;
     int lowest = 4096;
     int highest = -4096;
+    bool hasDenormals = false;
     for (const Vec3* point : points)
     {
       for (const double x : { point->X, point->Y, point->Z })
@@ -150,19 +161,17 @@ public:
         std::uint64_t bits;
         std::memcpy(&bits, &x, sizeof(bits));
         const int exponent = static_cast<int>((bits >> 52) & 0x7ff);
-        const std::uint64_t mantissa = bits & ((std::uint64_t(1) << 52) - 1);
-        if (exponent == 0 && mantissa == 0)
-        {
-          continue;
-        }
-        if (exponent == 0)
-        {
-          return false;
-        }
-        const int zeros = mantissa == 0 ? 52 : __builtin_ctzll(mantissa);
-        lowest = std::min(lowest, exponent - 1075 + zeros);
-        highest = std::max(highest, exponent - 1022);
+        const std::uint64_t mantissa = bits & (Leading - 1);
+        const int zeros = __builtin_ctzll(mantissa | Leading);
+        const bool isZero = x == 0.0;
+        hasDenormals |= (exponent == 0) & !isZero;
+        lowest = std::min(lowest, isZero ? 4096 : exponent - 1075 + zeros);
+        highest = std::max(highest, isZero ? -4096 : exponent - 1022);
       }
+    }
+    if (hasDenormals)
+    {
+      return false;
     }
     if (lowest > highest)
     {
@@ -172,12 +181,13 @@ public:
     {
       return false;
     }
-    std::uint64_t bits = static_cast<std::uint64_t>(1023 - lowest) << 52;
+    const std::uint64_t bits = static_cast<std::uint64_t>(1023 - lowest) << 52;
     double scale;
     std::memcpy(&scale, &bits, sizeof(scale));
     const std::int64_t origin[3] = { static_cast<std::int64_t>(points[0]->X * scale),
       static_cast<std::int64_t>(points[0]->Y * scale),
       static_cast<std::int64_t>(points[0]->Z * scale) };
+    std::uint64_t any = 0;
     for (int i = 1; i < N; ++i)
     {
       std::int64_t* const d = this->Values[i - 1];
@@ -186,34 +196,95 @@ public:
       d[2] = static_cast<std::int64_t>(points[i]->Z * scale) - origin[2];
       for (int axis = 0; axis < 3; ++axis)
       {
-        if (d[axis] >= Limit || d[axis] <= -Limit)
-        {
-          return false;
-        }
+        any |= static_cast<std::uint64_t>(d[axis] ^ (d[axis] >> 63));
       }
     }
-    return true;
+    this->Bits = any == 0 ? 0 : 64 - __builtin_clzll(any);
+    return this->Bits < MaximumBits;
   }
 
-  Int128 GetMinor(int i, int j) const
+  /** Differences are smaller than two to the power of this. */
+  int GetBits() const { return this->Bits; }
+
+  /** Sign of the determinant of the first three differences. */
+  int GetOrientation() const
   {
-    return Int128(this->Values[i][0]) * this->Values[j][1] -
-      Int128(this->Values[j][0]) * this->Values[i][1];
+    // Six terms of three factors.
+    if (this->Bits <= 20)
+    {
+      return GetSign(this->GetDeterminant<std::int64_t>(0, 1, 2));
+    }
+    return GetSign(Multiply(this->GetMinor<Int128>(1, 2), this->Values[0][2]) -
+      Multiply(this->GetMinor<Int128>(0, 2), this->Values[1][2]) +
+      Multiply(this->GetMinor<Int128>(0, 1), this->Values[2][2]));
   }
-  WideInteger<3> GetDeterminant(int i, Int128 jk, int j, Int128 ik, int k, Int128 ij) const
+
+  /** Sign of the determinant of all four and their squares. */
+  int GetInSphere() const
   {
-    return Multiply(ToWide(jk), ToWide(this->Values[i][2])) -
-      Multiply(ToWide(ik), ToWide(this->Values[j][2])) +
-      Multiply(ToWide(ij), ToWide(this->Values[k][2]));
-  }
-  WideInteger<2> GetSquare(int i) const
-  {
-    const std::int64_t* const d = this->Values[i];
-    return ToWide(Int128(d[0]) * d[0] + Int128(d[1]) * d[1] + Int128(d[2]) * d[2]);
+    // 24 terms of three factors times a sum of three squares.
+    return this->Bits <= 11 ? this->GetInSphere<std::int64_t>()
+      : this->Bits <= 24    ? this->GetInSphere<Int128>()
+                            : this->GetLongInSphere();
   }
 
 private:
+  static constexpr int MaximumBits = 61;
+
+  template <typename Integer>
+  Integer GetMinor(int i, int j) const
+  {
+    return Integer(this->Values[i][0]) * this->Values[j][1] -
+      Integer(this->Values[j][0]) * this->Values[i][1];
+  }
+  template <typename Integer>
+  Integer GetDeterminant(int i, int j, int k) const
+  {
+    return this->GetMinor<Integer>(j, k) * this->Values[i][2] -
+      this->GetMinor<Integer>(i, k) * this->Values[j][2] +
+      this->GetMinor<Integer>(i, j) * this->Values[k][2];
+  }
+  template <typename Integer>
+  Integer GetSquare(int i) const
+  {
+    const std::int64_t* const d = this->Values[i];
+    return Integer(d[0]) * d[0] + Integer(d[1]) * d[1] + Integer(d[2]) * d[2];
+  }
+  template <typename Integer>
+  int GetInSphere() const
+  {
+    return GetSign(this->GetDeterminant<Integer>(1, 2, 3) * this->GetSquare<Integer>(0) -
+      this->GetDeterminant<Integer>(0, 2, 3) * this->GetSquare<Integer>(1) +
+      this->GetDeterminant<Integer>(0, 1, 3) * this->GetSquare<Integer>(2) -
+      this->GetDeterminant<Integer>(0, 1, 2) * this->GetSquare<Integer>(3));
+  }
+
+  int GetLongInSphere() const
+  {
+    const Int128 pq = this->GetMinor<Int128>(0, 1);
+    const Int128 pr = this->GetMinor<Int128>(0, 2);
+    const Int128 ps = this->GetMinor<Int128>(0, 3);
+    const Int128 qr = this->GetMinor<Int128>(1, 2);
+    const Int128 qs = this->GetMinor<Int128>(1, 3);
+    const Int128 rs = this->GetMinor<Int128>(2, 3);
+    const std::int64_t p = this->Values[0][2];
+    const std::int64_t q = this->Values[1][2];
+    const std::int64_t r = this->Values[2][2];
+    const std::int64_t s = this->Values[3][2];
+    Sum320 sum;
+    sum.Add(
+      Multiply(rs, q) - Multiply(qs, r) + Multiply(qr, s), UInt128(this->GetSquare<Int128>(0)));
+    sum.Subtract(
+      Multiply(rs, p) - Multiply(ps, r) + Multiply(pr, s), UInt128(this->GetSquare<Int128>(1)));
+    sum.Add(
+      Multiply(qs, p) - Multiply(ps, q) + Multiply(pq, s), UInt128(this->GetSquare<Int128>(2)));
+    sum.Subtract(
+      Multiply(qr, p) - Multiply(pr, q) + Multiply(pq, r), UInt128(this->GetSquare<Int128>(3)));
+    return sum.GetSign();
+  }
+
   std::int64_t Values[4][3];
+  int Bits = 0;
 };
 
 bool OrientByIntegers(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, int& sign)
@@ -223,10 +294,7 @@ bool OrientByIntegers(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
   {
     return false;
   }
-  sign = difference
-           .GetDeterminant(0, difference.GetMinor(1, 2), 1, difference.GetMinor(0, 2), 2,
-             difference.GetMinor(0, 1))
-           .GetSign();
+  sign = difference.GetOrientation();
   return true;
 }
 
@@ -238,22 +306,75 @@ bool InSphereByIntegers(
   {
     return false;
   }
-  const Int128 pq = difference.GetMinor(0, 1);
-  const Int128 pr = difference.GetMinor(0, 2);
-  const Int128 ps = difference.GetMinor(0, 3);
-  const Int128 qr = difference.GetMinor(1, 2);
-  const Int128 qs = difference.GetMinor(1, 3);
-  const Int128 rs = difference.GetMinor(2, 3);
-  const WideInteger<3> pqr = difference.GetDeterminant(0, qr, 1, pr, 2, pq);
-  const WideInteger<3> pqs = difference.GetDeterminant(0, qs, 1, ps, 3, pq);
-  const WideInteger<3> prs = difference.GetDeterminant(0, rs, 2, ps, 3, pr);
-  const WideInteger<3> qrs = difference.GetDeterminant(1, rs, 2, qs, 3, qr);
-  sign = (Multiply(qrs, difference.GetSquare(0)) - Multiply(prs, difference.GetSquare(1)) +
-    Multiply(pqs, difference.GetSquare(2)) - Multiply(pqr, difference.GetSquare(3)))
-           .GetSign();
+  sign = difference.GetInSphere();
   return true;
 }
 #endif
+
+/**
+ * The in-sphere determinant in the widest floating-point type, which resolves most of what rounded
+ * coordinates make nearly cospherical; useless, but right, where that is double.
+ */
+bool InSphereByExtendedPrecision(
+  const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e, int& sign)
+{
+  using Real = long double;
+  Real p[4][3];
+  Real squares[4];
+  Real size[3] = { 0, 0, 0 };
+  Real largest = 0;
+  const Vec3* const points[4] = { &a, &b, &c, &d };
+  for (int i = 0; i < 4; ++i)
+  {
+    squares[i] = 0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      p[i][axis] = Real((*points[i])[axis]) - Real(e[axis]);
+      squares[i] += p[i][axis] * p[i][axis];
+      size[axis] = std::max(size[axis], std::abs(p[i][axis]));
+    }
+    largest = std::max(largest, squares[i]);
+  }
+  const auto minor = [&p](int i, int j) { return p[i][0] * p[j][1] - p[j][0] * p[i][1]; };
+  const Real pq = minor(0, 1);
+  const Real pr = minor(0, 2);
+  const Real ps = minor(0, 3);
+  const Real qr = minor(1, 2);
+  const Real qs = minor(1, 3);
+  const Real rs = minor(2, 3);
+  const Real determinant = squares[0] * (rs * p[1][2] - qs * p[2][2] + qr * p[3][2]) -
+    squares[1] * (rs * p[0][2] - ps * p[2][2] + pr * p[3][2]) +
+    squares[2] * (qs * p[0][2] - ps * p[1][2] + pq * p[3][2]) -
+    squares[3] * (qr * p[0][2] - pr * p[1][2] + pq * p[2][2]);
+  // 24 products, with the bound of InSphere() in units of their sum.
+  const Real bound =
+    24 * 17 * (std::numeric_limits<Real>::epsilon() / 2) * size[0] * size[1] * size[2] * largest;
+  if (bound > Real(Underflow) && std::abs(determinant) > bound)
+  {
+    sign = determinant > 0 ? 1 : -1;
+    return true;
+  }
+  return false;
+}
+
+/** True if all points are corners of one box with axis-parallel edges, which lie on a sphere. */
+bool AreCornersOfBox(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double first = a[axis];
+    double second = b[axis];
+    for (const Vec3* point : { &c, &d, &e })
+    {
+      second = second == first ? (*point)[axis] : second;
+      if ((*point)[axis] != first && (*point)[axis] != second)
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
 
 /** Sign of value if its error bound allows to tell it. */
 bool IsCertain(double value, double bound, int& sign)
@@ -287,7 +408,18 @@ int Orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
   {
     return sign;
   }
+  return ExactOrientation(a, b, c, d);
+}
+
+int ExactOrientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  if ((a.X == b.X && a.X == c.X && a.X == d.X) || (a.Y == b.Y && a.Y == c.Y && a.Y == d.Y) ||
+    (a.Z == b.Z && a.Z == c.Z && a.Z == d.Z))
+  {
+    return 0;
+  }
 #ifdef CDM_HAS_WIDE_INTEGERS
+  int sign = 0;
   if (OrientByIntegers(a, b, c, d, sign))
   {
     return sign;
@@ -350,6 +482,20 @@ int InSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const V
     (aqr * pz + apr * qz + apq * rz) * ss;
   int sign = 0;
   if (IsCertain(determinant, InSphereBound * permanent, sign))
+  {
+    return sign;
+  }
+  return ExactInSphere(a, b, c, d, e);
+}
+
+int ExactInSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e)
+{
+  if (AreCornersOfBox(a, b, c, d, e))
+  {
+    return 0;
+  }
+  int sign = 0;
+  if (InSphereByExtendedPrecision(a, b, c, d, e, sign))
   {
     return sign;
   }

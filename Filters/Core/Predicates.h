@@ -33,6 +33,10 @@ int Orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
  */
 int InSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
 
+/** The same for callers with a floating-point filter of their own, which could not tell. */
+int ExactOrientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+int ExactInSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
+
 /** Position of p relative to the smallest sphere through a and b: +1 inside, 0 on, -1 outside. */
 int InDiametralSphere(const Vec3& a, const Vec3& b, const Vec3& p);
 
@@ -51,6 +55,6 @@ bool AreCollinear(const Vec3& a, const Vec3& b, const Vec3& c);
  * This is the orientation of the triangle projected along that axis.
  */
 int ProjectedOrientation(int axis, const Vec3& a, const Vec3& b, const Vec3& c);
-}
+} // namespace cdm
 
 #endif

@@ -8,9 +8,11 @@
 
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
+#include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkSMPTools.h>
 #include <vtkUnstructuredGrid.h>
 
 vtkStandardNewMacro(vtkAdvancingFrontTetrahedralizer);
@@ -25,7 +27,7 @@ vtkAdvancingFrontTetrahedralizer::vtkAdvancingFrontTetrahedralizer()
 //--------------------------------------------------------------------------------------------------
 int vtkAdvancingFrontTetrahedralizer::FillInputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkPolyData" : "vtkPointSet");
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
   if (port > 0)
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
@@ -44,7 +46,15 @@ int vtkAdvancingFrontTetrahedralizer::FillOutputPortInformation(int port, vtkInf
 int vtkAdvancingFrontTetrahedralizer::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
+  vtkPointSet* points = vtkPointSet::GetData(inputVector[0]);
+  vtkPolyData* input = vtkPolyData::SafeDownCast(points);
+  vtkNew<vtkPolyData> cloud;
+  if (!input)
+  {
+    cloud->SetPoints(points->GetPoints());
+    cloud->GetPointData()->ShallowCopy(points->GetPointData());
+    input = cloud;
+  }
   vtkPointSet* pointInput = vtkPointSet::GetData(inputVector[1]);
   vtkPointSet* seedInput = vtkPointSet::GetData(inputVector[2]);
   if (vtkCoreBridge::IsIdleProcess(input, outputVector))
@@ -59,7 +69,9 @@ int vtkAdvancingFrontTetrahedralizer::RequestData(
   const cdm::Status status = vtkCoreBridge::Guard(
     [&]
     {
-      cdm::Status step = vtkCoreBridge::ToTriangleMesh(input, surface);
+      cdm::Status step = input->GetNumberOfPolys() + input->GetNumberOfStrips() > 0
+        ? vtkCoreBridge::ToTriangleMesh(input, surface)
+        : vtkCoreBridge::ToPoints(input, "points", surface.Points);
       if (step.IsOk() && pointInput)
       {
         step = vtkCoreBridge::ToPoints(pointInput, "mesh points", meshPoints);
@@ -73,6 +85,7 @@ int vtkAdvancingFrontTetrahedralizer::RequestData(
         cdm::AdvancingFrontTetrahedralizerOptions options;
         options.CloseOpenBoundary = this->CloseOpenBoundary;
         options.MaximumNumberOfTetrahedra = this->MaximumNumberOfTetrahedra;
+        options.NumberOfThreads = vtkSMPTools::GetEstimatedNumberOfThreads();
         step = cdm::TetrahedralizeByAdvancingFront(
           { &surface, &meshPoints, &seeds }, options, vtkCoreBridge::MakeContext(this), result);
         vtkCoreBridge::OffsetCells(step, vtkCoreBridge::GetFirstPolygon(input));
@@ -81,8 +94,7 @@ int vtkAdvancingFrontTetrahedralizer::RequestData(
     });
   this->NumberOfRegions = result.Report.NumberOfRegions;
   this->NumberOfUnusedMeshPoints = result.Report.UnusedMeshPoints;
-  this->NumberOfCosphericalCells = result.Report.CosphericalCells;
-  this->NumberOfPointsOfLargestCell = result.Report.LargestCell;
+  this->NumberOfUnusedTriangles = result.Report.UnusedTriangles;
   this->NumberOfTurnedDiagonals = result.Report.TurnedDiagonals;
   if (!status.IsOk() && !status.IsAborted())
   {
@@ -105,10 +117,19 @@ int vtkAdvancingFrontTetrahedralizer::RequestData(
   {
     vtkConformingDelaunayCompatibility::KeepOutputsOfAbortedRun(this);
   }
-  else if (this->NumberOfUnusedMeshPoints > 0)
+  // What an unfinished mesh does not use it may use yet.
+  else if (result.Front.empty())
   {
-    vtkWarningMacro("Left out " << this->NumberOfUnusedMeshPoints
-                                << " mesh points that lie in no meshed region.");
+    if (this->NumberOfUnusedMeshPoints > 0)
+    {
+      vtkWarningMacro("Left out " << this->NumberOfUnusedMeshPoints
+                                  << " mesh points that lie in no meshed region.");
+    }
+    if (this->NumberOfUnusedTriangles > 0 && !seedInput)
+    {
+      vtkWarningMacro(<< this->NumberOfUnusedTriangles
+                      << " triangles of the surface bound no meshed region.");
+    }
   }
   return 1;
 }
@@ -121,7 +142,6 @@ void vtkAdvancingFrontTetrahedralizer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumNumberOfTetrahedra: " << this->MaximumNumberOfTetrahedra << "\n";
   os << indent << "NumberOfRegions: " << this->NumberOfRegions << "\n";
   os << indent << "NumberOfUnusedMeshPoints: " << this->NumberOfUnusedMeshPoints << "\n";
-  os << indent << "NumberOfCosphericalCells: " << this->NumberOfCosphericalCells << "\n";
-  os << indent << "NumberOfPointsOfLargestCell: " << this->NumberOfPointsOfLargestCell << "\n";
+  os << indent << "NumberOfUnusedTriangles: " << this->NumberOfUnusedTriangles << "\n";
   os << indent << "NumberOfTurnedDiagonals: " << this->NumberOfTurnedDiagonals << "\n";
 }

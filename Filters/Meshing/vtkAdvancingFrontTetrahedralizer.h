@@ -4,13 +4,16 @@
  * @brief   Stage 3: fills the regions of a Delaunay surface with Delaunay tetrahedra.
  *
  * Method (Fleischmann 1999, section 6.4):
- *  1. test that the surface is part of the Delaunay mesh;
- *  2. take a side of a triangle of each enclosed region as the seed of the front;
- *  3. attach to a triangle of the front the point with the smallest lambda (Crit. 6.2), exactly, with
- *     all points cospherical to it; triangulate that cell by pulling its lowest point;
- *  4. like triangles meet and leave the front (Lemma 6.1), until it is empty (Lemma 6.2).
+ *  1. find the fourth point of each facet (the smallest lambda, Crit. 6.2) for all points at once: the
+ *     exact Delaunay tetrahedralization of the points, where cells of more than four cospherical
+ *     points are triangulated by pulling their lowest point;
+ *  2. test that the surface is part of it, up to the diagonals of flat cocircular facets;
+ *  3. take a side of a triangle of each enclosed region as the seed of the front;
+ *  4. attach the fourth point to each triangle of the front; like triangles meet and leave the front
+ *     (Lemma 6.1), until it is empty (Lemma 6.2).
  *
- * Inputs: port 0: vtkPolyData, the output of vtkDelaunaySurfaceRefiner. With the two-component cell
+ * Inputs: port 0: vtkPolyData, the output of vtkDelaunaySurfaceRefiner; or any vtkPointSet, whose
+ * points alone are taken, to be meshed up to their convex hull (CloseOpenBoundary). With the two-component cell
  * array BoundaryLabels the regions are those labels; without it every enclosed segment becomes a
  * region, numbered from 0 on. The outside is never meshed. Port 1, optional: vtkPointSet, mesh
  * points. Port 2, optional: vtkPointSet of seeds; only the regions that hold one are meshed. Its
@@ -28,12 +31,14 @@
  * points, exactly. The mesh depends on the numbering of the points only. Deterministic.
  *
  * Failure: an error that names the cells, and empty outputs, for an empty input, triangles that are
- * not Delaunay, labels that contradict each other, and a surface that encloses nothing. An aborted
- * run and one stopped by MaximumNumberOfTetrahedra leave the valid mesh made so far and its front in
+ * not Delaunay, labels that contradict each other, and a surface that encloses nothing. A warning
+ * counts mesh points in no meshed region and triangles that bound none. An aborted run, from the
+ * moment the front advances, and one stopped by MaximumNumberOfTetrahedra leave the valid mesh made so far and its front in
  * the outputs. (VTK empties the outputs of an aborted filter; this one takes its mark back. Filters
  * downstream decide for themselves whether they run on it.)
  *
- * Cost: about proportional to the number of tetrahedra; 36 bytes for each.
+ * Cost: O(n log n) for usual distributions; 57 bytes per tetrahedron of all points at the peak, 36 for
+ * those of the result. Uses the threads of vtkSMPTools; the result does not depend on them.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
  * the modified advancing front. Filters/Core/AdvancingFrontTetrahedralizer.h is the engine.
@@ -71,11 +76,10 @@ public:
   ///@}
 
   ///@{
-  /** Of the last run. A cospherical cell has more than four points on its empty sphere. */
+  /** Of the last run. */
   vtkGetMacro(NumberOfRegions, vtkIdType);
   vtkGetMacro(NumberOfUnusedMeshPoints, vtkIdType);
-  vtkGetMacro(NumberOfCosphericalCells, vtkIdType);
-  vtkGetMacro(NumberOfPointsOfLargestCell, vtkIdType);
+  vtkGetMacro(NumberOfUnusedTriangles, vtkIdType);
   vtkGetMacro(NumberOfTurnedDiagonals, vtkIdType);
   ///@}
 
@@ -92,8 +96,7 @@ protected:
 
   vtkIdType NumberOfRegions = 0;
   vtkIdType NumberOfUnusedMeshPoints = 0;
-  vtkIdType NumberOfCosphericalCells = 0;
-  vtkIdType NumberOfPointsOfLargestCell = 0;
+  vtkIdType NumberOfUnusedTriangles = 0;
   vtkIdType NumberOfTurnedDiagonals = 0;
 
 private:

@@ -17,7 +17,7 @@ function (forbid pattern what)
 endfunction ()
 
 forbid("vtk" "the engine knows no VTK" ${core})
-forbid("(vtkPV|vtkSM|vtkSI|pq)" "the filters know no ParaView" ${meshing})
+forbid("(vtkPV|vtkSM[^P]|vtkSI|pq)" "the filters know no ParaView" ${meshing})
 forbid("CGAL/" "the filters know no CGAL" ${meshing})
 list(FILTER core EXCLUDE REGEX "/Predicates\\.cxx$")
 forbid("CGAL/" "CGAL belongs into Predicates.cxx" ${core})

@@ -19,8 +19,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
+#include <numeric>
 #include <random>
 #include <set>
+#include <string>
 
 namespace
 {
@@ -207,8 +210,6 @@ TEST(PointsOnly, MeshesGrids)
     ASSERT_TRUE(MeshPointSet(points, output).IsOk());
     CheckHullMesh(points, output);
     EXPECT_EQ(output.Mesh.Tetrahedra.size(), 6u * 7u * 7u * 7u);
-    EXPECT_EQ(output.Report.CosphericalCells, 7 * 7 * 7);
-    EXPECT_EQ(output.Report.LargestCell, 8);
   }
 }
 
@@ -279,8 +280,106 @@ TEST(PointsOnly, MeshesOneLargeCell)
   AdvancingFrontTetrahedralizerOutput output;
   ASSERT_TRUE(MeshPointSet(points, output).IsOk());
   CheckHullMesh(points, output);
-  EXPECT_EQ(output.Report.CosphericalCells, 1);
-  EXPECT_EQ(output.Report.LargestCell, static_cast<Id>(points.size()));
+}
+
+TEST(PointsOnly, DoesNotDependOnThreadsAndNumbers)
+{
+  Random random(29);
+  for (const std::string kind : { "random", "sphere", "grid", "rotated grid", "clusters" })
+  {
+    PointSet points;
+    if (kind == "grid" || kind == "rotated grid")
+    {
+      points = MakeGrid(28, 1.0);
+      for (Vec3& p : points)
+      {
+        p = kind == "grid" ? p : Rotate(p, (1.0 / 3.0) * Vec3{ 1.0, 2.0, 2.0 }, 0.3);
+      }
+      random.Shuffle(points);
+    }
+    while (points.size() < 20000)
+    {
+      const Vec3 p = random.GetPoint();
+      const Vec3 offset{ double(random.GetInteger(2)), double(random.GetInteger(3)), 0.0 };
+      points.push_back(kind == "sphere" ? random.GetDirection()
+          : kind == "clusters"          ? offset + 0.01 * p
+                                        : p);
+    }
+    AdvancingFrontTetrahedralizerInput input;
+    input.MeshPoints = &points;
+    AdvancingFrontTetrahedralizerOptions options;
+    options.CloseOpenBoundary = true;
+    AdvancingFrontTetrahedralizerOutput expected;
+    ASSERT_TRUE(TetrahedralizeByAdvancingFront(input, options, {}, expected).IsOk());
+    for (const int threads : { 2, 3, 8 })
+    {
+      options.NumberOfThreads = threads;
+      AdvancingFrontTetrahedralizerOutput output;
+      ASSERT_TRUE(TetrahedralizeByAdvancingFront(input, options, {}, output).IsOk());
+      EXPECT_EQ(output.Mesh.Tetrahedra, expected.Mesh.Tetrahedra) << kind << " " << threads;
+      EXPECT_EQ(output.Mesh.Neighbors, expected.Mesh.Neighbors) << kind << " " << threads;
+      EXPECT_EQ(output.Boundary.Triangles, expected.Boundary.Triangles) << kind << " " << threads;
+    }
+    // Without cospherical points the numbers do not matter either.
+    if (kind == "random" || kind == "clusters")
+    {
+      PointSet reversed(points.rbegin(), points.rend());
+      input.MeshPoints = &reversed;
+      AdvancingFrontTetrahedralizerOutput output;
+      ASSERT_TRUE(TetrahedralizeByAdvancingFront(input, options, {}, output).IsOk());
+      for (TetrahedronIds& ids : output.Mesh.Tetrahedra)
+      {
+        for (Id& id : ids)
+        {
+          id = static_cast<Id>(points.size()) - 1 - id;
+        }
+      }
+      EXPECT_EQ(output.Mesh.Tetrahedra, expected.Mesh.Tetrahedra) << kind;
+    }
+  }
+}
+
+TEST(PointsOnly, MeshesManyPointsOnOneSphere)
+{
+  // One degenerate cell of 6630 points, numbered along the curve and against it: no order may make
+  // it quadratic.
+  constexpr int Radius = 1105;
+  PointSet points;
+  for (int x = -Radius; x <= Radius; ++x)
+  {
+    for (int y = -Radius; y <= Radius; ++y)
+    {
+      const int square = Radius * Radius - x * x - y * y;
+      const int z = square < 0 ? -1 : static_cast<int>(std::lround(std::sqrt(square)));
+      if (z >= 0 && z * z == square)
+      {
+        points.push_back({ double(x), double(y), double(z) });
+      }
+      if (z > 0 && z * z == square)
+      {
+        points.push_back({ double(x), double(y), double(-z) });
+      }
+    }
+  }
+  ASSERT_EQ(points.size(), 6630u);
+  double volumes[2] = { 0.0, 0.0 };
+  for (double& volume : volumes)
+  {
+    AdvancingFrontTetrahedralizerOutput output;
+    ASSERT_TRUE(MeshPointSet(points, output).IsOk());
+    EXPECT_EQ(output.Mesh.Points.size(), points.size());
+    for (const TetrahedronIds& ids : output.Mesh.Tetrahedra)
+    {
+      // Pulling: each of them has the lowest point.
+      ASSERT_EQ(*std::min_element(ids.begin(), ids.end()), 0);
+      const auto& p = output.Mesh.Points;
+      ASSERT_EQ(Orientation(p[ids[0]], p[ids[1]], p[ids[2]], p[ids[3]]), 1);
+      volume +=
+        Dot(Cross(p[ids[1]] - p[ids[0]], p[ids[2]] - p[ids[0]]), p[ids[3]] - p[ids[0]]) / 6.0;
+    }
+    std::reverse(points.begin(), points.end());
+  }
+  EXPECT_NEAR(volumes[0], volumes[1], 1e-9 * volumes[0]);
 }
 
 TEST(PointsOnly, MeshesNastyConfigurations)
@@ -375,6 +474,54 @@ TEST(PointsOnly, MeshesNastyConfigurations)
 }
 
 #ifdef CDM_HAS_CGAL_TRIANGULATION
+/** The vertices of each cell: tetrahedra that share a facet and a sphere are parts of one. */
+std::set<std::vector<Id>> GetCells(
+  const PointSet& points, const std::vector<TetrahedronIds>& tetrahedra)
+{
+  std::vector<std::size_t> parents(tetrahedra.size());
+  std::iota(parents.begin(), parents.end(), 0);
+  const auto getRoot = [&parents](std::size_t i)
+  {
+    while (parents[i] != i)
+    {
+      i = parents[i] = parents[parents[i]];
+    }
+    return i;
+  };
+  std::map<TriangleIds, std::size_t> open;
+  for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+  {
+    const TetrahedronIds& ids = tetrahedra[t];
+    for (int i = 0; i < 4; ++i)
+    {
+      TriangleIds facet = GetFacet(ids, i);
+      std::sort(facet.begin(), facet.end());
+      const auto [other, isNew] = open.insert({ facet, t });
+      if (!isNew &&
+        std::all_of(tetrahedra[other->second].begin(), tetrahedra[other->second].end(),
+          [&](Id id)
+          {
+            return InSphere(points[ids[0]], points[ids[1]], points[ids[2]], points[ids[3]],
+                     points[id]) == 0;
+          }))
+      {
+        parents[getRoot(t)] = getRoot(other->second);
+      }
+    }
+  }
+  std::map<std::size_t, std::set<Id>> cells;
+  for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+  {
+    cells[getRoot(t)].insert(tetrahedra[t].begin(), tetrahedra[t].end());
+  }
+  std::set<std::vector<Id>> result;
+  for (const auto& [root, vertices] : cells)
+  {
+    result.insert({ vertices.begin(), vertices.end() });
+  }
+  return result;
+}
+
 TEST(PointsOnly, EqualsCgal)
 {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -382,40 +529,64 @@ TEST(PointsOnly, EqualsCgal)
   using Data =
     CGAL::Triangulation_data_structure_3<Vertex, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
   using Triangulation = CGAL::Delaunay_triangulation_3<Kernel, Data>;
-  Random random(11);
-  for (int kind = 0; kind < 3; ++kind)
+  // In general position the tetrahedra are equal, of degenerate sets the cells.
+  for (const std::string kind : { "random", "graded", "sphere", "grid", "snapped", "rotated grid",
+         "prisms", "sphere of integers" })
   {
+    Random random(11);
     PointSet points;
-    std::vector<std::pair<Kernel::Point_3, Id>> others;
-    for (Id i = 0; i < 5000; ++i)
+    if (kind == "grid" || kind == "rotated grid")
+    {
+      points = MakeGrid(15, 0.1);
+      for (Vec3& p : points)
+      {
+        p = kind == "grid" ? p : Rotate(p, (1.0 / 3.0) * Vec3{ 1.0, 2.0, 2.0 }, 0.3);
+      }
+      random.Shuffle(points);
+    }
+    for (int i = 0; i < 5000 && points.size() < 3000; ++i)
     {
       Vec3 p = random.GetPoint();
-      p = kind == 1 ? std::pow(1000.0, p.X) * p : p;
+      p = kind == "graded" ? std::pow(1000.0, p.X) * p : p;
       // On a sphere up to rounding no five are cospherical, most likely.
-      p = kind == 2 && i < 1500 ? random.GetDirection() : p;
-      points.push_back(p);
-      others.emplace_back(Kernel::Point_3(p.X, p.Y, p.Z), i);
+      p = kind == "sphere" && i < 1500 ? random.GetDirection() : p;
+      if (kind == "snapped" || kind == "sphere of integers")
+      {
+        p = { std::floor(16.0 * p.X), std::floor(16.0 * p.Y), std::floor(16.0 * p.Z) };
+      }
+      if (kind == "prisms")
+      {
+        const double angle = 0.3 * random.GetInteger(20);
+        p = { std::cos(angle), std::sin(angle), 0.25 * random.GetInteger(40) };
+      }
+      const double square = SquaredNorm(p - Vec3{ 7.0, 7.0, 7.0 });
+      if ((kind != "sphere of integers" || square == 41.0 || square == 49.0) &&
+        std::find(points.begin(), points.end(), p) == points.end())
+      {
+        points.push_back(p);
+      }
+    }
+    std::vector<std::pair<Kernel::Point_3, Id>> others;
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      others.emplace_back(
+        Kernel::Point_3(points[i].X, points[i].Y, points[i].Z), static_cast<Id>(i));
     }
     AdvancingFrontTetrahedralizerOutput output;
     ASSERT_TRUE(MeshPointSet(points, output).IsOk());
     const Triangulation triangulation(others.begin(), others.end());
-    std::set<TetrahedronIds> expected;
+    std::vector<TetrahedronIds> expected;
     for (auto cell = triangulation.finite_cells_begin(); cell != triangulation.finite_cells_end();
          ++cell)
     {
-      TetrahedronIds ids{ cell->vertex(0)->info(), cell->vertex(1)->info(), cell->vertex(2)->info(),
-        cell->vertex(3)->info() };
-      std::sort(ids.begin(), ids.end());
-      expected.insert(ids);
+      expected.push_back({ cell->vertex(0)->info(), cell->vertex(1)->info(),
+        cell->vertex(2)->info(), cell->vertex(3)->info() });
     }
-    std::set<TetrahedronIds> found;
-    for (TetrahedronIds ids : output.Mesh.Tetrahedra)
-    {
-      std::sort(ids.begin(), ids.end());
-      found.insert(ids);
-    }
-    EXPECT_EQ(output.Report.CosphericalCells, 0);
-    EXPECT_TRUE(found == expected) << "kind " << kind;
+    const std::set<std::vector<Id>> cells = GetCells(points, output.Mesh.Tetrahedra);
+    EXPECT_TRUE(cells == GetCells(points, expected)) << kind;
+    const bool isDegenerate =
+      kind == "grid" || kind == "snapped" || kind == "prisms" || kind == "sphere of integers";
+    EXPECT_EQ(cells.size() < output.Mesh.Tetrahedra.size(), isDegenerate) << kind;
   }
 }
 #endif
@@ -617,13 +788,19 @@ TEST(AdvancingFront, StopsAtSnapshotsAndAborts)
     EXPECT_FALSE(part.Front.empty());
     checkPartial(part);
   }
-  int calls = 0;
-  const ExecutionContext context(nullptr, [&calls]() { return ++calls > 3; });
-  AdvancingFrontTetrahedralizerOutput part;
-  ASSERT_TRUE(
-    TetrahedralizeByAdvancingFront({ &surface, &points, nullptr }, {}, context, part).IsAborted());
-  EXPECT_FALSE(part.Mesh.Tetrahedra.empty());
-  checkPartial(part);
+  // Once while the points are tetrahedralized, once when the front advances.
+  for (const std::string activity : { "Tetrahedralizing the points", "Advancing the front" })
+  {
+    int calls = 0;
+    const ExecutionContext context([&](double, const char* text)
+      { calls += activity == text ? 1 : 0; },
+      [&calls]() { return calls > 3; });
+    AdvancingFrontTetrahedralizerOutput part;
+    ASSERT_TRUE(TetrahedralizeByAdvancingFront({ &surface, &points, nullptr }, {}, context, part)
+                  .IsAborted());
+    EXPECT_EQ(part.Mesh.Tetrahedra.empty(), activity != "Advancing the front");
+    checkPartial(part);
+  }
 }
 
 TEST(AdvancingFront, NamesContradictingLabels)

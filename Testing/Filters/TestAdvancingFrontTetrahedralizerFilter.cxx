@@ -98,9 +98,8 @@ TEST(AdvancingFrontTetrahedralizerFilter, MeshesACube)
   Pipeline run(MakeCube());
   run.Filter->Update();
   EXPECT_EQ(run.Recorder->Errors + run.Recorder->Warnings, "");
-  // One cospherical cell of eight points.
-  EXPECT_EQ(run.Filter->GetNumberOfCosphericalCells(), 1);
-  EXPECT_EQ(run.Filter->GetNumberOfPointsOfLargestCell(), 8);
+  // One cospherical cell of eight points: the faces without the lowest one, two triangles each.
+  EXPECT_EQ(run.GetMesh()->GetNumberOfCells(), 6);
   EXPECT_EQ(run.Filter->GetNumberOfRegions(), 1);
   EXPECT_EQ(run.GetMesh()->GetNumberOfPoints(), 8);
   EXPECT_NEAR(GetVolume(run.GetMesh(), 0), 1.0, 1e-14);
@@ -289,6 +288,27 @@ TEST(AdvancingFrontTetrahedralizerFilter, RefusesBadInput)
   ExpectFailure(boxes.Filter, { "vtkDelaunaySurfaceRefiner", "(2 in all)" });
 }
 
+TEST(AdvancingFrontTetrahedralizerFilter, MeshesPointsOfAnyPointSet)
+{
+  // The points of a grid of unit cubes; its cells do not matter.
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> corners;
+  for (int i = 0; i < 27; ++i)
+  {
+    corners->InsertNextPoint(i % 3, i / 3 % 3, i / 9);
+  }
+  grid->SetPoints(corners);
+  vtkNew<vtkAdvancingFrontTetrahedralizer> filter;
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->SetInputData(grid);
+  filter->CloseOpenBoundaryOn();
+  filter->Update();
+  EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+  EXPECT_EQ(filter->GetOutput()->GetNumberOfCells(), 8 * 6);
+  EXPECT_NEAR(GetVolume(filter->GetOutput(), 0), 8.0, 1e-14);
+}
+
 TEST(AdvancingFrontTetrahedralizerFilter, ReportsProgressAndKeepsThePartialMeshOfAnAbort)
 {
   vtkNew<vtkSphereSource> sphere;
@@ -309,7 +329,7 @@ TEST(AdvancingFrontTetrahedralizerFilter, ReportsProgressAndKeepsThePartialMeshO
   const vtkIdType all = run.GetMesh()->GetNumberOfCells();
   const double volume = GetVolume(run.GetMesh());
 
-  run.Recorder->AbortAt = 0.5;
+  run.Recorder->AbortAt = 0.8;
   run.Filter->Modified();
   run.Filter->Update();
   EXPECT_EQ(run.Recorder->Errors, "");

@@ -1,0 +1,941 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DelaunayTetrahedralization.h"
+
+#include "Predicates.h"
+#include "TetMesh.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <thread>
+
+namespace cdm
+{
+namespace
+{
+// Unit roundoffs of double and float.
+constexpr double Epsilon = std::numeric_limits<double>::epsilon() / 2.0;
+constexpr double FloatEpsilon = std::numeric_limits<float>::epsilon() / 2.0;
+/** Bounds below this may have lost digits to underflow. */
+constexpr double Underflow = 1e-280;
+
+/** Rounds of fewer vertices are inserted by one thread. */
+constexpr std::size_t SmallRound = 8192;
+/** The first round has about so many vertices, each of the others eight times more. */
+constexpr Id FirstRound = 100;
+/** How often the context is asked, in vertices. */
+constexpr std::size_t ReportInterval = 4096;
+/** Facet ids of 4 * tetrahedron + i have to fit into an Id. */
+constexpr std::size_t MaximumTetrahedra = std::size_t(1) << 29;
+
+/**
+ * The circumsphere of a tetrahedron in single precision: its center, from the last vertex, and a
+ * bound of the error of the power of a point, per distance from that vertex. A tolerance of infinity
+ * decides nothing.
+ */
+struct RoughSphere
+{
+  float X;
+  float Y;
+  float Z;
+  float Tolerance;
+};
+
+constexpr RoughSphere NoSphere{ 0.0f, 0.0f, 0.0f, std::numeric_limits<float>::infinity() };
+
+inline double GetMaximum(double a, double b, double c)
+{
+  return std::max(std::max(a, b), c);
+}
+
+/** A vertex relative to the last one of its tetrahedra. */
+struct RelativeVertex
+{
+  Id Vertex;
+  Vec3 Difference;
+  double Square;
+};
+
+/** From three vertices relative to the last one; size bounds the magnitude of their coordinates. */
+inline RoughSphere MakeRoughSphere(
+  const RelativeVertex& a, const RelativeVertex& b, const RelativeVertex& c, double size)
+{
+  const Vec3 bc = Cross(b.Difference, c.Difference);
+  const Vec3 ca = Cross(c.Difference, a.Difference);
+  const Vec3 ab = Cross(a.Difference, b.Difference);
+  const double inverse = 0.5 / Dot(a.Difference, bc);
+  const Vec3 center = inverse * (a.Square * bc + b.Square * ca + c.Square * ab);
+  // The numerators are sums of 18 products of at most size^4 and the determinant is one of 6
+  // products of at most size^3: each is off by less than 16 roundings of that.
+  const double offset = GetMaximum(std::abs(center.X), std::abs(center.Y), std::abs(center.Z));
+  const double error = 512.0 * Epsilon * size * size * size * (size + offset) * std::abs(inverse);
+  const double tolerance = 2.05 * (1.01 * FloatEpsilon * offset + error);
+  // Not if an error in the last bits of a float, or of the double, could be larger than that.
+  return tolerance > 1e-30 && offset < 1e30 && error < 1e-3 * offset
+    ? RoughSphere{ static_cast<float>(center.X), static_cast<float>(center.Y),
+        static_cast<float>(center.Z), static_cast<float>(tolerance) }
+    : NoSphere;
+}
+
+class Builder
+{
+public:
+  Builder(const std::vector<Vec3>& points, const std::vector<Id>& numbers,
+    const ExecutionContext& context, DelaunayTetrahedralization& output)
+    : Points(points.data()), Numbers(numbers.data()), Infinite(static_cast<Id>(points.size())),
+      Context(context), Output(output)
+  {
+  }
+
+  Status Run(int numberOfThreads);
+
+private:
+  /** A facet of the hole, counter-clockwise seen from within it. */
+  struct HoleFacet
+  {
+    Id A;
+    Id B;
+    Id C;
+    /** The facet id beyond; then the new tetrahedron. */
+    Id Outer;
+  };
+  /** What a thread has for itself: a part of the curve, and room for tetrahedra. */
+  struct Worker
+  {
+    /** Owns the vertices from First on, Count of them, around the end of the curve. */
+    Id First = 0;
+    Id Count = 0;
+    std::vector<Id> Todo;
+    std::vector<Id> Postponed;
+    /** Places for new tetrahedra; all others are taken from the end of the arrays. */
+    std::vector<Id> Free;
+    Id Last = 0;
+    bool HasTies = false;
+
+    /** Tetrahedra of the hole and its facets: the first so many of the arrays. */
+    std::vector<Id> Cavity = std::vector<Id>(64);
+    std::vector<HoleFacet> Facets = std::vector<HoleFacet>(64);
+    std::size_t NumberOfRemoved = 0;
+    std::size_t NumberOfFacets = 0;
+    std::vector<RelativeVertex> Vertices;
+    std::vector<Id> Table;
+  };
+  /** State of a tetrahedron during an insertion. */
+  enum Mark : unsigned char
+  {
+    Unknown,
+    Removed,
+    Stays
+  };
+
+  Status FindFirst(TetrahedronIds& ids) const;
+  void MakeFirst(const TetrahedronIds& ids);
+  Status InsertRound(const std::vector<Id>& vertices, int numberOfThreads);
+  template <bool IsShared>
+  bool Work(Worker& worker, const std::function<bool(std::size_t)>& mayContinue);
+  template <bool IsShared>
+  bool Locate(Id vertex, Worker& worker, Id& tetrahedron) const;
+  template <bool IsShared>
+  bool FindHole(Id vertex, Id first, Worker& worker);
+  template <bool IsShared>
+  void ForgetHole(Worker& worker);
+  template <bool IsShared>
+  bool FillHole(Id vertex, Worker& worker);
+  void AddRoom(std::size_t room, Worker& worker);
+  void ConnectByTable(Worker& worker);
+  void ConnectBySorting(Worker& worker);
+  bool IsOwned(Id tetrahedron, const Worker& worker) const;
+  bool IsInConflict(Id tetrahedron, Id vertex, Worker& worker) const;
+  bool IsInConflictExactly(Id tetrahedron, Id vertex, Worker& worker) const;
+  int GetSide(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
+  int GetPosition(const TetrahedronIds& ids, Id vertex, Worker& worker) const;
+  int GetPulledPosition(const TetrahedronIds& ids, Id vertex) const;
+  void SetUnit();
+
+  const Vec3* const Points;
+  const Id* const Numbers;
+  /** The vertex at infinity, which is the number of points. */
+  const Id Infinite;
+  const ExecutionContext& Context;
+  DelaunayTetrahedralization& Output;
+
+  /** Determinants whose error bound is below these have no error. */
+  double ExactSideBound = 0.0;
+  double ExactPositionBound = 0.0;
+  std::vector<RoughSphere> Spheres;
+  std::vector<unsigned char> Marks;
+  /** Where a vertex may stand among those of the hole. */
+  std::vector<Id> Places;
+  std::vector<Worker> Workers;
+};
+
+/**
+ * Points on a lattice with a spacing that is a multiple of a power of two: products of their small
+ * differences are exact in double precision, also where the determinant vanishes.
+ */
+void Builder::SetUnit()
+{
+  int lowest = 4096;
+  for (Id i = 0; i < this->Infinite; ++i)
+  {
+    for (const double x : { this->Points[i].X, this->Points[i].Y, this->Points[i].Z })
+    {
+      if (x == 0.0)
+      {
+        continue;
+      }
+      int exponent = 0;
+      // The mantissa as an integer of 53 bits.
+      const std::int64_t mantissa =
+        static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 53));
+      int zeros = 0;
+      while (((mantissa >> zeros) & 1) == 0)
+      {
+        ++zeros;
+      }
+      lowest = std::min(lowest, exponent - 53 + zeros);
+    }
+    if (lowest < -150)
+    {
+      return;
+    }
+  }
+  if (lowest < 100)
+  {
+    // The bounds are more than eight roundings of sums that 53 bits can hold.
+    this->ExactSideBound = std::ldexp(8.0, 3 * lowest);
+    this->ExactPositionBound = std::ldexp(8.0, 5 * lowest);
+  }
+}
+
+int Builder::GetSide(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const
+{
+  const Vec3 p = a - d;
+  const Vec3 q = b - d;
+  const Vec3 r = c - d;
+  const double determinant =
+    p.X * (q.Y * r.Z - q.Z * r.Y) + p.Y * (q.Z * r.X - q.X * r.Z) + p.Z * (q.X * r.Y - q.Y * r.X);
+  const double x = GetMaximum(std::abs(p.X), std::abs(q.X), std::abs(r.X));
+  const double y = GetMaximum(std::abs(p.Y), std::abs(q.Y), std::abs(r.Y));
+  const double z = GetMaximum(std::abs(p.Z), std::abs(q.Z), std::abs(r.Z));
+  // Six products, each off by less than eight roundings.
+  const double bound = 48.0 * Epsilon * x * y * z;
+  if (bound > Underflow && std::abs(determinant) > bound)
+  {
+    return determinant > 0.0 ? -1 : 1;
+  }
+  return bound < this->ExactSideBound ? (determinant > 0.0      ? -1
+                                            : determinant < 0.0 ? 1
+                                                                : 0)
+                                      : ExactOrientation(a, b, c, d);
+}
+
+int Builder::GetPosition(const TetrahedronIds& ids, Id vertex, Worker& worker) const
+{
+  const Vec3& a = this->Points[ids[0]];
+  const Vec3& b = this->Points[ids[1]];
+  const Vec3& c = this->Points[ids[2]];
+  const Vec3& d = this->Points[ids[3]];
+  const Vec3& e = this->Points[vertex];
+  const Vec3 p = a - e;
+  const Vec3 q = b - e;
+  const Vec3 r = c - e;
+  const Vec3 s = d - e;
+  const double pq = p.X * q.Y - q.X * p.Y;
+  const double qr = q.X * r.Y - r.X * q.Y;
+  const double rs = r.X * s.Y - s.X * r.Y;
+  const double sp = s.X * p.Y - p.X * s.Y;
+  const double pr = p.X * r.Y - r.X * p.Y;
+  const double qs = q.X * s.Y - s.X * q.Y;
+  const double pqr = p.Z * qr - q.Z * pr + r.Z * pq;
+  const double qrs = q.Z * rs - r.Z * qs + s.Z * qr;
+  const double rsp = r.Z * sp + s.Z * pr + p.Z * rs;
+  const double spq = s.Z * pq + p.Z * qs + q.Z * sp;
+  const double pp = SquaredNorm(p);
+  const double qq = SquaredNorm(q);
+  const double rr = SquaredNorm(r);
+  const double ss = SquaredNorm(s);
+  const double determinant = (rr * spq - ss * pqr) + (pp * qrs - qq * rsp);
+  // The permanent has 24 products; see InSphere().
+  const double x = std::max(GetMaximum(std::abs(p.X), std::abs(q.X), std::abs(r.X)), std::abs(s.X));
+  const double y = std::max(GetMaximum(std::abs(p.Y), std::abs(q.Y), std::abs(r.Y)), std::abs(s.Y));
+  const double z = std::max(GetMaximum(std::abs(p.Z), std::abs(q.Z), std::abs(r.Z)), std::abs(s.Z));
+  const double permanent = 24.0 * x * y * z * std::max(GetMaximum(pp, qq, rr), ss);
+  const double bound = 17.0 * Epsilon * permanent;
+  if (bound > Underflow && std::abs(determinant) > bound)
+  {
+    return determinant > 0.0 ? 1 : -1;
+  }
+  const int sign = bound < this->ExactPositionBound ? (determinant > 0.0      ? 1
+                                                          : determinant < 0.0 ? -1
+                                                                              : 0)
+                                                    : ExactInSphere(a, b, c, d, e);
+  if (sign != 0)
+  {
+    return sign;
+  }
+  worker.HasTies = true;
+  return this->GetPulledPosition(ids, vertex);
+}
+
+int Builder::GetPulledPosition(const TetrahedronIds& ids, Id vertex) const
+{
+  // What is pulled most decides: the vertex comes to lie within; another one leaves the vertex
+  // outside where the tetrahedron is, and inside on the other side of its other three. If these are
+  // coplanar with the vertex the next one decides.
+  const Id own = this->Numbers[vertex];
+  Id limit = std::numeric_limits<Id>::min();
+  for (;;)
+  {
+    Id lowest = own;
+    int place = -1;
+    for (int i = 0; i < 4; ++i)
+    {
+      const Id number = this->Numbers[ids[i]];
+      if (number > limit && number < lowest)
+      {
+        lowest = number;
+        place = i;
+      }
+    }
+    if (place < 0)
+    {
+      return 1;
+    }
+    TetrahedronIds other = ids;
+    other[place] = vertex;
+    const int side = this->GetSide(this->Points[other[0]], this->Points[other[1]],
+      this->Points[other[2]], this->Points[other[3]]);
+    if (side != 0)
+    {
+      return -side;
+    }
+    limit = lowest;
+  }
+}
+
+bool Builder::IsInConflictExactly(Id tetrahedron, Id vertex, Worker& worker) const
+{
+  const TetrahedronIds& ids = this->Output.Tetrahedra[tetrahedron];
+  for (int i = 0; i < 4; ++i)
+  {
+    if (ids[i] != this->Infinite)
+    {
+      continue;
+    }
+    const int* const facet = FacetVertices[i];
+    const int side = this->GetSide(this->Points[ids[facet[0]]], this->Points[ids[facet[1]]],
+      this->Points[ids[facet[2]]], this->Points[vertex]);
+    // In the plane the circle decides, in which the plane cuts the sphere of the neighbor.
+    return side != 0
+      ? side < 0
+      : this->GetPosition(
+          this->Output.Tetrahedra[this->Output.Neighbors[tetrahedron][i] / 4], vertex, worker) > 0;
+  }
+  return this->GetPosition(ids, vertex, worker) > 0;
+}
+
+inline bool Builder::IsInConflict(Id tetrahedron, Id vertex, Worker& worker) const
+{
+  const RoughSphere& sphere = this->Spheres[tetrahedron];
+  if (sphere.Tolerance < std::numeric_limits<float>::infinity())
+  {
+    const Vec3 d = this->Points[vertex] - this->Points[this->Output.Tetrahedra[tetrahedron][3]];
+    const double power =
+      d.X * (d.X - 2.0 * sphere.X) + d.Y * (d.Y - 2.0 * sphere.Y) + d.Z * (d.Z - 2.0 * sphere.Z);
+    const double bound =
+      sphere.Tolerance * (std::abs(d.X) + std::abs(d.Y) + std::abs(d.Z)) + Underflow;
+    if (std::abs(power) > bound)
+    {
+      return power < 0.0;
+    }
+  }
+  return this->IsInConflictExactly(tetrahedron, vertex, worker);
+}
+
+bool Builder::IsOwned(Id tetrahedron, const Worker& worker) const
+{
+  for (Id vertex : this->Output.Tetrahedra[tetrahedron])
+  {
+    const Id place = vertex - worker.First;
+    if (vertex != this->Infinite && (place >= 0 ? place : place + this->Infinite) >= worker.Count)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/** The tetrahedron that holds the vertex, or one beyond the hull whose facet it sees. */
+template <bool IsShared>
+bool Builder::Locate(Id vertex, Worker& worker, Id& tetrahedron) const
+{
+  const Vec3 p = this->Points[vertex];
+  Id t = worker.Last;
+  int from = -1;
+  for (int i = 0; i < 4; ++i)
+  {
+    if (this->Output.Tetrahedra[t][i] == this->Infinite)
+    {
+      t = this->Output.Neighbors[t][i] / 4;
+      break;
+    }
+  }
+  for (;;)
+  {
+    if (IsShared && !this->IsOwned(t, worker))
+    {
+      return false;
+    }
+    const TetrahedronIds& ids = this->Output.Tetrahedra[t];
+    int next = -1;
+    for (int i = 0; i < 4 && next < 0; ++i)
+    {
+      const int* const facet = FacetVertices[i];
+      if (i != from &&
+        this->GetSide(this->Points[ids[facet[0]]], this->Points[ids[facet[1]]],
+          this->Points[ids[facet[2]]], p) > 0)
+      {
+        next = i;
+      }
+    }
+    if (next < 0)
+    {
+      tetrahedron = t;
+      return true;
+    }
+    const Id facet = this->Output.Neighbors[t][next];
+    t = facet / 4;
+    from = facet % 4;
+    if (this->Output.Tetrahedra[t][from] == this->Infinite)
+    {
+      tetrahedron = t;
+      return !IsShared || this->IsOwned(t, worker);
+    }
+  }
+}
+
+template <bool IsShared>
+bool Builder::FindHole(Id vertex, Id first, Worker& worker)
+{
+  // What is found is written in any case, and counted if it belongs there: whether it does is a
+  // matter of chance, and a wrongly predicted branch costs more than the rest.
+  std::size_t removed = 1;
+  std::size_t facets = 0;
+  bool isWithin = true;
+  worker.Cavity[0] = first;
+  this->Marks[first] = Removed;
+  for (std::size_t k = 0; k < removed && isWithin; ++k)
+  {
+    if (worker.Cavity.size() < removed + 4)
+    {
+      worker.Cavity.resize(2 * removed);
+    }
+    if (worker.Facets.size() < facets + 4)
+    {
+      worker.Facets.resize(2 * facets);
+    }
+    const TetrahedronIds& ids = this->Output.Tetrahedra[worker.Cavity[k]];
+    const TetrahedronIds& neighbors = this->Output.Neighbors[worker.Cavity[k]];
+    for (int i = 0; i < 4; ++i)
+    {
+      const Id outer = neighbors[i] / 4;
+      unsigned char mark = this->Marks[outer];
+      // Tetrahedra at the border belong to nobody: they are looked at, and never marked.
+      if (IsShared && !this->IsOwned(outer, worker))
+      {
+        mark = Stays;
+        isWithin = isWithin && this->Spheres[outer].Tolerance < NoSphere.Tolerance &&
+          !this->IsInConflict(outer, vertex, worker);
+      }
+      else if (mark == Unknown)
+      {
+        mark = this->IsInConflict(outer, vertex, worker) ? Removed : Stays;
+        this->Marks[outer] = mark;
+        worker.Cavity[removed] = outer;
+        removed += mark == Removed ? 1 : 0;
+      }
+      const int* const facet = FacetVertices[i];
+      worker.Facets[facets] = { ids[facet[0]], ids[facet[2]], ids[facet[1]], neighbors[i] };
+      facets += mark == Stays ? 1 : 0;
+    }
+  }
+  worker.NumberOfRemoved = removed;
+  worker.NumberOfFacets = facets;
+  return isWithin;
+}
+
+template <bool IsShared>
+void Builder::ForgetHole(Worker& worker)
+{
+  for (std::size_t k = 0; k < worker.NumberOfRemoved; ++k)
+  {
+    this->Marks[worker.Cavity[k]] = Unknown;
+  }
+  for (std::size_t k = 0; k < worker.NumberOfFacets; ++k)
+  {
+    const Id outer = worker.Facets[k].Outer / 4;
+    if (!IsShared || this->IsOwned(outer, worker))
+    {
+      this->Marks[outer] = Unknown;
+    }
+  }
+}
+
+template <bool IsShared>
+bool Builder::FillHole(Id vertex, Worker& worker)
+{
+  std::vector<TetrahedronIds>& tetrahedra = this->Output.Tetrahedra;
+  std::vector<TetrahedronIds>& neighbors = this->Output.Neighbors;
+  const std::size_t count = worker.NumberOfFacets;
+  const std::size_t removed = worker.NumberOfRemoved;
+  if (worker.Cavity.size() < count)
+  {
+    worker.Cavity.resize(2 * count);
+  }
+  while (removed + worker.Free.size() < count)
+  {
+    if (IsShared)
+    {
+      return false;
+    }
+    this->AddRoom(std::max<std::size_t>(1024, tetrahedra.size() / 32), worker);
+  }
+  for (std::size_t k = removed; k < count; ++k)
+  {
+    worker.Cavity[k] = worker.Free.back();
+    worker.Free.pop_back();
+  }
+  for (std::size_t k = count; k < removed; ++k)
+  {
+    tetrahedra[worker.Cavity[k]][0] = NoId;
+    worker.Free.push_back(worker.Cavity[k]);
+  }
+
+  // Number the vertices of the hole. The one at infinity belongs to all threads: it is the last.
+  const Vec3 origin = this->Points[vertex];
+  Id vertexCount = 0;
+  double size = 0.0;
+  bool isOnHull = false;
+  if (worker.Vertices.size() < count / 2 + 3)
+  {
+    worker.Vertices.resize(count + 3);
+  }
+  const auto getPlace = [&](Id v)
+  {
+    if (v == this->Infinite)
+    {
+      isOnHull = true;
+      return static_cast<Id>(count / 2 + 2);
+    }
+    const Id place = this->Places[v];
+    if (place < vertexCount && worker.Vertices[place].Vertex == v)
+    {
+      return place;
+    }
+    this->Places[v] = vertexCount;
+    const Vec3 d = this->Points[v] - origin;
+    size = std::max(size, GetMaximum(std::abs(d.X), std::abs(d.Y), std::abs(d.Z)));
+    worker.Vertices[vertexCount] = { v, d, SquaredNorm(d) };
+    return vertexCount++;
+  };
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    HoleFacet& facet = worker.Facets[k];
+    const Id t = worker.Cavity[k];
+    tetrahedra[t] = { facet.A, facet.B, facet.C, vertex };
+    neighbors[t][3] = facet.Outer;
+    const Id outer = facet.Outer / 4;
+    neighbors[outer][facet.Outer % 4] = 4 * t + 3;
+    // What is marked is owned.
+    if (!IsShared || this->Marks[outer] != Unknown)
+    {
+      this->Marks[outer] = Unknown;
+    }
+    this->Marks[t] = Unknown;
+    facet = { getPlace(facet.A), getPlace(facet.B), getPlace(facet.C), t };
+  }
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    const HoleFacet& facet = worker.Facets[k];
+    const Id infinite = static_cast<Id>(count / 2 + 2);
+    this->Spheres[facet.Outer] =
+      isOnHull && (facet.A == infinite || facet.B == infinite || facet.C == infinite)
+      ? NoSphere
+      : MakeRoughSphere(
+          worker.Vertices[facet.A], worker.Vertices[facet.B], worker.Vertices[facet.C], size);
+  }
+  constexpr std::size_t LargestTable = 1024;
+  if (count / 2 + 3 <= LargestTable)
+  {
+    this->ConnectByTable(worker);
+  }
+  else
+  {
+    this->ConnectBySorting(worker);
+  }
+  worker.Last = worker.Facets[count - 1].Outer;
+  return true;
+}
+
+void Builder::AddRoom(std::size_t room, Worker& worker)
+{
+  const std::size_t old = this->Output.Tetrahedra.size();
+  const std::size_t size = old + room;
+  this->Output.Tetrahedra.resize(size, { NoId, NoId, NoId, NoId });
+  this->Output.Neighbors.resize(size);
+  this->Spheres.resize(size);
+  this->Marks.resize(size, Unknown);
+  for (std::size_t t = size; t-- > old;)
+  {
+    worker.Free.push_back(static_cast<Id>(t));
+  }
+}
+
+/** New tetrahedra meet at the edges of the hole, each of which two facets run along both ways. */
+void Builder::ConnectByTable(Worker& worker)
+{
+  const std::size_t count = worker.NumberOfFacets;
+  const std::size_t width = count / 2 + 3;
+  if (worker.Table.size() < width * width)
+  {
+    worker.Table.resize(2 * width * width);
+  }
+  Id* const table = worker.Table.data();
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    const HoleFacet& facet = worker.Facets[k];
+    const Id t = facet.Outer;
+    table[facet.B * width + facet.C] = 4 * t;
+    table[facet.C * width + facet.A] = 4 * t + 1;
+    table[facet.A * width + facet.B] = 4 * t + 2;
+  }
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    const HoleFacet& facet = worker.Facets[k];
+    TetrahedronIds& neighbors = this->Output.Neighbors[facet.Outer];
+    neighbors[0] = table[facet.C * width + facet.B];
+    neighbors[1] = table[facet.A * width + facet.C];
+    neighbors[2] = table[facet.B * width + facet.A];
+  }
+}
+
+void Builder::ConnectBySorting(Worker& worker)
+{
+  std::vector<std::pair<EdgeIds, Id>> edges;
+  edges.reserve(3 * worker.NumberOfFacets);
+  for (std::size_t k = 0; k < worker.NumberOfFacets; ++k)
+  {
+    const HoleFacet& facet = worker.Facets[k];
+    const Id ends[4] = { facet.B, facet.C, facet.A, facet.B };
+    for (int i = 0; i < 3; ++i)
+    {
+      edges.push_back({ { std::min(ends[i], ends[i + 1]), std::max(ends[i], ends[i + 1]) },
+        4 * facet.Outer + i });
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i + 1 < edges.size(); i += 2)
+  {
+    const Id one = edges[i].second;
+    const Id other = edges[i + 1].second;
+    this->Output.Neighbors[one / 4][one % 4] = other;
+    this->Output.Neighbors[other / 4][other % 4] = one;
+  }
+}
+
+template <bool IsShared>
+bool Builder::Work(Worker& worker, const std::function<bool(std::size_t)>& mayContinue)
+{
+  for (std::size_t i = 0; i < worker.Todo.size(); ++i)
+  {
+    if (i % ReportInterval == 0 && !mayContinue(i))
+    {
+      return false;
+    }
+    const Id vertex = worker.Todo[i];
+    Id first = NoId;
+    bool isDone = this->Locate<IsShared>(vertex, worker, first);
+    if (isDone)
+    {
+      isDone =
+        this->FindHole<IsShared>(vertex, first, worker) && this->FillHole<IsShared>(vertex, worker);
+      if (!isDone)
+      {
+        this->ForgetHole<IsShared>(worker);
+      }
+    }
+    if (!isDone)
+    {
+      worker.Postponed.push_back(vertex);
+    }
+  }
+  return true;
+}
+
+Status Builder::FindFirst(TetrahedronIds& ids) const
+{
+  const Id count = this->Infinite;
+  if (count < 4)
+  {
+    return Status::InvalidInput("A mesh needs four points that do not coincide.");
+  }
+  const Vec3* const p = this->Points;
+  ids = { 0, 1, 2, 2 };
+  while (ids[2] < count && AreCollinear(p[0], p[1], p[ids[2]]))
+  {
+    ++ids[2];
+  }
+  if (ids[2] == count)
+  {
+    return Status::InvalidInput("All points lie on one line: they have no tetrahedra.");
+  }
+  while (ids[3] < count && Orientation(p[0], p[1], p[ids[2]], p[ids[3]]) == 0)
+  {
+    ++ids[3];
+  }
+  if (ids[3] == count)
+  {
+    return Status::InvalidInput("All points lie in one plane: they have no tetrahedra.");
+  }
+  if (Orientation(p[0], p[1], p[ids[2]], p[ids[3]]) < 0)
+  {
+    std::swap(ids[0], ids[1]);
+  }
+  return Status();
+}
+
+void Builder::MakeFirst(const TetrahedronIds& ids)
+{
+  // The tetrahedron and, beyond its facet i, number i + 1.
+  this->Output.Tetrahedra.push_back(ids);
+  this->Output.Neighbors.push_back({ 7, 11, 15, 19 });
+  this->Spheres.push_back(NoSphere);
+  for (Id i = 0; i < 4; ++i)
+  {
+    // Opposite to each of its vertices the facet meets the one that is opposite to that vertex.
+    const int* const facet = FacetVertices[i];
+    TetrahedronIds neighbors{ NoId, NoId, NoId, i };
+    for (int j = 0; j < 3; ++j)
+    {
+      const int* const other = FacetVertices[facet[j]];
+      neighbors[j] = static_cast<Id>(4 * (facet[j] + 1) + (std::find(other, other + 3, i) - other));
+    }
+    this->Output.Tetrahedra.push_back(
+      { ids[facet[0]], ids[facet[1]], ids[facet[2]], this->Infinite });
+    this->Output.Neighbors.push_back(neighbors);
+    this->Spheres.push_back(NoSphere);
+  }
+  this->Marks.assign(5, Unknown);
+}
+
+Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads)
+{
+  std::atomic<bool> isAborted{ false };
+  const double begin = static_cast<double>(this->Output.Tetrahedra.size()) / 6.8;
+  const auto report = [&](std::size_t done)
+  {
+    return this->Context.Continue(
+      std::min(0.99, (begin + static_cast<double>(done)) / this->Infinite),
+      "Tetrahedralizing the points");
+  };
+  std::vector<Id> left(vertices);
+  // Two cuts of the curve for the threads, then all of it for one.
+  for (int cut = 0; cut < 2 && numberOfThreads > 1 && left.size() >= SmallRound; ++cut)
+  {
+    const std::size_t count = static_cast<std::size_t>(numberOfThreads);
+    const Id part = this->Infinite / numberOfThreads + 1;
+    std::vector<Id> free;
+    free.swap(this->Workers[0].Free);
+    for (std::size_t w = 0; w < count; ++w)
+    {
+      Worker& worker = this->Workers[w];
+      worker.First = static_cast<Id>(w) * part + (cut == 1 ? part / 2 : 0);
+      worker.Count = std::min(part, this->Infinite - static_cast<Id>(w) * part);
+      worker.Todo.clear();
+      worker.Postponed.clear();
+    }
+    for (Id vertex : left)
+    {
+      const Id shifted = vertex - (cut == 1 ? part / 2 : 0);
+      const Id place = shifted < 0 ? shifted + this->Infinite : shifted;
+      this->Workers[place / part].Todo.push_back(vertex);
+    }
+    // Somewhere to start from: any tetrahedron of the part's own.
+    std::vector<char> hasStart(count, 0);
+    for (Id t = 0; t < static_cast<Id>(this->Output.Tetrahedra.size()); ++t)
+    {
+      const TetrahedronIds& ids = this->Output.Tetrahedra[t];
+      if (ids[0] == NoId || ids[0] == this->Infinite)
+      {
+        continue;
+      }
+      const Id shifted = ids[0] - (cut == 1 ? part / 2 : 0);
+      const Id w = (shifted < 0 ? shifted + this->Infinite : shifted) / part;
+      if (!hasStart[w] && this->IsOwned(t, this->Workers[w]))
+      {
+        hasStart[w] = 1;
+        this->Workers[w].Last = t;
+      }
+    }
+    for (std::size_t w = 0; w < count; ++w)
+    {
+      Worker& worker = this->Workers[w];
+      if (!hasStart[w])
+      {
+        worker.Postponed.swap(worker.Todo);
+        worker.Todo.clear();
+      }
+      const std::size_t room = 7 * worker.Todo.size() + worker.Todo.size() / 2;
+      while (worker.Free.size() < room && !free.empty())
+      {
+        worker.Free.push_back(free.back());
+        free.pop_back();
+      }
+      if (worker.Free.size() < room)
+      {
+        this->AddRoom(room - worker.Free.size(), worker);
+      }
+    }
+    std::vector<std::thread> threads;
+    for (std::size_t w = 1; w < count; ++w)
+    {
+      threads.emplace_back([this, w, &isAborted]()
+        { this->Work<true>(this->Workers[w], [&isAborted](std::size_t) { return !isAborted; }); });
+    }
+    this->Work<true>(this->Workers[0],
+      [&](std::size_t done)
+      {
+        isAborted = isAborted || !report(done * count);
+        return !isAborted;
+      });
+    for (std::thread& thread : threads)
+    {
+      thread.join();
+    }
+    if (isAborted)
+    {
+      return Status::Aborted();
+    }
+    left.clear();
+    for (std::size_t w = 0; w < count; ++w)
+    {
+      Worker& worker = this->Workers[w];
+      left.insert(left.end(), worker.Postponed.begin(), worker.Postponed.end());
+      free.insert(free.end(), worker.Free.begin(), worker.Free.end());
+      worker.Free.clear();
+    }
+    std::sort(left.begin(), left.end());
+    this->Workers[0].Free.swap(free);
+  }
+  Worker& worker = this->Workers[0];
+  worker.Todo.swap(left);
+  const bool isDone = this->Work<false>(worker, report);
+  return isDone ? Status() : Status::Aborted();
+}
+
+Status Builder::Run(int numberOfThreads)
+{
+  TetrahedronIds first;
+  Status status = this->FindFirst(first);
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  this->SetUnit();
+  const std::size_t expected = 7 * static_cast<std::size_t>(this->Infinite);
+  this->Output.Tetrahedra.reserve(expected);
+  this->Output.Neighbors.reserve(expected);
+  this->Spheres.reserve(expected);
+  this->Marks.reserve(expected);
+  this->Places.assign(static_cast<std::size_t>(this->Infinite) + 1, 0);
+  this->Workers.resize(static_cast<std::size_t>(std::max(1, numberOfThreads)));
+  this->MakeFirst(first);
+
+  int rounds = 0;
+  for (Id size = this->Infinite; size > FirstRound; size /= 8)
+  {
+    ++rounds;
+  }
+  std::vector<std::vector<Id>> vertices(static_cast<std::size_t>(rounds) + 1);
+  for (Id vertex = 0; vertex < this->Infinite; ++vertex)
+  {
+    if (std::find(first.begin(), first.end(), vertex) != first.end())
+    {
+      continue;
+    }
+    std::uint64_t hash = (static_cast<std::uint64_t>(vertex) + 1) * 0x9e3779b97f4a7c15ull;
+    hash = (hash ^ (hash >> 32)) * 0xd6e8feb86659fd93ull;
+    hash ^= hash >> 32;
+    int round = rounds;
+    while (round > 0 && (hash & 7) == 0)
+    {
+      --round;
+      hash >>= 3;
+    }
+    vertices[static_cast<std::size_t>(round)].push_back(vertex);
+  }
+  for (std::vector<Id>& round : vertices)
+  {
+    status = this->InsertRound(round, numberOfThreads);
+    if (!status.IsOk())
+    {
+      return status;
+    }
+    round = std::vector<Id>();
+  }
+  for (const Worker& worker : this->Workers)
+  {
+    this->Output.HasCosphericalPoints = this->Output.HasCosphericalPoints || worker.HasTies;
+  }
+  return status;
+}
+} // namespace
+
+Status BuildDelaunayTetrahedralization(const std::vector<Vec3>& points,
+  const std::vector<Id>& numbers, int numberOfThreads, const ExecutionContext& context,
+  DelaunayTetrahedralization& output)
+{
+  output = DelaunayTetrahedralization();
+  const Status status = Builder(points, numbers, context, output).Run(numberOfThreads);
+  if (!status.IsOk())
+  {
+    output = DelaunayTetrahedralization();
+  }
+  return status;
+}
+
+Id LocateInTetrahedralization(const std::vector<Vec3>& points,
+  const DelaunayTetrahedralization& tetrahedralization, const Vec3& position)
+{
+  const Id infinite = static_cast<Id>(points.size());
+  const auto isInfinite = [&](Id t)
+  {
+    const TetrahedronIds& ids = tetrahedralization.Tetrahedra[t];
+    return std::find(ids.begin(), ids.end(), infinite) != ids.end();
+  };
+  Id t = 0;
+  while (tetrahedralization.Tetrahedra[t][0] == NoId || isInfinite(t))
+  {
+    ++t;
+  }
+  // Delaunay tetrahedra cannot see each other in a circle: the walk ends.
+  for (int i = 0; i < 4; ++i)
+  {
+    const TriangleIds facet = GetFacet(tetrahedralization.Tetrahedra[t], i);
+    if (Orientation(points[facet[0]], points[facet[1]], points[facet[2]], position) > 0)
+    {
+      t = tetrahedralization.Neighbors[t][i] / 4;
+      if (isInfinite(t))
+      {
+        return NoId;
+      }
+      i = -1;
+    }
+  }
+  return t;
+}
+} // namespace cdm
