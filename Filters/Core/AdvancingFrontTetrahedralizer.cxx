@@ -6,9 +6,12 @@
 #include "SpatialSort.h"
 #include "SurfaceDelaunayTest.h"
 #include "SurfaceSides.h"
+#include "Threads.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
+#include <mutex>
 #include <numeric>
 #include <string>
 
@@ -115,6 +118,12 @@ private:
     std::rotate(points.begin(), std::min_element(points.begin(), points.end()), points.end());
     return points;
   }
+  /** work(begin, end) for parts of the numbers below size, on all threads. */
+  template <typename Work>
+  void ForAll(std::size_t size, const Work& work) const
+  {
+    ForParts(std::max(1, this->Options.NumberOfThreads), size, work);
+  }
   bool HasSurface() const { return this->NumberOfSurfaceTriangles > 0; }
   bool HasSeeds() const { return this->Input.Seeds != nullptr && !this->Input.Seeds->empty(); }
 
@@ -137,7 +146,7 @@ private:
   std::vector<Id> Order;
   std::vector<Vec3> VertexPoints;
   DelaunayTetrahedralization All;
-  std::vector<unsigned char> States;
+  RawVector<unsigned char> States;
   std::vector<Id> Regions;
 
   /** For each side of the surface: the facet of the tetrahedron there, or NoId. */
@@ -147,6 +156,8 @@ private:
   std::vector<Id> Front;
   Id NumberOfTetrahedra = 0;
   bool IsStopped = false;
+  /** All points are vertices of the mesh. */
+  bool IsWhole = false;
   /** Facets that close an open boundary. */
   std::vector<Id> HullFacets;
 };
@@ -204,7 +215,7 @@ Status AdvancingFront::CollectPoints()
   // among the mesh points. The lower number wins. Along the curve they follow each other.
   this->Order.resize(this->Points.size());
   std::iota(this->Order.begin(), this->Order.end(), 0);
-  SortAlongHilbertCurve(this->Points, this->Order);
+  SortAlongHilbertCurve(this->Points, this->Order, std::max(1, this->Options.NumberOfThreads));
   std::vector<Id> coincident;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < this->Order.size(); ++i)
@@ -417,11 +428,15 @@ Status AdvancingFront::TurnDiagonals(const std::vector<Id>& doubtful)
 
 Status AdvancingFront::TetrahedralizePoints()
 {
-  this->VertexPoints.reserve(this->Order.size());
-  for (Id point : this->Order)
-  {
-    this->VertexPoints.push_back(this->Points[point]);
-  }
+  this->VertexPoints.resize(this->Order.size());
+  this->ForAll(this->Order.size(),
+    [this](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t vertex = begin; vertex < end; ++vertex)
+      {
+        this->VertexPoints[vertex] = this->Points[this->Order[vertex]];
+      }
+    });
   const Status status = BuildDelaunayTetrahedralization(this->VertexPoints, this->Order,
     this->Options.NumberOfThreads, this->Context.Part(0.05, 0.6), this->All);
   if (!status.IsOk())
@@ -433,15 +448,18 @@ Status AdvancingFront::TetrahedralizePoints()
       : status;
   }
   const Id infinite = static_cast<Id>(this->Order.size());
-  this->States.assign(this->All.Tetrahedra.size(), Unreached);
-  for (std::size_t t = 0; t < this->States.size(); ++t)
-  {
-    const TetrahedronIds& ids = this->All.Tetrahedra[t];
-    if (ids[0] == infinite || ids[1] == infinite || ids[2] == infinite || ids[3] == infinite)
+  this->States.resize(this->All.Tetrahedra.size());
+  this->ForAll(this->States.size(),
+    [this, infinite](std::size_t begin, std::size_t end)
     {
-      this->States[t] = BeyondHull;
-    }
-  }
+      for (std::size_t t = begin; t < end; ++t)
+      {
+        const TetrahedronIds& ids = this->All.Tetrahedra[t];
+        const bool isBeyondHull =
+          (ids[0] == infinite) | (ids[1] == infinite) | (ids[2] == infinite) | (ids[3] == infinite);
+        this->States[t] = isBeyondHull ? BeyondHull : Unreached;
+      }
+    });
   return status;
 }
 
@@ -747,20 +765,31 @@ void AdvancingFront::TakeAll()
 {
   this->Regions.assign(this->States.size(), 0);
   const Id infinite = static_cast<Id>(this->Order.size());
-  for (std::size_t t = 0; t < this->States.size(); ++t)
-  {
-    const TetrahedronIds& ids = this->All.Tetrahedra[t];
-    if (this->States[t] == BeyondHull)
+  std::mutex mutex;
+  this->ForAll(this->States.size(),
+    [&](std::size_t begin, std::size_t end)
     {
-      const auto place = std::find(ids.begin(), ids.end(), infinite) - ids.begin();
-      this->HullFacets.push_back(this->All.Neighbors[t][place]);
-    }
-    else if (ids[0] != NoId)
-    {
-      this->States[t] = Meshed;
-      ++this->NumberOfTetrahedra;
-    }
-  }
+      std::vector<Id> hull;
+      Id count = 0;
+      for (std::size_t t = begin; t < end; ++t)
+      {
+        const TetrahedronIds& ids = this->All.Tetrahedra[t];
+        if (this->States[t] == BeyondHull)
+        {
+          const auto place = std::find(ids.begin(), ids.end(), infinite) - ids.begin();
+          hull.push_back(this->All.Neighbors[t][place]);
+        }
+        else if (ids[0] != NoId)
+        {
+          this->States[t] = Meshed;
+          ++count;
+        }
+      }
+      const std::lock_guard<std::mutex> lock(mutex);
+      this->HullFacets.insert(this->HullFacets.end(), hull.begin(), hull.end());
+      this->NumberOfTetrahedra += count;
+    });
+  this->IsWhole = true;
   this->Output.Report.NumberOfRegions = 1;
 }
 
@@ -794,7 +823,11 @@ void AdvancingFront::CollectFront()
 void AdvancingFront::CollectPointsUsed()
 {
   std::vector<Id> places(this->Points.size(), NoId);
-  for (std::size_t t = 0; t < this->States.size(); ++t)
+  for (Id point : this->Order)
+  {
+    places[point] = this->IsWhole ? 0 : NoId;
+  }
+  for (std::size_t t = 0; t < this->States.size() && !this->IsWhole; ++t)
   {
     if (this->States[t] == Meshed)
     {
@@ -844,33 +877,48 @@ void AdvancingFront::CollectTetrahedra()
     { 1, 0, 3, 2 }, { 1, 3, 2, 0 }, { 1, 2, 0, 3 }, { 2, 0, 1, 3 }, { 2, 1, 3, 0 }, { 2, 3, 0, 1 },
     { 3, 0, 2, 1 }, { 3, 2, 1, 0 }, { 3, 1, 0, 2 } };
   constexpr unsigned char NotMeshed = 12;
-  std::vector<Id> starts(this->Order.size() + 2, 0);
-  for (std::size_t t = 0; t < slots; ++t)
-  {
-    if (this->States[t] != Meshed)
+  // Their order within a vertex is left to chance here; it is settled below.
+  std::vector<std::atomic<Id>> ends(this->Order.size() + 1);
+  this->ForAll(slots,
+    [&](std::size_t begin, std::size_t end)
     {
-      this->States[t] = NotMeshed;
-      continue;
-    }
-    const TetrahedronIds& ids = this->All.Tetrahedra[t];
-    int first = ids[1] < ids[0] ? 1 : 0;
-    first = ids[2] < ids[first] ? 2 : first;
-    first = ids[3] < ids[first] ? 3 : first;
-    int turn = 3 * first;
-    turn = ids[Turns[3 * first + 1][1]] < ids[Turns[turn][1]] ? 3 * first + 1 : turn;
-    turn = ids[Turns[3 * first + 2][1]] < ids[Turns[turn][1]] ? 3 * first + 2 : turn;
-    this->States[t] = static_cast<unsigned char>(turn);
-    ++starts[ids[first] + 2];
-  }
-  std::partial_sum(starts.begin(), starts.end(), starts.begin());
-  std::vector<Id> order(count);
-  for (std::size_t t = 0; t < slots; ++t)
+      for (std::size_t t = begin; t < end; ++t)
+      {
+        if (this->States[t] != Meshed)
+        {
+          this->States[t] = NotMeshed;
+          continue;
+        }
+        const TetrahedronIds& ids = this->All.Tetrahedra[t];
+        int first = ids[1] < ids[0] ? 1 : 0;
+        first = ids[2] < ids[first] ? 2 : first;
+        first = ids[3] < ids[first] ? 3 : first;
+        int turn = 3 * first;
+        turn = ids[Turns[3 * first + 1][1]] < ids[Turns[turn][1]] ? 3 * first + 1 : turn;
+        turn = ids[Turns[3 * first + 2][1]] < ids[Turns[turn][1]] ? 3 * first + 2 : turn;
+        this->States[t] = static_cast<unsigned char>(turn);
+        ends[ids[first]].fetch_add(1, std::memory_order_relaxed);
+      }
+    });
+  std::vector<Id> starts(this->Order.size() + 1, 0);
+  for (std::size_t vertex = 0; vertex < this->Order.size(); ++vertex)
   {
-    if (this->States[t] != NotMeshed)
-    {
-      order[starts[this->All.Tetrahedra[t][Turns[this->States[t]][0]] + 1]++] = static_cast<Id>(t);
-    }
+    starts[vertex + 1] = starts[vertex] + ends[vertex].load(std::memory_order_relaxed);
+    ends[vertex].store(starts[vertex], std::memory_order_relaxed);
   }
+  RawVector<Id> order(count);
+  this->ForAll(slots,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t t = begin; t < end; ++t)
+      {
+        if (this->States[t] != NotMeshed)
+        {
+          const Id vertex = this->All.Tetrahedra[t][Turns[this->States[t]][0]];
+          order[ends[vertex].fetch_add(1, std::memory_order_relaxed)] = static_cast<Id>(t);
+        }
+      }
+    });
   // Two tetrahedra with the same first three vertices would lie on the same side of a facet.
   struct Item
   {
@@ -878,48 +926,52 @@ void AdvancingFront::CollectTetrahedra()
     Id Source;
   };
   constexpr std::size_t ManyItems = 32;
-  std::vector<Item> items;
   mesh.Tetrahedra.resize(count);
   mesh.Regions.resize(count);
-  for (std::size_t vertex = 0; vertex < this->Order.size(); ++vertex)
-  {
-    items.clear();
-    for (Id i = starts[vertex]; i < starts[vertex + 1]; ++i)
+  this->ForAll(this->Order.size(),
+    [&](std::size_t begin, std::size_t end)
     {
-      const Id t = order[i];
-      const TetrahedronIds& ids = this->All.Tetrahedra[t];
-      const unsigned char* const turn = Turns[this->States[t]];
-      const Item item{ (static_cast<std::uint64_t>(ids[turn[1]]) << 32) |
-          static_cast<std::uint32_t>(ids[turn[2]]),
-        t };
-      // They are few: seven, on average.
-      std::size_t k = items.size();
-      items.push_back(item);
-      for (; k > 0 && k < ManyItems && items[k - 1].Key > item.Key; --k)
+      std::vector<Item> items;
+      for (std::size_t vertex = begin; vertex < end; ++vertex)
       {
-        items[k] = items[k - 1];
+        items.clear();
+        for (Id i = starts[vertex]; i < starts[vertex + 1]; ++i)
+        {
+          const Id t = order[i];
+          const TetrahedronIds& ids = this->All.Tetrahedra[t];
+          const unsigned char* const turn = Turns[this->States[t]];
+          const Item item{ (static_cast<std::uint64_t>(ids[turn[1]]) << 32) |
+              static_cast<std::uint32_t>(ids[turn[2]]),
+            t };
+          // They are few: seven, on average.
+          std::size_t k = items.size();
+          items.push_back(item);
+          for (; k > 0 && k < ManyItems && items[k - 1].Key > item.Key; --k)
+          {
+            items[k] = items[k - 1];
+          }
+          items[k] = item;
+        }
+        if (items.size() > ManyItems)
+        {
+          std::sort(
+            items.begin(), items.end(), [](const Item& x, const Item& y) { return x.Key < y.Key; });
+        }
+        Id place = starts[vertex];
+        for (const Item& item : items)
+        {
+          const TetrahedronIds& ids = this->All.Tetrahedra[item.Source];
+          const unsigned char* const turn = Turns[this->States[item.Source]];
+          mesh.Tetrahedra[place] = { this->Order[ids[turn[0]]], this->Order[ids[turn[1]]],
+            this->Order[ids[turn[2]]], this->Order[ids[turn[3]]] };
+          mesh.Regions[place] = this->Regions[item.Source];
+          // From here on its place.
+          this->Regions[item.Source] = place++;
+        }
       }
-      items[k] = item;
-    }
-    if (items.size() > ManyItems)
-    {
-      std::sort(
-        items.begin(), items.end(), [](const Item& x, const Item& y) { return x.Key < y.Key; });
-    }
-    Id place = starts[vertex];
-    for (const Item& item : items)
-    {
-      const TetrahedronIds& ids = this->All.Tetrahedra[item.Source];
-      const unsigned char* const turn = Turns[this->States[item.Source]];
-      mesh.Tetrahedra[place] = { this->Order[ids[turn[0]]], this->Order[ids[turn[1]]],
-        this->Order[ids[turn[2]]], this->Order[ids[turn[3]]] };
-      mesh.Regions[place] = this->Regions[item.Source];
-      // From here on its place.
-      this->Regions[item.Source] = place++;
-    }
-  }
-  this->All.Tetrahedra = std::vector<TetrahedronIds>();
-  order = std::vector<Id>();
+    });
+  this->All.Tetrahedra = RawVector<TetrahedronIds>();
+  order = RawVector<Id>();
   const std::vector<Id>& places = this->Regions;
   unsigned char inverse[12][4];
   for (int turn = 0; turn < 12; ++turn)
@@ -930,21 +982,26 @@ void AdvancingFront::CollectTetrahedra()
     }
   }
   mesh.Neighbors.resize(count);
-  for (std::size_t t = 0; t < slots; ++t)
-  {
-    if (this->States[t] == NotMeshed)
+  this->ForAll(slots,
+    [&](std::size_t begin, std::size_t end)
     {
-      continue;
-    }
-    TetrahedronIds& neighbors = mesh.Neighbors[places[t]];
-    for (int i = 0; i < 4; ++i)
-    {
-      Id facet = this->All.Neighbors[t][Turns[this->States[t]][i]];
-      facet = facet < 0 ? this->SideFacets[(FirstBarrier - facet) ^ 1] : facet;
-      const unsigned char turn = this->States[facet / 4];
-      neighbors[i] = turn == NotMeshed ? NoId : 4 * places[facet / 4] + inverse[turn][facet % 4];
-    }
-  }
+      for (std::size_t t = begin; t < end; ++t)
+      {
+        if (this->States[t] == NotMeshed)
+        {
+          continue;
+        }
+        TetrahedronIds& neighbors = mesh.Neighbors[places[t]];
+        for (int i = 0; i < 4; ++i)
+        {
+          Id facet = this->All.Neighbors[t][Turns[this->States[t]][i]];
+          facet = facet < 0 ? this->SideFacets[(FirstBarrier - facet) ^ 1] : facet;
+          const unsigned char turn = this->States[facet / 4];
+          neighbors[i] =
+            turn == NotMeshed ? NoId : 4 * places[facet / 4] + inverse[turn][facet % 4];
+        }
+      }
+    });
 }
 
 void AdvancingFront::CompleteBoundary()
@@ -992,6 +1049,7 @@ void AdvancingFront::Finish()
   {
     this->CollectFront();
   }
+  this->VertexPoints = std::vector<Vec3>();
   this->CollectTetrahedra();
 }
 

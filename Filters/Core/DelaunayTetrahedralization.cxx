@@ -3,6 +3,7 @@
 
 #include "Predicates.h"
 #include "TetMesh.h"
+#include "Threads.h"
 
 #include <algorithm>
 #include <atomic>
@@ -10,7 +11,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <thread>
 
 namespace cdm
 {
@@ -110,9 +110,13 @@ private:
     Id Count = 0;
     std::vector<Id> Todo;
     std::vector<Id> Postponed;
-    /** Places for new tetrahedra; all others are taken from the end of the arrays. */
+    /** Places for new tetrahedra: of removed ones, and ranges never used. */
     std::vector<Id> Free;
+    std::vector<std::pair<Id, Id>> Rooms;
+    std::size_t NumberOfPlaces = 0;
+    /** Where the next walk starts. */
     Id Last = 0;
+    bool HasInserted = false;
     bool HasTies = false;
 
     /** Tetrahedra of the hole and its facets: the first so many of the arrays. */
@@ -144,7 +148,9 @@ private:
   void ForgetHole(Worker& worker);
   template <bool IsShared>
   bool FillHole(Id vertex, Worker& worker);
+  static Id TakePlace(Worker& worker);
   void AddRoom(std::size_t room, Worker& worker);
+  static void MovePlaces(Worker& from, Worker& to, std::size_t wanted);
   void ConnectByTable(Worker& worker);
   void ConnectBySorting(Worker& worker);
   bool IsOwned(Id tetrahedron, const Worker& worker) const;
@@ -165,8 +171,8 @@ private:
   /** Determinants whose error bound is below these have no error. */
   double ExactSideBound = 0.0;
   double ExactPositionBound = 0.0;
-  std::vector<RoughSphere> Spheres;
-  std::vector<unsigned char> Marks;
+  RawVector<RoughSphere> Spheres;
+  RawVector<unsigned char> Marks;
   /** Where a vertex may stand among those of the hole. */
   std::vector<Id> Places;
   std::vector<Worker> Workers;
@@ -178,7 +184,9 @@ private:
  */
 void Builder::SetUnit()
 {
+  // Coordinates with more than 40 binary digits are no such lattice.
   int lowest = 4096;
+  int highest = -4096;
   for (Id i = 0; i < this->Infinite; ++i)
   {
     for (const double x : { this->Points[i].X, this->Points[i].Y, this->Points[i].Z })
@@ -188,17 +196,16 @@ void Builder::SetUnit()
         continue;
       }
       int exponent = 0;
-      // The mantissa as an integer of 53 bits.
-      const std::int64_t mantissa =
-        static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 53));
-      int zeros = 0;
-      while (((mantissa >> zeros) & 1) == 0)
+      std::int64_t mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 53));
+      highest = std::max(highest, exponent);
+      exponent -= 53;
+      for (; mantissa % 2 == 0; mantissa /= 2)
       {
-        ++zeros;
+        ++exponent;
       }
-      lowest = std::min(lowest, exponent - 53 + zeros);
+      lowest = std::min(lowest, exponent);
     }
-    if (lowest < -150)
+    if (highest - lowest > 40 || lowest < -150)
     {
       return;
     }
@@ -488,15 +495,15 @@ void Builder::ForgetHole(Worker& worker)
 template <bool IsShared>
 bool Builder::FillHole(Id vertex, Worker& worker)
 {
-  std::vector<TetrahedronIds>& tetrahedra = this->Output.Tetrahedra;
-  std::vector<TetrahedronIds>& neighbors = this->Output.Neighbors;
+  RawVector<TetrahedronIds>& tetrahedra = this->Output.Tetrahedra;
+  RawVector<TetrahedronIds>& neighbors = this->Output.Neighbors;
   const std::size_t count = worker.NumberOfFacets;
   const std::size_t removed = worker.NumberOfRemoved;
   if (worker.Cavity.size() < count)
   {
     worker.Cavity.resize(2 * count);
   }
-  while (removed + worker.Free.size() < count)
+  while (removed + worker.NumberOfPlaces < count)
   {
     if (IsShared)
     {
@@ -506,13 +513,13 @@ bool Builder::FillHole(Id vertex, Worker& worker)
   }
   for (std::size_t k = removed; k < count; ++k)
   {
-    worker.Cavity[k] = worker.Free.back();
-    worker.Free.pop_back();
+    worker.Cavity[k] = TakePlace(worker);
   }
   for (std::size_t k = count; k < removed; ++k)
   {
     tetrahedra[worker.Cavity[k]][0] = NoId;
     worker.Free.push_back(worker.Cavity[k]);
+    ++worker.NumberOfPlaces;
   }
 
   // Number the vertices of the hole. The one at infinity belongs to all threads: it is the last.
@@ -578,20 +585,57 @@ bool Builder::FillHole(Id vertex, Worker& worker)
     this->ConnectBySorting(worker);
   }
   worker.Last = worker.Facets[count - 1].Outer;
+  worker.HasInserted = true;
   return true;
+}
+
+Id Builder::TakePlace(Worker& worker)
+{
+  --worker.NumberOfPlaces;
+  if (!worker.Free.empty())
+  {
+    const Id place = worker.Free.back();
+    worker.Free.pop_back();
+    return place;
+  }
+  std::pair<Id, Id>& room = worker.Rooms.back();
+  const Id place = room.first++;
+  if (room.first == room.second)
+  {
+    worker.Rooms.pop_back();
+  }
+  return place;
 }
 
 void Builder::AddRoom(std::size_t room, Worker& worker)
 {
   const std::size_t old = this->Output.Tetrahedra.size();
   const std::size_t size = old + room;
-  this->Output.Tetrahedra.resize(size, { NoId, NoId, NoId, NoId });
+  this->Output.Tetrahedra.resize(size);
   this->Output.Neighbors.resize(size);
   this->Spheres.resize(size);
-  this->Marks.resize(size, Unknown);
-  for (std::size_t t = size; t-- > old;)
+  this->Marks.resize(size);
+  worker.Rooms.emplace_back(static_cast<Id>(old), static_cast<Id>(size));
+  worker.NumberOfPlaces += room;
+}
+
+/** Gives all places of a worker to another one, as far as that one wants more. */
+void Builder::MovePlaces(Worker& from, Worker& to, std::size_t wanted)
+{
+  while (to.NumberOfPlaces < wanted && !from.Free.empty())
   {
-    worker.Free.push_back(static_cast<Id>(t));
+    to.Free.push_back(from.Free.back());
+    from.Free.pop_back();
+    --from.NumberOfPlaces;
+    ++to.NumberOfPlaces;
+  }
+  while (to.NumberOfPlaces < wanted && !from.Rooms.empty())
+  {
+    const std::pair<Id, Id> room = from.Rooms.back();
+    from.Rooms.pop_back();
+    to.Rooms.push_back(room);
+    from.NumberOfPlaces -= static_cast<std::size_t>(room.second - room.first);
+    to.NumberOfPlaces += static_cast<std::size_t>(room.second - room.first);
   }
 }
 
@@ -748,8 +792,9 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
   {
     const std::size_t count = static_cast<std::size_t>(numberOfThreads);
     const Id part = this->Infinite / numberOfThreads + 1;
-    std::vector<Id> free;
-    free.swap(this->Workers[0].Free);
+    Worker spare;
+    MovePlaces(this->Workers[0], spare, std::numeric_limits<std::size_t>::max());
+    Id last = this->Workers[0].Last;
     for (std::size_t w = 0; w < count; ++w)
     {
       Worker& worker = this->Workers[w];
@@ -764,58 +809,40 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
       const Id place = shifted < 0 ? shifted + this->Infinite : shifted;
       this->Workers[place / part].Todo.push_back(vertex);
     }
-    // Somewhere to start from: any tetrahedron of the part's own.
-    std::vector<char> hasStart(count, 0);
-    for (Id t = 0; t < static_cast<Id>(this->Output.Tetrahedra.size()); ++t)
-    {
-      const TetrahedronIds& ids = this->Output.Tetrahedra[t];
-      if (ids[0] == NoId || ids[0] == this->Infinite)
-      {
-        continue;
-      }
-      const Id shifted = ids[0] - (cut == 1 ? part / 2 : 0);
-      const Id w = (shifted < 0 ? shifted + this->Infinite : shifted) / part;
-      if (!hasStart[w] && this->IsOwned(t, this->Workers[w]))
-      {
-        hasStart[w] = 1;
-        this->Workers[w].Last = t;
-      }
-    }
     for (std::size_t w = 0; w < count; ++w)
     {
+      // Somewhere to start from: a tetrahedron of the part's own.
       Worker& worker = this->Workers[w];
-      if (!hasStart[w])
+      worker.HasInserted = false;
+      worker.Last = last;
+      bool hasStart = false;
+      for (std::size_t i = 0; i < worker.Todo.size() && !hasStart; i += 1 + worker.Todo.size() / 64)
+      {
+        this->Locate<false>(worker.Todo[i], worker, worker.Last);
+        hasStart = this->IsOwned(worker.Last, worker);
+      }
+      if (!hasStart)
       {
         worker.Postponed.swap(worker.Todo);
         worker.Todo.clear();
       }
-      const std::size_t room = 7 * worker.Todo.size() + worker.Todo.size() / 2;
-      while (worker.Free.size() < room && !free.empty())
+      const std::size_t wanted = 7 * worker.Todo.size() + worker.Todo.size() / 2;
+      MovePlaces(spare, worker, wanted);
+      if (worker.NumberOfPlaces < wanted)
       {
-        worker.Free.push_back(free.back());
-        free.pop_back();
-      }
-      if (worker.Free.size() < room)
-      {
-        this->AddRoom(room - worker.Free.size(), worker);
+        this->AddRoom(wanted - worker.NumberOfPlaces, worker);
       }
     }
-    std::vector<std::thread> threads;
-    for (std::size_t w = 1; w < count; ++w)
-    {
-      threads.emplace_back([this, w, &isAborted]()
-        { this->Work<true>(this->Workers[w], [&isAborted](std::size_t) { return !isAborted; }); });
-    }
-    this->Work<true>(this->Workers[0],
-      [&](std::size_t done)
+    RunOnThreads(numberOfThreads,
+      [&](int w)
       {
-        isAborted = isAborted || !report(done * count);
-        return !isAborted;
+        const auto mayContinue = [&](std::size_t done)
+        {
+          isAborted = isAborted || (w == 0 && !report(done * count));
+          return !isAborted;
+        };
+        this->Work<true>(this->Workers[static_cast<std::size_t>(w)], mayContinue);
       });
-    for (std::thread& thread : threads)
-    {
-      thread.join();
-    }
     if (isAborted)
     {
       return Status::Aborted();
@@ -825,11 +852,12 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
     {
       Worker& worker = this->Workers[w];
       left.insert(left.end(), worker.Postponed.begin(), worker.Postponed.end());
-      free.insert(free.end(), worker.Free.begin(), worker.Free.end());
-      worker.Free.clear();
+      MovePlaces(worker, spare, std::numeric_limits<std::size_t>::max());
+      last = worker.HasInserted ? worker.Last : last;
     }
     std::sort(left.begin(), left.end());
-    this->Workers[0].Free.swap(free);
+    MovePlaces(spare, this->Workers[0], std::numeric_limits<std::size_t>::max());
+    this->Workers[0].Last = last;
   }
   Worker& worker = this->Workers[0];
   worker.Todo.swap(left);
@@ -846,7 +874,7 @@ Status Builder::Run(int numberOfThreads)
     return status;
   }
   this->SetUnit();
-  const std::size_t expected = 7 * static_cast<std::size_t>(this->Infinite);
+  const std::size_t expected = 8 * static_cast<std::size_t>(this->Infinite);
   this->Output.Tetrahedra.reserve(expected);
   this->Output.Neighbors.reserve(expected);
   this->Spheres.reserve(expected);
@@ -886,6 +914,13 @@ Status Builder::Run(int numberOfThreads)
       return status;
     }
     round = std::vector<Id>();
+  }
+  for (const auto& [begin, end] : this->Workers[0].Rooms)
+  {
+    for (Id t = begin; t < end; ++t)
+    {
+      this->Output.Tetrahedra[t][0] = NoId;
+    }
   }
   for (const Worker& worker : this->Workers)
   {

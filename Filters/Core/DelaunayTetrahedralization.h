@@ -35,6 +35,7 @@
 #define cdmDelaunayTetrahedralization_h
 
 #include "ExecutionContext.h"
+#include "RawVector.h"
 #include "Status.h"
 #include "Types.h"
 #include "Vec3.h"
@@ -49,9 +50,9 @@ struct DelaunayTetrahedralization
    * Vertices of each tetrahedron; the number of points stands for the vertex at infinity. Entry 0
    * is NoId in places that are not used.
    */
-  std::vector<TetrahedronIds> Tetrahedra;
+  RawVector<TetrahedronIds> Tetrahedra;
   /** Facet ids (4 * tetrahedron + i) of the neighbors, seen from these, as in TetMesh. */
-  std::vector<TetrahedronIds> Neighbors;
+  RawVector<TetrahedronIds> Neighbors;
   /** False if no five points that were compared lie on one sphere: all cells are tetrahedra. */
   bool HasCosphericalPoints = false;
 };

@@ -115,9 +115,8 @@ Iterator FindEndOfGroup(Iterator begin, Iterator end)
     begin, end, [&](const FacetRecord& other) { return other.Points != begin->Points; });
 }
 
-template <std::size_t Size>
-std::vector<Id> FindOutOfRange(
-  const std::vector<std::array<Id, Size>>& cells, std::size_t numberOfPoints)
+template <typename Cells>
+std::vector<Id> FindOutOfRange(const Cells& cells, std::size_t numberOfPoints)
 {
   std::vector<Id> found;
   for (std::size_t cell = 0; cell < cells.size(); ++cell)
@@ -158,8 +157,7 @@ Status CheckTetrahedra(const TetMesh& mesh)
   if (!cells.empty())
   {
     return Status::InvalidInput(
-      std::to_string(cells.size()) + " tetrahedra refer to points that do not exist.",
-      cells);
+      std::to_string(cells.size()) + " tetrahedra refer to points that do not exist.", cells);
   }
   return {};
 }

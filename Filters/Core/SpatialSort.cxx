@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SpatialSort.h"
 
+#include "RawVector.h"
+#include "Threads.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -65,7 +68,10 @@ struct Item
 class HilbertSorter
 {
 public:
-  explicit HilbertSorter(const std::vector<Vec3>& points) : Points(points) {}
+  HilbertSorter(const std::vector<Vec3>& points, int numberOfThreads)
+    : Points(points), NumberOfThreads(numberOfThreads)
+  {
+  }
 
   void Sort(Id* begin, Id* end)
   {
@@ -97,31 +103,35 @@ public:
       ++bits;
     }
     const double cells = static_cast<double>(std::uint64_t(1) << bits);
-    const std::uint64_t last = (std::uint64_t(1) << bits) - 1;
-    const auto toCell = [cells, last, extent](double x, double from)
+    const std::uint64_t lastCell = (std::uint64_t(1) << bits) - 1;
+    const auto toCell = [cells, lastCell, extent](double x, double from)
     {
       const double cell = (0.5 * x - 0.5 * from) / extent * cells;
-      return std::min(static_cast<std::uint64_t>(cell), last);
+      return std::min(static_cast<std::uint64_t>(cell), lastCell);
     };
     static const CurveTable Table;
-    std::vector<Item> items(count);
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      const Vec3& p = this->Points[begin[i]];
-      const std::uint64_t x = toCell(p.X, low.X);
-      const std::uint64_t y = toCell(p.Y, low.Y);
-      const std::uint64_t z = toCell(p.Z, low.Z);
-      std::uint64_t key = 0;
-      unsigned state = 0;
-      for (int bit = bits - 1; bit >= 0; --bit)
+    RawVector<Item> items(count);
+    ForParts(this->NumberOfThreads, count,
+      [&](std::size_t first, std::size_t last)
       {
-        const unsigned octant =
-          ((x >> bit) & 1u) | (((y >> bit) & 1u) << 1) | (((z >> bit) & 1u) << 2);
-        key = (key << 3) | Table.Numbers[state][octant];
-        state = Table.States[state][octant];
-      }
-      items[i] = { key, begin[i] };
-    }
+        for (std::size_t i = first; i < last; ++i)
+        {
+          const Vec3& p = this->Points[begin[i]];
+          const std::uint64_t x = toCell(p.X, low.X);
+          const std::uint64_t y = toCell(p.Y, low.Y);
+          const std::uint64_t z = toCell(p.Z, low.Z);
+          std::uint64_t key = 0;
+          unsigned state = 0;
+          for (int bit = bits - 1; bit >= 0; --bit)
+          {
+            const unsigned octant =
+              ((x >> bit) & 1u) | (((y >> bit) & 1u) << 1) | (((z >> bit) & 1u) << 2);
+            key = (key << 3) | Table.Numbers[state][octant];
+            state = Table.States[state][octant];
+          }
+          items[i] = { key, begin[i] };
+        }
+      });
     this->SortByKey(items, 3 * bits);
     for (std::size_t i = 0; i < count; ++i)
     {
@@ -139,7 +149,7 @@ public:
         runs.emplace_back(first, next);
       }
     }
-    items = std::vector<Item>();
+    items = RawVector<Item>();
     for (const auto& [first, next] : runs)
     {
       this->Sort(begin + first, begin + next);
@@ -154,7 +164,7 @@ private:
       { return this->Points[i] != this->Points[j] ? this->Points[i] < this->Points[j] : i < j; });
   }
 
-  static void SortByKey(std::vector<Item>& items, int bits)
+  static void SortByKey(RawVector<Item>& items, int bits)
   {
     if (items.size() < 512)
     {
@@ -162,7 +172,7 @@ private:
         items.begin(), items.end(), [](const Item& a, const Item& b) { return a.Key < b.Key; });
       return;
     }
-    std::vector<Item> other(items.size());
+    RawVector<Item> other(items.size());
     std::vector<std::size_t> starts(std::size_t(1) << DigitBits);
     for (int shift = 0; shift < bits; shift += DigitBits)
     {
@@ -187,11 +197,13 @@ private:
   }
 
   const std::vector<Vec3>& Points;
+  int NumberOfThreads;
 };
 } // namespace
 
-void SortAlongHilbertCurve(const std::vector<Vec3>& points, std::vector<Id>& ids)
+void SortAlongHilbertCurve(
+  const std::vector<Vec3>& points, std::vector<Id>& ids, int numberOfThreads)
 {
-  HilbertSorter(points).Sort(ids.data(), ids.data() + ids.size());
+  HilbertSorter(points, numberOfThreads).Sort(ids.data(), ids.data() + ids.size());
 }
 } // namespace cdm

@@ -29,7 +29,8 @@
 namespace cdm
 {
 /** Turn the ids of points into the order of the curve. */
-void SortAlongHilbertCurve(const std::vector<Vec3>& points, std::vector<Id>& ids);
+void SortAlongHilbertCurve(
+  const std::vector<Vec3>& points, std::vector<Id>& ids, int numberOfThreads = 1);
 } // namespace cdm
 
 #endif

@@ -8,6 +8,7 @@
 #ifndef cdmTetMesh_h
 #define cdmTetMesh_h
 
+#include "RawVector.h"
 #include "Types.h"
 #include "Vec3.h"
 
@@ -26,9 +27,9 @@ namespace cdm
 struct TetMesh
 {
   std::vector<Vec3> Points;
-  std::vector<TetrahedronIds> Tetrahedra;
+  RawVector<TetrahedronIds> Tetrahedra;
   std::vector<Id> Regions;
-  std::vector<TetrahedronIds> Neighbors;
+  RawVector<TetrahedronIds> Neighbors;
 };
 
 /**
@@ -42,6 +43,6 @@ inline TriangleIds GetFacet(const TetrahedronIds& tetrahedron, int facet)
   return { tetrahedron[FacetVertices[facet][0]], tetrahedron[FacetVertices[facet][1]],
     tetrahedron[FacetVertices[facet][2]] };
 }
-}
+} // namespace cdm
 
 #endif

@@ -476,7 +476,7 @@ TEST(PointsOnly, MeshesNastyConfigurations)
 #ifdef CDM_HAS_CGAL_TRIANGULATION
 /** The vertices of each cell: tetrahedra that share a facet and a sphere are parts of one. */
 std::set<std::vector<Id>> GetCells(
-  const PointSet& points, const std::vector<TetrahedronIds>& tetrahedra)
+  const PointSet& points, const RawVector<TetrahedronIds>& tetrahedra)
 {
   std::vector<std::size_t> parents(tetrahedra.size());
   std::iota(parents.begin(), parents.end(), 0);
@@ -575,7 +575,7 @@ TEST(PointsOnly, EqualsCgal)
     AdvancingFrontTetrahedralizerOutput output;
     ASSERT_TRUE(MeshPointSet(points, output).IsOk());
     const Triangulation triangulation(others.begin(), others.end());
-    std::vector<TetrahedronIds> expected;
+    RawVector<TetrahedronIds> expected;
     for (auto cell = triangulation.finite_cells_begin(); cell != triangulation.finite_cells_end();
          ++cell)
     {

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Threads.h
+ * @brief Runs the same work on some threads; the engine's only use of them.
+ *
+ * Callers split their work so that results do not depend on the number of threads. Exceptions (only
+ * std::bad_alloc can come) are thrown again on the calling thread when all threads have ended.
+ */
+#ifndef cdmThreads_h
+#define cdmThreads_h
+
+#include <cstddef>
+#include <exception>
+#include <thread>
+#include <vector>
+
+namespace cdm
+{
+/** work(i) for i = 0 to count - 1 at the same time, i = 0 on the calling thread. */
+template <typename Work>
+void RunOnThreads(int count, const Work& work)
+{
+  std::vector<std::exception_ptr> exceptions(static_cast<std::size_t>(count));
+  const auto guarded = [&work, &exceptions](int i)
+  {
+    try
+    {
+      work(i);
+    }
+    catch (...)
+    {
+      exceptions[static_cast<std::size_t>(i)] = std::current_exception();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int i = 1; i < count; ++i)
+  {
+    threads.emplace_back(guarded, i);
+  }
+  guarded(0);
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  for (const std::exception_ptr& exception : exceptions)
+  {
+    if (exception)
+    {
+      std::rethrow_exception(exception);
+    }
+  }
+}
+
+/** work(begin, end) for equal parts of the numbers from 0 to size - 1. */
+template <typename Work>
+void ForParts(int count, std::size_t size, const Work& work)
+{
+  constexpr std::size_t Small = 20000;
+  const std::size_t parts = size < Small ? 1 : static_cast<std::size_t>(count);
+  RunOnThreads(static_cast<int>(parts),
+    [&work, size, parts](int i)
+    {
+      const std::size_t part = static_cast<std::size_t>(i);
+      work(size * part / parts, size * (part + 1) / parts);
+    });
+}
+} // namespace cdm
+
+#endif
