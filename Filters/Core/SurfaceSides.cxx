@@ -183,6 +183,14 @@ SurfaceSides FindSurfaceSides(const TriangleMesh& surface)
     const double volume = Dot(a, Cross(b, c));
     volumes[shell] += side % 2 == 0 ? -volume : volume;
   }
+  Id numberOfComponents = 0;
+  result.Components.resize(surface.Triangles.size());
+  for (Id triangle = 0; triangle < numberOfTriangles; ++triangle)
+  {
+    const Id first = components.Find(triangle);
+    result.Components[triangle] =
+      first == triangle ? numberOfComponents++ : result.Components[first];
+  }
   std::vector<Id> outerShells(surface.Triangles.size(), NoId);
   for (std::size_t shell = 0; shell < volumes.size(); ++shell)
   {

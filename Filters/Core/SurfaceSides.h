@@ -26,6 +26,8 @@ struct SurfaceSides
   std::vector<char> IsOuter;
   /** For each shell: whether its component has an open edge. */
   std::vector<char> IsOpen;
+  /** For each triangle: the edge-connected component, numbered by its smallest triangle. */
+  std::vector<Id> Components;
   /** Triangles with an open edge, ascending. */
   std::vector<Id> OpenTriangles;
 };
