@@ -30,19 +30,23 @@ double GetLatticeConstant(PointTemplate kind)
 }
 
 /**
- * Leaves of the octree are between half of this and this, in spacings, so that the edges of the
- * mesh are about as long as wanted and none is longer than 1.5 times that.
+ * Largest edge of a leaf of the octree in spacings; the others are down to half as long. Edges of
+ * the mesh are the longest next to leaves of half the size, sqrt(5)/2 for the body-centered
+ * template, and stay below 1.5 spacings.
  */
 double GetLeafRatio(PointTemplate kind)
 {
-  return kind == PointTemplate::BodyCentered ? 1.25
-    : kind == PointTemplate::FaceCentered    ? 1.4
-                                             : 1.0;
+  return kind == PointTemplate::BodyCentered ? 1.32
+    : kind == PointTemplate::FaceCentered    ? 1.5
+                                             : 0.9;
 }
 
 /** Darts of a dart thrower are at least so many spacings apart. */
-constexpr double DartDistance = 0.76;
+constexpr double DartDistance = 0.62;
 constexpr int DartsPerLeaf = 12;
+
+/** Points of layers that are nearer, in spacings, are the same up to rounding. */
+constexpr double SmallestDistance = 1e-6;
 
 /** Places of a template's points in a cell, in halves of its edges. */
 std::vector<std::array<int, 3>> GetTemplatePoints(PointTemplate kind)
@@ -128,7 +132,7 @@ private:
   Status PlaceLayers();
   Status FindLayerFeet(const PointLayers& layers, const DelaunaySurfaceRefinerOutput& refined,
     std::vector<LayerFoot>& feet) const;
-  void PlaceLayers(const PointLayers& layers, const std::vector<LayerFoot>& feet);
+  Status PlaceLayers(const PointLayers& layers, const std::vector<LayerFoot>& feet);
 
   Status BuildOctree(double ratio, const ExecutionContext& context);
   Status PlaceOctree();
@@ -150,6 +154,8 @@ private:
   MeshPointGeneratorOutput& Output;
   RegionLocator Locator;
   SizingOctree Octree;
+  /** Distance of the last layer, for each of the options' layers. */
+  std::vector<double> LayerHeights;
   std::mt19937_64 Random;
 };
 
@@ -172,10 +178,11 @@ Id Generator::FindRegion(const Vec3& position, const LocalSpacing& spacing, Id k
     return OutsideRegion;
   }
   const Id region = known >= 0 ? known : this->Locator.Locate(position);
-  for (const PointLayers& layers : this->Options.Layers)
+  for (std::size_t i = 0; i < this->Options.Layers.size(); ++i)
   {
-    const double reach = GetLayerDistance(layers, layers.NumberOfLayers) +
-      this->Options.BoundaryClearance * spacing.GetSmallest();
+    const PointLayers& layers = this->Options.Layers[i];
+    const double reach =
+      this->LayerHeights[i] + this->Options.BoundaryClearance * spacing.GetSmallest();
     if (region == layers.Region &&
       !this->Locator.IsClear(position, 1.0, reach, { layers.Region, layers.Neighbor }))
     {
@@ -272,13 +279,17 @@ Status Generator::FindLayerFeet(const PointLayers& layers,
   return {};
 }
 
-void Generator::PlaceLayers(const PointLayers& layers, const std::vector<LayerFoot>& feet)
+Status Generator::PlaceLayers(const PointLayers& layers, const std::vector<LayerFoot>& feet)
 {
   const double clearance = this->Options.BoundaryClearance;
   PointOctree others;
   others.Insert(this->Output.Points);
   for (Id number = 1; number <= layers.NumberOfLayers; ++number)
   {
+    if (!this->Context.Continue(0.25, "Placing layers"))
+    {
+      return Status::Aborted();
+    }
     const double distance = GetLayerDistance(layers, number);
     const double gap = distance - GetLayerDistance(layers, number - 1);
     for (const LayerFoot& foot : feet)
@@ -286,7 +297,7 @@ void Generator::PlaceLayers(const PointLayers& layers, const std::vector<LayerFo
       const Vec3 position = foot.Position + distance * foot.Direction;
       const LocalSpacing spacing(
         (1.0 / Norm(foot.Direction)) * foot.Direction, gap, std::max(gap, foot.Edge));
-      NearestInUnits nearest(position, spacing, clearance);
+      NearestInUnits nearest(position, spacing, std::max(clearance, SmallestDistance));
       others.Visit(nearest);
       const bool stays = nearest.Found == NoId &&
         this->Locator.IsClear(position, spacing, clearance) &&
@@ -295,6 +306,7 @@ void Generator::PlaceLayers(const PointLayers& layers, const std::vector<LayerFo
         this->Locator.Locate(position) == layers.Region;
       if (stays)
       {
+        others.Insert(static_cast<Id>(this->Output.Points.size()), position);
         this->Output.Points.push_back(position);
         this->Output.Regions.push_back(layers.Region);
         this->Output.Layers.push_back(number);
@@ -302,6 +314,7 @@ void Generator::PlaceLayers(const PointLayers& layers, const std::vector<LayerFo
       this->Output.DroppedLayerPoints += !stays;
     }
   }
+  return {};
 }
 
 Status Generator::PlaceLayers()
@@ -317,6 +330,7 @@ Status Generator::PlaceLayers()
   Status status = RefineDelaunaySurface(input, {}, this->Context.Part(0.05, 0.25), refined);
   for (const PointLayers& layers : this->Options.Layers)
   {
+    this->LayerHeights.push_back(GetLayerDistance(layers, layers.NumberOfLayers));
     std::vector<LayerFoot> feet;
     if (status.IsOk())
     {
@@ -328,13 +342,12 @@ Status Generator::PlaceLayers()
     {
       status = MakeTooManyPoints(this->Options.MaximumNumberOfPoints);
     }
-    if (!status.IsOk())
+    if (status.IsOk())
     {
-      return status;
+      status = this->PlaceLayers(layers, feet);
     }
-    this->PlaceLayers(layers, feet);
   }
-  return {};
+  return status;
 }
 
 Status Generator::BuildOctree(double ratio, const ExecutionContext& context)
@@ -638,8 +651,27 @@ Status Generator::PlaceRandom()
 
 Status Generator::Smooth(const ExecutionContext& context)
 {
-  const std::vector<SizingOctree::Leaf>& leaves = this->Octree.GetLeaves();
   std::vector<Vec3>& points = this->Output.Points;
+  struct Cell
+  {
+    const SizingOctree::Leaf* Leaf;
+    LocalSpacing Spacing;
+    /** Of a sample: a density of h^-5 gives a spacing of h. */
+    double Mass;
+  };
+  std::vector<Cell> cells;
+  for (const SizingOctree::Leaf& leaf : this->Octree.GetLeaves())
+  {
+    if (leaf.Region != OutsideRegion && this->Options.SmoothingIterations > 0)
+    {
+      const Vec3 low{ double(leaf.Low[0]), double(leaf.Low[1]), double(leaf.Low[2]) };
+      const Vec3 size{ double(leaf.Size[0]), double(leaf.Size[1]), double(leaf.Size[2]) };
+      const LocalSpacing spacing = this->Input.Sizing(this->Octree.GetPosition(low + 0.5 * size));
+      const Vec3 edges = this->Octree.GetEdges(leaf);
+      cells.push_back({ &leaf, spacing,
+        edges.X * edges.Y * edges.Z * std::pow(spacing.GetDensity(), 5.0 / 3.0) });
+    }
+  }
   struct Moment
   {
     double Mass = 0.0;
@@ -650,34 +682,30 @@ Status Generator::Smooth(const ExecutionContext& context)
     PointOctree octree;
     octree.Insert(points);
     std::vector<Moment> moments(points.size());
-    for (std::size_t i = 0; i < leaves.size(); ++i)
+    for (std::size_t i = 0; i < cells.size(); ++i)
     {
       if (i % 64 == 0 &&
         !context.Continue(
-          (iteration + double(i) / leaves.size()) / this->Options.SmoothingIterations, "Smoothing"))
+          (iteration + double(i) / cells.size()) / this->Options.SmoothingIterations, "Smoothing"))
       {
         return Status::Aborted();
       }
-      for (int part = 0; part < 8 && leaves[i].Region != OutsideRegion; ++part)
+      const Cell& cell = cells[i];
+      for (int part = 0; part < 8; ++part)
       {
-        const Vec3 sample = this->GetRandomPosition(leaves[i], part, 2);
-        const LocalSpacing spacing = this->Input.Sizing(sample);
-        const Id region = this->FindRegion(sample, spacing, leaves[i].Region);
+        const Vec3 sample = this->GetRandomPosition(*cell.Leaf, part, 2);
+        const Id region = this->FindRegion(sample, cell.Spacing, cell.Leaf->Region);
         if (region == OutsideRegion)
         {
           continue;
         }
-        NearestInUnits nearest(sample, spacing, Infinity);
+        NearestInUnits nearest(sample, cell.Spacing, Infinity);
         octree.Visit(nearest);
         if (nearest.Found != NoId && this->Output.Regions[nearest.Found] == region)
         {
-          // A density of h^-5 gives a spacing of h.
-          const Vec3 edges = this->Octree.GetEdges(leaves[i]);
-          const double mass =
-            edges.X * edges.Y * edges.Z * std::pow(spacing.GetDensity(), 5.0 / 3.0);
-          moments[nearest.Found].Mass += mass;
-          moments[nearest.Found].Sum =
-            moments[nearest.Found].Sum + mass * (sample - points[nearest.Found]);
+          Moment& moment = moments[nearest.Found];
+          moment.Mass += cell.Mass;
+          moment.Sum = moment.Sum + cell.Mass * (sample - points[nearest.Found]);
         }
       }
     }

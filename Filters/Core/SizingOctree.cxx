@@ -13,13 +13,16 @@ namespace
 constexpr int MaximumLevel = 16;
 constexpr std::uint32_t RootSize = 1u << MaximumLevel;
 constexpr int MaximumRoots = 8;
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+/** A cell counts the smallest spacing in it at least by this factor: a cusp is not averaged out. */
+constexpr double LargestGrowth = 4.0 / 3.0;
 
 /** Numbers of roots along the axes that make them as cubic as possible, with few of them. */
 SizingOctree::Units FindRoots(const Vec3& extents)
 {
   const double smallest = std::min({ extents.X, extents.Y, extents.Z });
   SizingOctree::Units best{ 1, 1, 1 };
-  double bestDistortion = std::numeric_limits<double>::infinity();
+  double bestDistortion = Infinity;
   for (int division = 1; division <= MaximumRoots; ++division)
   {
     SizingOctree::Units roots;
@@ -104,20 +107,30 @@ int SizingOctree::FindSplitAxes(Node& node) const
 {
   const Units size = this->GetSize(node);
   const Vec3 low{ double(node.Low[0]), double(node.Low[1]), double(node.Low[2]) };
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  node.Spacing = { infinity, infinity, infinity };
+  // The number of points that belong into a cell is the integral of the inverse cube of the spacing.
+  Vec3 sum;
+  Vec3 smallest{ Infinity, Infinity, Infinity };
+  constexpr int samples = 9;
   const auto sample = [&](const Vec3& units)
   {
     const LocalSpacing spacing = (*this->Sizing)(this->GetPosition(units));
-    node.Spacing.X = std::min(node.Spacing.X, spacing.GetAlong({ 1.0, 0.0, 0.0 }));
-    node.Spacing.Y = std::min(node.Spacing.Y, spacing.GetAlong({ 0.0, 1.0, 0.0 }));
-    node.Spacing.Z = std::min(node.Spacing.Z, spacing.GetAlong({ 0.0, 0.0, 1.0 }));
+    const Vec3 lengths{ spacing.GetAlong({ 1.0, 0.0, 0.0 }), spacing.GetAlong({ 0.0, 1.0, 0.0 }),
+      spacing.GetAlong({ 0.0, 0.0, 1.0 }) };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      sum[axis] += std::pow(lengths[axis], -3.0);
+      smallest[axis] = std::min(smallest[axis], lengths[axis]);
+    }
   };
   sample({ low.X + 0.5 * size[0], low.Y + 0.5 * size[1], low.Z + 0.5 * size[2] });
-  for (int corner = 0; corner < 8; ++corner)
+  for (int corner = 0; corner < samples - 1; ++corner)
   {
     sample({ low.X + (corner & 1 ? size[0] : 0u), low.Y + (corner & 2 ? size[1] : 0u),
       low.Z + (corner & 4 ? size[2] : 0u) });
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    node.Spacing[axis] = std::min(std::cbrt(samples / sum[axis]), LargestGrowth * smallest[axis]);
   }
   double ratios[3];
   for (int axis = 0; axis < 3; ++axis)

@@ -6,8 +6,9 @@
  * Method (thesis 6.2, Fig. 6.2):
  *  1. the bounding box is divided into up to eight roots along each axis, as cubic as possible;
  *  2. a cell that overlaps a region is split as long as its edge along an axis, measured in the
- *     spacing there (the smallest one at its center and corners), exceeds a limit; along the
- *     longest axes only, so that anisotropic spacing makes flat cells;
+ *     spacing there, exceeds a limit; along the longest axes only, so that anisotropic spacing makes
+ *     flat cells. The spacing is that of the mean density of points at center and corners, but no
+ *     more than 4/3 of the smallest: what is finest in a cell is not averaged out;
  *  3. bounded irregularity: a cell is split along an axis on which a neighbor, also across an edge
  *     or a corner, is finer by more levels than allowed.
  *
@@ -55,7 +56,7 @@ public:
     /** The lower corner and the edges, in units. */
     Units Low;
     Units Size;
-    /** Smallest spacing along each axis; not used for leaves outside. */
+    /** Mean spacing along each axis; not used for leaves outside. */
     Vec3 Spacing;
     /** The region that all of the leaf lies in, OutsideRegion, or MixedRegion. */
     Id Region;
