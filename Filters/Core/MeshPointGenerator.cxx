@@ -44,6 +44,8 @@ double GetLeafRatio(PointTemplate kind)
 /** Darts of a dart thrower are at least so many spacings apart. */
 constexpr double DartDistance = 0.62;
 constexpr int DartsPerLeaf = 12;
+/** Of Lloyd's iteration: about 60 samples for each point. */
+constexpr int SamplesAlongLeaf = 3;
 
 /** Points of layers that are nearer, in spacings, are the same up to rounding. */
 constexpr double SmallestDistance = 1e-6;
@@ -658,6 +660,8 @@ Status Generator::Smooth(const ExecutionContext& context)
     LocalSpacing Spacing;
     /** Of a sample: a density of h^-5 gives a spacing of h. */
     double Mass;
+    /** No sample is near the boundary or layers. */
+    bool IsInside;
   };
   std::vector<Cell> cells;
   for (const SizingOctree::Leaf& leaf : this->Octree.GetLeaves())
@@ -668,8 +672,12 @@ Status Generator::Smooth(const ExecutionContext& context)
       const Vec3 size{ double(leaf.Size[0]), double(leaf.Size[1]), double(leaf.Size[2]) };
       const LocalSpacing spacing = this->Input.Sizing(this->Octree.GetPosition(low + 0.5 * size));
       const Vec3 edges = this->Octree.GetEdges(leaf);
+      const Vec3 reach = this->Options.BoundaryClearance * spacing.GetExtents();
+      const bool isInside = leaf.Region >= 0 && this->Options.Layers.empty() &&
+        !this->Locator.MayTouch(
+          this->Octree.GetPosition(low) - reach, this->Octree.GetPosition(low + size) + reach);
       cells.push_back({ &leaf, spacing,
-        edges.X * edges.Y * edges.Z * std::pow(spacing.GetDensity(), 5.0 / 3.0) });
+        edges.X * edges.Y * edges.Z * std::pow(spacing.GetDensity(), 5.0 / 3.0), isInside });
     }
   }
   struct Moment
@@ -691,10 +699,11 @@ Status Generator::Smooth(const ExecutionContext& context)
         return Status::Aborted();
       }
       const Cell& cell = cells[i];
-      for (int part = 0; part < 8; ++part)
+      for (int part = 0; part < SamplesAlongLeaf * SamplesAlongLeaf * SamplesAlongLeaf; ++part)
       {
-        const Vec3 sample = this->GetRandomPosition(*cell.Leaf, part, 2);
-        const Id region = this->FindRegion(sample, cell.Spacing, cell.Leaf->Region);
+        const Vec3 sample = this->GetRandomPosition(*cell.Leaf, part, SamplesAlongLeaf);
+        const Id region = cell.IsInside ? cell.Leaf->Region
+                                        : this->FindRegion(sample, cell.Spacing, cell.Leaf->Region);
         if (region == OutsideRegion)
         {
           continue;

@@ -17,8 +17,8 @@
  *     - none: layers only;
  *  3. points stay if they lie strictly inside of a region, not near a layer, and clear of the
  *     boundary by BoundaryClearance times the spacing of the points around them.
- * Distances of nearest points and edges of the mesh come close to the spacing: octree cells have
- * half of it to 1.25 times of it.
+ * Edges of the mesh come close to the spacing. Octree cells are powers of two apart: their edges
+ * have half of it to 1.5 times of it, random points and those of a grid are closer to it.
  *
  * Inputs: port 0: vtkPolyData of triangles (run vtkBoundaryTriangulator first), closed, optionally
  * with the two-component cell array BoundaryLabels. Give the mesher that comes after it the same
@@ -42,8 +42,8 @@
  * interface that does not exist, a Sizing that is not positive, or more points than
  * MaximumNumberOfPoints. A warning if no point, or not each layer, finds place.
  *
- * Cost: O(n log n); about 10 microseconds for a point of the octree, ten times as much for a random
- * one.
+ * Cost: O(n log n); some 10 microseconds for a point of the octree, a millisecond for a random one
+ * with the default number of iterations.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
  * the placements. Filters/Core/MeshPointGenerator.h is the engine.
