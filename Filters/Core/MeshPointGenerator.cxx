@@ -129,6 +129,8 @@ private:
     /** Into the region; a step along it leads as far away from the interface. */
     Vec3 Direction;
     double Edge;
+    /** The interface ends here; where a wall begins there is no place for points above it. */
+    bool IsRim;
   };
 
   Status PlaceLayers();
@@ -257,7 +259,7 @@ Status Generator::FindLayerFeet(const PointLayers& layers,
   for (std::size_t v = 0; v < vertices.size(); ++v)
   {
     const Vertex& vertex = vertices[v];
-    if (vertex.IsRim || vertex.Triangles.empty() || !(Norm(vertex.Normal) > 0.0))
+    if (vertex.Triangles.empty() || !(Norm(vertex.Normal) > 0.0))
     {
       continue;
     }
@@ -275,7 +277,7 @@ Status Generator::FindLayerFeet(const PointLayers& layers,
     // In a sharp groove the points of all vertices would meet.
     if (distance > 0.3 * step)
     {
-      feet.push_back({ surface.Points[v], (step / distance) * normal, vertex.Edge });
+      feet.push_back({ surface.Points[v], (step / distance) * normal, vertex.Edge, vertex.IsRim });
     }
   }
   return {};
@@ -313,7 +315,7 @@ Status Generator::PlaceLayers(const PointLayers& layers, const std::vector<Layer
         this->Output.Regions.push_back(layers.Region);
         this->Output.Layers.push_back(number);
       }
-      this->Output.DroppedLayerPoints += !stays;
+      this->Output.DroppedLayerPoints += !stays && !foot.IsRim;
     }
   }
   return {};

@@ -13,7 +13,7 @@
  *    (Poisson disks in the metric of the sizing); then Lloyd's iteration: each point moves to the
  *    center of its Voronoi cell, found by counting samples;
  *  - layers off chosen interfaces, besides any of these: the surface is refined as the sizing asks
- *    for (DelaunaySurfaceRefiner.h); on the normal of each vertex inside of the interface stand
+ *    for (DelaunaySurfaceRefiner.h); on the normal of each vertex of the interface stand
  *    points at distances d, d + d q, d + d q + d q^2, ... from it. Above the same vertices these
  *    make prisms, which are Delaunay however flat they are.
  *
@@ -113,7 +113,10 @@ struct MeshPointGeneratorOutput
   std::vector<Id> Regions;
   /** Number of the layer from the interface, from 1 on; 0: none. */
   std::vector<Id> Layers;
-  /** Points of layers that would be too close to the boundary or to other layers. */
+  /**
+   * Points of layers that would be too close to the boundary or to other layers; above the rim of
+   * an interface they are not expected, and not counted.
+   */
   Id DroppedLayerPoints = 0;
 };
 

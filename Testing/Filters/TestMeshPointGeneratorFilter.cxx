@@ -271,8 +271,8 @@ TEST(MeshPointGeneratorFilter, ReadsSizingsOfAllKinds)
 
 TEST(MeshPointGeneratorFilter, MeshesATransistorWithLayers)
 {
-  // A gate oxide of 5 nm over a channel of 0.18 um: three layers in the oxide, ten from 0.4 nm on
-  // in the silicon below; edges along the interface are 20 times as long as the oxide is thick.
+  // A gate oxide of 5 nm over a channel of 0.18 um: three layers in the oxide, eight from 0.4 nm on
+  // in the silicon below; edges along the interface are up to 50 times as long as the gaps.
   vtkNew<vtkTechnologyStructureSource> device;
   device->SetStructureToMosTransistor();
   vtkNew<vtkBoundaryTriangulator> triangulator;
@@ -305,7 +305,10 @@ TEST(MeshPointGeneratorFilter, MeshesATransistorWithLayers)
     }
   }
   EXPECT_GT(counts[1], 0);
-  EXPECT_EQ(3 * counts[0], 8 * counts[1]);
+  // Whole columns: in the silicon also below the gate's edges, in the oxide these are walls.
+  EXPECT_EQ(counts[0] % 8, 0);
+  EXPECT_EQ(counts[1] % 3, 0);
+  EXPECT_GT(counts[0] / 8, counts[1] / 3);
 
   vtkNew<vtkDelaunaySurfaceRefiner> refiner;
   refiner->SetInputConnection(triangulator->GetOutputPort());
