@@ -5,6 +5,7 @@
 
 #include "Core/SizingField.h"
 
+#include <vtkCellType.h>
 #include <vtkDataSet.h>
 #include <vtkDoubleArray.h>
 #include <vtkGradientFilter.h>
@@ -28,10 +29,16 @@ namespace
 /** One finite number for each point, and what can have a gradient. */
 cdm::Status CheckSolution(vtkDataSet* input, vtkDataArray* solution)
 {
-  if (input->GetNumberOfCells() == 0)
+  bool hasCells = false;
+  for (vtkIdType cell = 0; cell < input->GetNumberOfCells() && !hasCells; ++cell)
+  {
+    const int type = input->GetCellType(cell);
+    hasCells = type != VTK_EMPTY_CELL && type != VTK_VERTEX && type != VTK_POLY_VERTEX;
+  }
+  if (!hasCells)
   {
     return cdm::Status::InvalidInput(
-      "The input has no cells: the solution has no gradient on points alone.");
+      "The input has no cells but points: a solution has no gradient on points alone.");
   }
   if (!solution || solution->GetNumberOfComponents() != 1 ||
     solution->GetNumberOfTuples() != input->GetNumberOfPoints())

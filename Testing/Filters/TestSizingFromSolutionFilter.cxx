@@ -179,6 +179,12 @@ TEST(SizingFromSolutionFilter, RefusesBadInput)
   cloud->GetPointData()->SetActiveScalars("Linear");
   filter->SetInputData(cloud);
   ExpectFailure(filter, { "no cells" });
+  vtkNew<vtkCellArray> vertices;
+  vertices->InsertNextCell({ 0 });
+  vertices->InsertNextCell({ 1 });
+  cloud->SetVerts(vertices);
+  cloud->Modified();
+  ExpectFailure(filter, { "no cells" });
   auto image = MakeImage(Linear);
   filter->SetInputData(image);
   filter->SetMinimumSize(2.0);
