@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <random>
 #include <set>
 #include <string>
@@ -50,6 +49,22 @@ constexpr int SamplesAlongLeaf = 3;
 /** Points of layers that are nearer, in spacings, are the same up to rounding. */
 constexpr double SmallestDistance = 1e-6;
 
+/** Whether a template has a point where so many coordinates are in the middle of a cell. */
+bool HasTemplatePoint(PointTemplate kind, int middles)
+{
+  switch (kind)
+  {
+    case PointTemplate::Corners:
+      return middles == 0;
+    case PointTemplate::Centers:
+      return middles == 3;
+    case PointTemplate::BodyCentered:
+      return middles == 0 || middles == 3;
+    default:
+      return middles == 0 || middles == 2;
+  }
+}
+
 /** Places of a template's points in a cell, in halves of its edges. */
 std::vector<std::array<int, 3>> GetTemplatePoints(PointTemplate kind)
 {
@@ -57,13 +72,7 @@ std::vector<std::array<int, 3>> GetTemplatePoints(PointTemplate kind)
   for (int i = 0; i < 27; ++i)
   {
     const std::array<int, 3> place{ i % 3, i / 3 % 3, i / 9 };
-    const int halves = (place[0] == 1) + (place[1] == 1) + (place[2] == 1);
-    const bool isCorner = halves == 0;
-    const bool isMeant = kind == PointTemplate::Corners ? isCorner
-      : kind == PointTemplate::Centers                  ? halves == 3
-      : kind == PointTemplate::BodyCentered             ? isCorner || halves == 3
-                                                        : isCorner || halves == 2;
-    if (isMeant)
+    if (HasTemplatePoint(kind, (place[0] == 1) + (place[1] == 1) + (place[2] == 1)))
     {
       places.push_back(place);
     }
@@ -558,12 +567,7 @@ Status Generator::PlaceOrthoProduct()
     {
       for (std::size_t x = 0; x < counts[0]; ++x)
       {
-        const auto halves = x % 2 + y % 2 + z % 2;
-        const bool isMeant = (halves == 0 && kind != PointTemplate::Centers) ||
-          (halves == 3 &&
-            (kind == PointTemplate::Centers || kind == PointTemplate::BodyCentered)) ||
-          (halves == 2 && kind == PointTemplate::FaceCentered);
-        if (!isMeant)
+        if (!HasTemplatePoint(kind, static_cast<int>(x % 2 + y % 2 + z % 2)))
         {
           continue;
         }

@@ -344,8 +344,7 @@ private:
       }
       return cell;
     }
-    vtkIdType cell =
-      this->Cells->FindCell(x, 0.0, this->Cell, subId, parametric, this->Weights.data());
+    vtkIdType cell = this->Cells->FindCell(x, 0.0, this->Cell, parametric, this->Weights.data());
     if (cell < 0)
     {
       double closest[3];

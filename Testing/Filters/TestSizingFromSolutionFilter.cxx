@@ -180,8 +180,10 @@ TEST(SizingFromSolutionFilter, RefusesBadInput)
   filter->SetInputData(cloud);
   ExpectFailure(filter, { "no cells" });
   vtkNew<vtkCellArray> vertices;
-  vertices->InsertNextCell({ 0 });
-  vertices->InsertNextCell({ 1 });
+  for (const vtkIdType id : { 0, 1 })
+  {
+    vertices->InsertNextCell(1, &id);
+  }
   cloud->SetVerts(vertices);
   cloud->Modified();
   ExpectFailure(filter, { "no cells" });
