@@ -107,6 +107,6 @@ struct DelaunaySurfaceRefinerOutput
 Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,
   const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
   DelaunaySurfaceRefinerOutput& output);
-}
+} // namespace cdm
 
 #endif

@@ -33,6 +33,6 @@ struct SurfaceSides
 };
 
 SurfaceSides FindSurfaceSides(const TriangleMesh& surface);
-}
+} // namespace cdm
 
 #endif
