@@ -455,8 +455,9 @@ Status AdvancingFront::TetrahedralizePoints()
       for (std::size_t t = begin; t < end; ++t)
       {
         const TetrahedronIds& ids = this->All.Tetrahedra[t];
-        const bool isBeyondHull =
-          (ids[0] == infinite) | (ids[1] == infinite) | (ids[2] == infinite) | (ids[3] == infinite);
+        const bool isBeyondHull = (ids[0] != NoId) &
+          ((ids[0] == infinite) | (ids[1] == infinite) | (ids[2] == infinite) |
+            (ids[3] == infinite));
         this->States[t] = isBeyondHull ? BeyondHull : Unreached;
       }
     });

@@ -1175,8 +1175,9 @@ bool SurfaceRefiner::FindTooCoarse(Id t, Id& segment) const
   double limit = this->Options.MaximumEdgeLength > 0.0 ? this->Options.MaximumEdgeLength : Infinity;
   if (this->Input.Sizing)
   {
-    const double size = this->Input.Sizing((1.0 / 3.0) * (corners[0] + corners[1] + corners[2]));
-    limit = size > 0.0 ? std::min(limit, size) : limit;
+    const LocalSpacing spacing =
+      this->Input.Sizing((1.0 / 3.0) * (corners[0] + corners[1] + corners[2]));
+    limit = std::min(limit, spacing.GetLargest());
   }
   int longest = 0;
   double lengths[3];

@@ -30,11 +30,10 @@
 #define cdmDelaunaySurfaceRefiner_h
 
 #include "ExecutionContext.h"
+#include "SizingField.h"
 #include "Status.h"
 #include "StructuralEdges.h"
 #include "TriangleMesh.h"
-
-#include <functional>
 
 namespace cdm
 {
@@ -75,8 +74,11 @@ struct DelaunaySurfaceRefinerInput
   const TriangleMesh* Surface = nullptr;
   /** May be null. */
   const std::vector<Vec3>* MeshPoints = nullptr;
-  /** Target edge length at a position, model units; may be empty. */
-  std::function<double(const Vec3&)> Sizing;
+  /**
+   * May be empty. Of anisotropic spacing the largest length counts: Delaunay triangles that were as
+   * long as that in one direction and shorter in another would need points to match on all sides.
+   */
+  SizingField Sizing;
 };
 
 struct DelaunaySurfaceRefinerReport
@@ -105,6 +107,6 @@ struct DelaunaySurfaceRefinerOutput
 Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,
   const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
   DelaunaySurfaceRefinerOutput& output);
-}
+} // namespace cdm
 
 #endif

@@ -13,8 +13,7 @@ namespace
 class DisjointSets
 {
 public:
-  explicit DisjointSets(std::size_t size)
-    : Parents(size)
+  explicit DisjointSets(std::size_t size) : Parents(size)
   {
     std::iota(this->Parents.begin(), this->Parents.end(), 0);
   }
@@ -66,9 +65,9 @@ std::vector<EdgeUse> CollectEdgeUses(const TriangleMesh& surface)
         { { std::min(a, b), std::max(a, b) }, static_cast<Id>(t), triangle[(i + 2) % 3], a < b });
     }
   }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& x, const EdgeUse& y) {
-    return x.Edge != y.Edge ? x.Edge < y.Edge : x.Triangle < y.Triangle;
-  });
+  std::sort(uses.begin(), uses.end(),
+    [](const EdgeUse& x, const EdgeUse& y)
+    { return x.Edge != y.Edge ? x.Edge < y.Edge : x.Triangle < y.Triangle; });
   return uses;
 }
 
@@ -77,10 +76,8 @@ class AngleOrder
 {
 public:
   AngleOrder(const std::vector<Vec3>& points, const EdgeUse& first)
-    : Points(points)
-    , A(points[first.Edge[0]])
-    , B(points[first.Edge[1]])
-    , Reference(points[first.Apex])
+    : Points(points), A(points[first.Edge[0]]), B(points[first.Edge[1]]),
+      Reference(points[first.Apex])
   {
   }
 
@@ -122,7 +119,7 @@ private:
   Vec3 B;
   Vec3 Reference;
 };
-}
+} // namespace
 
 SurfaceSides FindSurfaceSides(const TriangleMesh& surface)
 {
@@ -150,13 +147,13 @@ SurfaceSides FindSurfaceSides(const TriangleMesh& surface)
       const EdgeUse& use = uses[i];
       const EdgeUse& next = uses[i + 1 < end ? i + 1 : begin];
       // The side that faces growing angles meets the next triangle's side that faces falling ones.
-      sides.Unite(2 * use.Triangle + (use.IsForward ? 0 : 1), 2 * next.Triangle + (next.IsForward ? 1 : 0));
+      sides.Unite(
+        2 * use.Triangle + (use.IsForward ? 0 : 1), 2 * next.Triangle + (next.IsForward ? 1 : 0));
       components.Unite(use.Triangle, next.Triangle);
     }
   }
   std::sort(result.OpenTriangles.begin(), result.OpenTriangles.end());
-  result.OpenTriangles.erase(
-    std::unique(result.OpenTriangles.begin(), result.OpenTriangles.end()),
+  result.OpenTriangles.erase(std::unique(result.OpenTriangles.begin(), result.OpenTriangles.end()),
     result.OpenTriangles.end());
 
   // Number the shells, and sum up what each encloses: the outer shell of a component encloses minus
@@ -183,6 +180,14 @@ SurfaceSides FindSurfaceSides(const TriangleMesh& surface)
     const double volume = Dot(a, Cross(b, c));
     volumes[shell] += side % 2 == 0 ? -volume : volume;
   }
+  Id numberOfComponents = 0;
+  result.Components.resize(surface.Triangles.size());
+  for (Id triangle = 0; triangle < numberOfTriangles; ++triangle)
+  {
+    const Id first = components.Find(triangle);
+    result.Components[triangle] =
+      first == triangle ? numberOfComponents++ : result.Components[first];
+  }
   std::vector<Id> outerShells(surface.Triangles.size(), NoId);
   for (std::size_t shell = 0; shell < volumes.size(); ++shell)
   {
@@ -204,4 +209,4 @@ SurfaceSides FindSurfaceSides(const TriangleMesh& surface)
   }
   return result;
 }
-}
+} // namespace cdm

@@ -26,11 +26,13 @@ struct SurfaceSides
   std::vector<char> IsOuter;
   /** For each shell: whether its component has an open edge. */
   std::vector<char> IsOpen;
+  /** For each triangle: the edge-connected component, numbered by its smallest triangle. */
+  std::vector<Id> Components;
   /** Triangles with an open edge, ascending. */
   std::vector<Id> OpenTriangles;
 };
 
 SurfaceSides FindSurfaceSides(const TriangleMesh& surface);
-}
+} // namespace cdm
 
 #endif

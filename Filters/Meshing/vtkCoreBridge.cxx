@@ -234,67 +234,178 @@ std::string Describe(const cdm::Status& status, vtkDataSet* input)
     vtkCoreBridge::ListCells(std::move(cells)) + ListIds("Points", points, writePosition);
 }
 
+constexpr int MaximumSizingComponents = 9;
+
+std::string ListValues(const double* values, int count)
+{
+  std::ostringstream text;
+  for (int i = 0; i < count; ++i)
+  {
+    text << (i ? ", " : "") << values[i];
+  }
+  return text.str();
+}
+
+/** Principal values and directions (rows) of a symmetric tensor in VTK's 6 or 9 components. */
+void FindPrincipalAxes(
+  const double* tensor, int components, double (&lengths)[3], double (&directions)[3][3])
+{
+  static const int places6[3][3] = { { 0, 3, 5 }, { 3, 1, 4 }, { 5, 4, 2 } };
+  double matrix[3][3];
+  double columns[3][3];
+  double* matrixRows[3] = { matrix[0], matrix[1], matrix[2] };
+  double* columnRows[3] = { columns[0], columns[1], columns[2] };
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int j = 0; j < 3; ++j)
+    {
+      matrix[i][j] =
+        components == 6 ? tensor[places6[i][j]] : 0.5 * (tensor[3 * i + j] + tensor[3 * j + i]);
+    }
+  }
+  vtkMath::Jacobi(matrixRows, lengths, columnRows);
+  vtkMath::Transpose3x3(columns, directions);
+}
+
 /** Interpolates the array Sizing of a data set; see ToSizing(). */
 class SizingInterpolator
 {
 public:
-  SizingInterpolator(vtkDataSet* data, vtkDataArray* values) : Values(values)
+  SizingInterpolator(vtkDataSet* data, vtkDataArray* values)
+    : Values(values), Components(values->GetNumberOfComponents())
   {
     // A copy of its own: locators build caches in the data set that they search.
     this->Data.TakeReference(data->NewInstance());
     this->Data->ShallowCopy(data);
-    if (data->GetNumberOfCells() > 0)
+    // Grids along the axes find cells by themselves.
+    this->IsGrid = (data->IsA("vtkImageData") || data->IsA("vtkRectilinearGrid")) &&
+      data->GetNumberOfCells() > 0 && !data->HasAnyBlankCells();
+    if (data->GetNumberOfCells() > 0 && !this->IsGrid)
     {
       this->Cells->SetDataSet(this->Data);
       this->Cells->BuildLocator();
     }
     this->Points->SetDataSet(this->Data);
     this->Points->BuildLocator();
+    this->Data->GetBounds(this->Bounds);
+    this->Weights.resize(std::max(8, this->Data->GetMaxCellSize()));
   }
 
-  double operator()(const cdm::Vec3& position)
+  cdm::LocalSpacing operator()(const cdm::Vec3& position)
   {
-    const double x[3] = { position.X, position.Y, position.Z };
-    vtkIdType cellId = -1;
-    if (this->Data->GetNumberOfCells() > 0)
+    double x[3] = { position.X, position.Y, position.Z };
+    const vtkIdType cell = this->FindCell(x);
+    if (cell < 0)
     {
-      int subId = 0;
-      double distance2 = 0.0;
-      this->Cells->FindClosestPoint(x, this->Closest, this->Cell, cellId, subId, distance2);
+      this->Values->GetTuple(this->Points->FindClosestPoint(x), this->Tuple);
+      std::copy_n(this->Tuple, this->Components, this->Sum);
+      std::fill_n(this->Low, this->Components, 0.0);
+      std::fill_n(this->High, this->Components, std::numeric_limits<double>::infinity());
+      return this->MakeSpacing();
     }
-    if (cellId < 0)
+    std::fill_n(this->Sum, this->Components, 0.0);
+    std::fill_n(this->Low, this->Components, std::numeric_limits<double>::infinity());
+    std::fill_n(this->High, this->Components, 0.0);
+    for (vtkIdType i = 0; i < this->Cell->GetNumberOfPoints(); ++i)
     {
-      return this->Values->GetComponent(this->Points->FindClosestPoint(x), 0);
+      this->Values->GetTuple(this->Cell->GetPointId(i), this->Tuple);
+      for (int j = 0; j < this->Components; ++j)
+      {
+        this->Sum[j] += this->Weights[i] * this->Tuple[j];
+        this->Low[j] = std::min(this->Low[j], this->Tuple[j]);
+        this->High[j] = std::max(this->High[j], this->Tuple[j]);
+      }
     }
-    this->Weights.resize(this->Cell->GetNumberOfPoints());
-    int subId = 0;
-    double parametric[3];
-    double distance2 = 0.0;
-    this->Cell->EvaluatePosition(
-      this->Closest, nullptr, subId, parametric, distance2, this->Weights.data());
-    double sum = 0.0;
-    double smallest = std::numeric_limits<double>::max();
-    double largest = 0.0;
-    for (std::size_t i = 0; i < this->Weights.size(); ++i)
-    {
-      const double value =
-        this->Values->GetComponent(this->Cell->GetPointId(static_cast<vtkIdType>(i)), 0);
-      sum += this->Weights[i] * value;
-      smallest = std::min(smallest, value);
-      largest = std::max(largest, value);
-    }
-    // A degenerate cell gives weights of any kind.
-    return std::isfinite(sum) ? std::min(std::max(sum, smallest), largest) : smallest;
+    return this->MakeSpacing();
   }
 
 private:
+  /** The cell that holds a position, or is nearest to it, with its weights there; or -1. */
+  vtkIdType FindCell(double x[3])
+  {
+    if (this->Data->GetNumberOfCells() == 0)
+    {
+      return -1;
+    }
+    int subId = 0;
+    double parametric[3];
+    double distance2 = 0.0;
+    if (this->IsGrid)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        x[axis] = std::min(std::max(x[axis], this->Bounds[2 * axis]), this->Bounds[2 * axis + 1]);
+      }
+      const vtkIdType cell = this->Data->FindCell(
+        x, nullptr, this->Cell, -1, 0.0, subId, parametric, this->Weights.data());
+      if (cell >= 0)
+      {
+        this->Data->GetCell(cell, this->Cell);
+      }
+      return cell;
+    }
+    vtkIdType cell = this->Cells->FindCell(x, 0.0, this->Cell, parametric, this->Weights.data());
+    if (cell < 0)
+    {
+      double closest[3];
+      this->Cells->FindClosestPoint(x, closest, this->Cell, cell, subId, distance2);
+      if (cell >= 0)
+      {
+        this->Cell->EvaluatePosition(
+          closest, nullptr, subId, parametric, distance2, this->Weights.data());
+      }
+    }
+    return cell;
+  }
+
+  /** Of the sum, within the bounds: a degenerate cell gives weights of any kind. */
+  cdm::LocalSpacing MakeSpacing()
+  {
+    if (this->Components <= 3)
+    {
+      for (int j = 0; j < this->Components; ++j)
+      {
+        this->Sum[j] = std::isfinite(this->Sum[j])
+          ? std::min(std::max(this->Sum[j], this->Low[j]), this->High[j])
+          : this->Low[j];
+      }
+      return this->Components == 1
+        ? cdm::LocalSpacing(this->Sum[0])
+        : cdm::LocalSpacing(cdm::Vec3{ this->Sum[0], this->Sum[1], this->Sum[2] });
+    }
+    double lengths[3];
+    double directions[3][3];
+    if (!std::all_of(this->Sum, this->Sum + this->Components,
+          [](double value) { return std::isfinite(value); }))
+    {
+      std::copy_n(this->Tuple, this->Components, this->Sum);
+    }
+    FindPrincipalAxes(this->Sum, this->Components, lengths, directions);
+    if (!(std::min({ lengths[0], lengths[1], lengths[2] }) > 0.0))
+    {
+      FindPrincipalAxes(this->Tuple, this->Components, lengths, directions);
+    }
+    cdm::Vec3 axes[3];
+    for (int i = 0; i < 3; ++i)
+    {
+      axes[i] = { directions[i][0], directions[i][1], directions[i][2] };
+    }
+    return { cdm::Vec3{ lengths[0], lengths[1], lengths[2] }, axes };
+  }
+
   vtkSmartPointer<vtkDataSet> Data;
   vtkSmartPointer<vtkDataArray> Values;
+  int Components;
+  bool IsGrid = false;
+  double Bounds[6];
   vtkNew<vtkStaticCellLocator> Cells;
   vtkNew<vtkStaticPointLocator> Points;
   vtkNew<vtkGenericCell> Cell;
   std::vector<double> Weights;
-  double Closest[3] = { 0.0, 0.0, 0.0 };
+  double Tuple[MaximumSizingComponents];
+  double Sum[MaximumSizingComponents];
+  double Low[MaximumSizingComponents];
+  double High[MaximumSizingComponents];
 };
 } // namespace
 
@@ -638,26 +749,92 @@ cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh)
 }
 
 //--------------------------------------------------------------------------------------------------
-cdm::Status ToSizing(vtkDataSet* input, std::function<double(const cdm::Vec3&)>& sizing)
+cdm::Status ToSizing(vtkDataSet* input, cdm::SizingField& sizing)
 {
   vtkDataArray* values = input->GetPointData()->GetArray(SizingName);
-  if (!values || values->GetNumberOfComponents() != 1 || values->GetNumberOfTuples() == 0)
+  const int components = values ? values->GetNumberOfComponents() : 0;
+  if (!values || values->GetNumberOfTuples() == 0 ||
+    (components != 1 && components != 3 && components != 6 && components != 9))
   {
-    return cdm::Status::InvalidInput("The sizing input needs a point array Sizing with one "
-                                     "component: the target edge length, in model units.");
+    return cdm::Status::InvalidInput(
+      "The sizing input needs a point array Sizing, the target edge length in model units: one "
+      "component, 3 (for each axis), or 6 or 9 (a symmetric tensor).");
+  }
+  const cdm::Status status = CheckArrays(input);
+  if (!status.IsOk())
+  {
+    return status;
   }
   for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i)
   {
-    const double value = values->GetComponent(i, 0);
-    if (!(value > 0.0 && std::isfinite(value)))
+    double tuple[MaximumSizingComponents];
+    values->GetTuple(i, tuple);
+    bool isGood =
+      std::all_of(tuple, tuple + components, [](double value) { return std::isfinite(value); });
+    double lengths[3] = { tuple[0], tuple[components > 1 ? 1 : 0], tuple[components > 1 ? 2 : 0] };
+    if (isGood && components > 3)
     {
-      return cdm::Status::InvalidInput("The point array Sizing must be positive and finite; its "
-                                       "value at point " +
-        std::to_string(i) + " of the sizing input is " + std::to_string(value) + ".");
+      double directions[3][3];
+      FindPrincipalAxes(tuple, components, lengths, directions);
+    }
+    const double largest = std::max({ lengths[0], lengths[1], lengths[2] });
+    for (int j = 0; j < 3 && components == 9; ++j)
+    {
+      isGood = isGood &&
+        std::abs(tuple[3 * j + (j + 1) % 3] - tuple[3 * ((j + 1) % 3) + j]) <= 1e-6 * largest;
+    }
+    if (!isGood || !(std::min({ lengths[0], lengths[1], lengths[2] }) > 0.0))
+    {
+      return cdm::Status::InvalidInput(std::string("The point array Sizing must be positive and "
+                                                   "finite, and a tensor symmetric") +
+        "; its value at point " + std::to_string(i) + " of the sizing input is " +
+        ListValues(tuple, components) + ".");
     }
   }
   auto interpolator = std::make_shared<SizingInterpolator>(input, values);
   sizing = [interpolator](const cdm::Vec3& position) { return (*interpolator)(position); };
+  return {};
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToSizingCells(vtkDataSet* input, cdm::SizingCells& cells)
+{
+  const cdm::Status status = CheckArrays(input);
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  const vtkIdType count = input->GetNumberOfPoints();
+  if (count > LargestId)
+  {
+    return TooLarge("points", count);
+  }
+  cells.Points.resize(count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    double x[3];
+    input->GetPoint(i, x);
+    cells.Points[i] = { x[0], x[1], x[2] };
+  }
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < input->GetNumberOfCells(); ++cell)
+  {
+    input->GetCellPoints(cell, ids);
+    const vtkIdType size = ids->GetNumberOfIds();
+    if (static_cast<vtkIdType>(cells.Connectivity.size()) + size > LargestId)
+    {
+      return TooLarge("corners of cells", cells.Connectivity.size() + size);
+    }
+    if (UsesMissingPoints(size, ids->GetPointer(0), count))
+    {
+      return MissingPoints({ static_cast<cdm::Id>(cell) });
+    }
+    for (vtkIdType i = 0; i < size; ++i)
+    {
+      cells.Connectivity.push_back(static_cast<cdm::Id>(ids->GetId(i)));
+    }
+    cells.Offsets.push_back(static_cast<cdm::Id>(cells.Connectivity.size()));
+  }
   return {};
 }
 

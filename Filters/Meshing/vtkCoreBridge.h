@@ -16,6 +16,7 @@
 #include "Core/AdvancingFrontTetrahedralizer.h"
 #include "Core/ExecutionContext.h"
 #include "Core/PolygonSoup.h"
+#include "Core/SizingField.h"
 #include "Core/Status.h"
 #include "Core/StructuralEdges.h"
 #include "Core/TetMesh.h"
@@ -43,7 +44,7 @@ namespace vtkCoreBridge
 constexpr const char* BoundaryLabelsName = "BoundaryLabels";
 /** Cell array of tetrahedra, point array of seeds. */
 constexpr const char* RegionIdName = "RegionId";
-/** Point array of the sizing input. */
+/** Point array of the sizing input: a length, one for each axis, or a tensor. */
 constexpr const char* SizingName = "Sizing";
 /** Point array of structural edges: ids of the surface's points. */
 constexpr const char* SurfacePointIdName = "SurfacePointId";
@@ -95,10 +96,15 @@ cdm::Status ToSeeds(vtkPointSet* input, std::vector<cdm::RegionSeed>& seeds);
 cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh);
 
 /**
- * The point array Sizing as a function: interpolated in the cell nearest to the position, or taken
- * from the nearest point if there are no cells. The function keeps what it needs of the input.
+ * The point array Sizing as a field: interpolated in the cell that holds the position, outside of
+ * the cells at the nearest point of them, or taken from the nearest point if there are no cells.
+ * One component: a length; 3: one for each axis; 6 (xx, yy, zz, xy, yz, xz) or 9: a symmetric
+ * tensor with the lengths as its principal values. The field keeps what it needs of the input.
  */
-cdm::Status ToSizing(vtkDataSet* input, std::function<double(const cdm::Vec3&)>& sizing);
+cdm::Status ToSizing(vtkDataSet* input, cdm::SizingField& sizing);
+
+/** Points and cells of any data set. */
+cdm::Status ToSizingCells(vtkDataSet* input, cdm::SizingCells& cells);
 
 vtkSmartPointer<vtkPoints> FromPoints(const std::vector<cdm::Vec3>& points);
 

@@ -12,9 +12,10 @@
  *
  * Inputs: port 0: vtkPolyData of triangles (run vtkBoundaryTriangulator first), optionally with the
  * two-component cell array BoundaryLabels. Port 1, optional: vtkPointSet, mesh points that the
- * tetrahedra are to use inside. Port 2, optional: vtkDataSet with the one-component point array
- * Sizing: target edge length at a position, in model units, positive; between its points it is
- * interpolated, outside of it the nearest value holds.
+ * tetrahedra are to use inside. Port 2, optional: vtkDataSet with the point array Sizing: target
+ * edge length at a position, in model units, positive; between its points it is interpolated,
+ * outside of it the nearest value holds. Of several lengths (3 components: along the axes; 6 or 9: a
+ * tensor) the largest counts.
  *
  * Outputs: port 0: the Delaunay surface: input points with their ids, new points after them.
  * Point data are interpolated at new points (id arrays excepted: they are dropped), cell data are

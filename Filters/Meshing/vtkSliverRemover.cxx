@@ -21,7 +21,7 @@ namespace
 {
 using SortedTetrahedra = std::vector<std::pair<cdm::TetrahedronIds, vtkIdType>>;
 
-SortedTetrahedra Sort(const std::vector<cdm::TetrahedronIds>& tetrahedra)
+SortedTetrahedra Sort(const cdm::RawVector<cdm::TetrahedronIds>& tetrahedra)
 {
   SortedTetrahedra sorted;
   sorted.reserve(tetrahedra.size());
@@ -35,8 +35,8 @@ SortedTetrahedra Sort(const std::vector<cdm::TetrahedronIds>& tetrahedra)
 }
 
 /** For each tetrahedron the one with the same points before, or -1. */
-std::vector<vtkIdType> FindSurvivors(
-  const std::vector<cdm::TetrahedronIds>& before, const std::vector<cdm::TetrahedronIds>& after)
+std::vector<vtkIdType> FindSurvivors(const cdm::RawVector<cdm::TetrahedronIds>& before,
+  const cdm::RawVector<cdm::TetrahedronIds>& after)
 {
   const SortedTetrahedra sorted = Sort(before);
   std::vector<vtkIdType> sources(after.size(), -1);
@@ -79,7 +79,7 @@ int vtkSliverRemover::RequestData(
   }
 
   cdm::TetMesh mesh;
-  std::vector<cdm::TetrahedronIds> before;
+  cdm::RawVector<cdm::TetrahedronIds> before;
   cdm::SliverRemoverReport report;
   const cdm::Status status = vtkCoreBridge::Guard(
     [&]

@@ -171,6 +171,31 @@ TEST(DelaunaySurfaceRefinerFilter, FollowsTheSizing)
   EXPECT_LE(GetLongestEdge(run.GetOutput(0)), 0.6);
 }
 
+TEST(DelaunaySurfaceRefinerFilter, FollowsTheLargestOfSeveralLengths)
+{
+  // Principal lengths of 0.3, 0.3 and 0.01, along the axes and as a tensor askew, as good as 0.3.
+  const double part = 0.5 * (0.3 - 0.01);
+  const std::vector<std::vector<double>> sizings{ { 0.3 }, { 0.3, 0.01, 0.3 },
+    { 0.3 - part, 0.3 - part, 0.3, part, 0.0, 0.0 } };
+  vtkIdType expected = 0;
+  for (const std::vector<double>& lengths : sizings)
+  {
+    auto cloud = MakePoints({ { 0.5, 0.5, 0.5 } });
+    vtkNew<vtkDoubleArray> sizing;
+    sizing->SetName("Sizing");
+    sizing->SetNumberOfComponents(static_cast<int>(lengths.size()));
+    sizing->InsertNextTuple(lengths.data());
+    cloud->GetPointData()->AddArray(sizing);
+    Pipeline run(MakeCube());
+    run.Refiner->SetInputData(2, cloud);
+    run.Refiner->Update();
+    EXPECT_EQ(run.Recorder->Errors + run.Recorder->Warnings, "");
+    EXPECT_LE(GetLongestEdge(run.GetOutput(0)), 0.3 + 1e-12);
+    expected = expected > 0 ? expected : run.GetOutput(0)->GetNumberOfPoints();
+    EXPECT_EQ(run.GetOutput(0)->GetNumberOfPoints(), expected);
+  }
+}
+
 TEST(DelaunaySurfaceRefinerFilter, RefusesBadSizing)
 {
   Pipeline run(MakeCube());

@@ -64,18 +64,19 @@ for name, proxy in sorted(proxies.items()):
     if name not in classes:
         continue
     options = GetOptions(classes[name])
-    commands = {(child.get("command") or "")[3:]: child for child in properties.values()}
+    commands = {child.get("command") or "": child for child in properties.values()}
     for option, default in options.items():
-        if option not in commands:
+        if "Set" + option not in commands:
             problems.append("%s has no property for Set%s" % (name, option))
             continue
-        text = commands[option].get("default_values")
+        text = commands["Set" + option].get("default_values")
         values = default if isinstance(default, (tuple, list)) else [default]
         Check(text is not None and [float(word) for word in text.split()] ==
               [float(value) for value in values],
               name, option, "has the default", default, "and in the plugin", text)
-    for command in commands:
-        Check(hasattr(classes[name], "Set" + command), name, "has no method Set" + command)
+    # Tables are filled by commands that add a row, and emptied by another one.
+    for command in [*commands, *(child.get("clean_command") for child in properties.values())]:
+        Check(not command or hasattr(classes[name], command), name, "has no method", command)
 
     instance = classes[name]()
     ports = [port.get("name") for port in proxy.iter("OutputPort")]

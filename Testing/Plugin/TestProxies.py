@@ -70,6 +70,34 @@ assert Count(mesher) == without, "the mesh points are gone"
 names = [mesher.SMProxy.GetOutputPortName(i) for i in range(3)]
 assert names == ["Tetrahedra", "Boundary", "Problems"], names
 
+# Mesh points placed as a solution asks for, with rows of a table for layers and ticks.
+wavelet = Wavelet(WholeExtent=[-2, 2, -2, 2, -2, 2])
+sizing = SizingFromSolution(Input=wavelet, Solution=["POINTS", "RTData"], MaximumSize=0.5)
+sizing.UpdatePipeline()
+low, high = sizing.GetPointDataInformation().GetArray("Sizing").GetRange()
+assert 0.0 < low <= high <= 0.5, (low, high)
+generator = MeshPointGenerator(Input=surface, Placement="Ortho-product grid", Template="Corners")
+generator.XTicks = [-0.2, 0.0, 0.2]
+generator.YTicks = [0.0, 0.5]
+generator.ZTicks = [-1.0, 0.0, 1.0]
+generator.UpdatePipeline()
+# Ticks at 0.2 are 0.3 away from the boundary, which is more than half of their distance.
+assert Count(generator) == 3 * 2 * 3, Count(generator)
+generator.Placement = "Layers only"
+generator.Spacing = [0.4, 0.4, 0.4]
+generator.Layers = [0, -1, 2, 0.01, 1.5, 0, -1, 1, 0.1, 1]
+generator.UpdatePipeline()
+layers = generator.GetPointDataInformation().GetArray("Layer").GetRange()
+assert layers == (1.0, 2.0), layers
+generator.Placement = "Octree"
+generator.Sizing = sizing
+generator.UpdatePipeline()
+mesher.MeshPoints = generator
+mesher.Sizing = sizing
+mesher.UpdatePipeline()
+assert abs(Volume(mesher) - 6.0) < 6e-12
+assert Count(mesher) > without, "the mesh points are used"
+
 device = TechnologyStructureSource()
 device.UpdatePipeline()
 assert Count(device) > 0

@@ -13,8 +13,8 @@ LoadPlugin(os.environ["CDM_PLUGIN"], remote=False, ns=globals())
 
 expected = {
     "vtkAdvancingFrontTetrahedralizer", "vtkBoundaryTriangulator", "vtkConformingDelaunayMesher",
-    "vtkDelaunaySurfaceRefiner", "vtkSliverRemover", "vtkStructuralEdgeExtractor",
-    "vtkTechnologyStructureSource"}
+    "vtkDelaunaySurfaceRefiner", "vtkMeshPointGenerator", "vtkSizingFromSolution",
+    "vtkSliverRemover", "vtkStructuralEdgeExtractor", "vtkTechnologyStructureSource"}
 missing = expected - set(dir(conforming_delaunay))
 assert not missing, missing
 

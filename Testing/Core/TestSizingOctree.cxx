@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BoundaryTriangulator.h"
+#include "RandomComplexes.h"
+#include "SizingOctree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace cdm;
+
+namespace
+{
+TriangleMesh MakeBox(const Vec3& size)
+{
+  BoundaryTriangulatorOutput output;
+  EXPECT_TRUE(TriangulateBoundary(CellComplex(size).GetSoup(), {}, {}, output).IsOk());
+  return output.Surface;
+}
+
+/** Short at a point near one corner. */
+LocalSpacing GetConeSpacing(const Vec3& p)
+{
+  return 0.004 + 0.8 * Distance(p, { 0.3, 0.2, 0.25 });
+}
+
+struct Tree
+{
+  Tree(const Vec3& size, SizingField sizing, const SizingOctreeOptions& options)
+    : Surface(MakeBox(size)), Locator(this->Surface), Sizing(std::move(sizing))
+  {
+    EXPECT_TRUE(this->Locator.Build().IsOk());
+    this->Result = this->Octree.Build(this->Locator, this->Sizing, options, {});
+  }
+
+  /** The largest difference of levels of leaves that touch. */
+  int GetLargestLevelDifference() const
+  {
+    int largest = 0;
+    const std::vector<SizingOctree::Leaf>& leaves = this->Octree.GetLeaves();
+    for (std::size_t i = 0; i < leaves.size(); ++i)
+    {
+      for (std::size_t j = 0; j < i; ++j)
+      {
+        bool touch = true;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          touch = touch && leaves[i].Low[axis] <= leaves[j].Low[axis] + leaves[j].Size[axis] &&
+            leaves[j].Low[axis] <= leaves[i].Low[axis] + leaves[i].Size[axis];
+        }
+        for (int axis = 0; axis < 3 && touch; ++axis)
+        {
+          largest = std::max(largest,
+            std::abs(
+              this->Octree.GetLevels(leaves[i])[axis] - this->Octree.GetLevels(leaves[j])[axis]));
+        }
+      }
+    }
+    return largest;
+  }
+
+  double GetVolume() const
+  {
+    double volume = 0.0;
+    for (const SizingOctree::Leaf& leaf : this->Octree.GetLeaves())
+    {
+      const Vec3 edges = this->Octree.GetEdges(leaf);
+      volume += edges.X * edges.Y * edges.Z;
+    }
+    return volume;
+  }
+
+  TriangleMesh Surface;
+  RegionLocator Locator;
+  SizingField Sizing;
+  SizingOctree Octree;
+  Status Result;
+};
+} // namespace
+
+TEST(SizingOctree, BoundsTheIrregularity)
+{
+  SizingOctreeOptions options;
+  options.MaximumLevelDifference = 0;
+  const Tree free({ 1.0, 1.0, 1.0 }, GetConeSpacing, options);
+  ASSERT_TRUE(free.Result.IsOk());
+  EXPECT_GT(free.GetLargestLevelDifference(), 1);
+  std::size_t last = free.Octree.GetLeaves().size();
+  for (int difference : { 2, 1 })
+  {
+    options.MaximumLevelDifference = difference;
+    const Tree bounded({ 1.0, 1.0, 1.0 }, GetConeSpacing, options);
+    ASSERT_TRUE(bounded.Result.IsOk());
+    EXPECT_LE(bounded.GetLargestLevelDifference(), difference);
+    EXPECT_GE(bounded.Octree.GetLeaves().size(), last);
+    EXPECT_NEAR(bounded.GetVolume(), 1.0, 1e-12);
+    last = bounded.Octree.GetLeaves().size();
+  }
+}
+
+TEST(SizingOctree, LeavesAreAsLargeAsTheSpacing)
+{
+  SizingOctreeOptions options;
+  options.MaximumRatio = 1.25;
+  options.MaximumLevelDifference = 0;
+  const Tree tree({ 1.0, 1.0, 1.0 }, GetConeSpacing, options);
+  ASSERT_TRUE(tree.Result.IsOk());
+  for (const SizingOctree::Leaf& leaf : tree.Octree.GetLeaves())
+  {
+    const Vec3 edges = tree.Octree.GetEdges(leaf);
+    const Vec3 low{ double(leaf.Low[0]), double(leaf.Low[1]), double(leaf.Low[2]) };
+    const Vec3 position = tree.Octree.GetPosition(low);
+    EXPECT_LE(edges.X, 1.25 * 4.0 / 3.0 * GetConeSpacing(position).GetLargest());
+    EXPECT_LE(edges.X, 1.25 * leaf.Spacing.X);
+  }
+}
+
+TEST(SizingOctree, AnisotropicSpacingMakesFlatCells)
+{
+  SizingOctreeOptions options;
+  const Vec3 lengths{ 0.26, 0.26, 0.02 };
+  const Tree tree(
+    { 1.0, 1.0, 1.0 }, [&](const Vec3&) { return LocalSpacing(lengths); }, options);
+  ASSERT_TRUE(tree.Result.IsOk());
+  // 1/4 along x and y, 1/64 along z.
+  EXPECT_EQ(tree.Octree.GetLeaves().size(), 4u * 4u * 64u);
+
+  // Levels are bounded for each axis by itself.
+  const Tree graded(
+    { 1.0, 1.0, 1.0 },
+    [](const Vec3& p) {
+      return LocalSpacing(Vec3{ 0.25, 0.25, 0.01 + 0.9 * p.X * p.X });
+    },
+    options);
+  ASSERT_TRUE(graded.Result.IsOk());
+  EXPECT_EQ(graded.GetLargestLevelDifference(), 1);
+  EXPECT_NEAR(graded.GetVolume(), 1.0, 1e-12);
+}
+
+TEST(SizingOctree, RootsAreNearlyCubic)
+{
+  SizingOctreeOptions options;
+  const Tree tree(
+    { 1.0, 0.5, 0.25 }, [](const Vec3&) { return 10.0; }, options);
+  ASSERT_TRUE(tree.Result.IsOk());
+  ASSERT_EQ(tree.Octree.GetLeaves().size(), 4u * 2u * 1u);
+  EXPECT_EQ(tree.Octree.GetEdges(tree.Octree.GetLeaves()[0]), (Vec3{ 0.25, 0.25, 0.25 }));
+}
+
+TEST(SizingOctree, RefusesTooFineSizings)
+{
+  SizingOctreeOptions options;
+  options.MaximumNumberOfLeaves = 1000;
+  const Tree many(
+    { 1.0, 1.0, 1.0 }, [](const Vec3&) { return 0.01; }, options);
+  EXPECT_EQ(many.Result.Code, StatusCode::InvalidInput);
+  EXPECT_NE(many.Result.Message.find("1000 points"), std::string::npos);
+  options.MaximumNumberOfLeaves = 1000000;
+  const Tree deep(
+    { 1.0, 1.0, 1.0 },
+    [](const Vec3& p) {
+      return 1e-8 + Distance(p, { 0.0, 0.0, 0.0 });
+    },
+    options);
+  EXPECT_EQ(deep.Result.Code, StatusCode::InvalidInput);
+  EXPECT_NE(deep.Result.Message.find("2^19"), std::string::npos);
+}
