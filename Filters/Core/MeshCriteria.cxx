@@ -24,19 +24,64 @@ constexpr double SumTolerance = 1e-12;
 /** Bound of the relative error of a product of four lengths that is a sum of some ten terms. */
 constexpr double ProductError = 1e-14;
 
+/** Tangent of one degree: facets of a border that bend by less go straight on. */
+constexpr double SmoothTangent = 0.017455064928217585;
+
 /** 6 * tetrahedron + i has to fit into an Id. */
 constexpr std::size_t MaximumNumberOfTetrahedra = std::numeric_limits<Id>::max() / 6;
+
+/** An outer or interface facet. */
+struct BorderFacet
+{
+  /** Ascending. */
+  TriangleIds Points;
+  /** Of its two sides, ascending. */
+  Id LowRegion = OutsideRegion;
+  Id HighRegion = OutsideRegion;
+};
+
+/** An edge of such a facet. */
+struct BorderEdge
+{
+  EdgeIds Points;
+  Id Facet;
+
+  friend bool operator<(const BorderEdge& a, const BorderEdge& b)
+  {
+    return a.Points != b.Points ? a.Points < b.Points : a.Facet < b.Facet;
+  }
+};
 
 /** What a block of points finds; joined in the order of the blocks. */
 struct BlockResult
 {
   std::vector<MeshViolation> Violations;
-  /** Facet ids of all tetrahedra at outer and interface facets. */
+  std::vector<BorderFacet> BorderFacets;
+  /** Facet ids of all tetrahedra at them. */
   std::vector<Id> BorderSides;
-  Id BorderFacets = 0;
   Id Simplices = 0;
   Id Couplings = 0;
 };
+
+/** Two facets of one surface that go straight on at their common edge. */
+bool AreSmooth(const BorderFacet& first, const BorderFacet& second, const EdgeIds& edge,
+  const std::vector<Vec3>& points)
+{
+  if (first.LowRegion != second.LowRegion || first.HighRegion != second.HighRegion)
+  {
+    return false;
+  }
+  const Vec3& origin = points[edge[0]];
+  const Vec3 direction = points[edge[1]] - origin;
+  const auto getNormal = [&](const BorderFacet& facet)
+  {
+    const Id third = facet.Points[0] + facet.Points[1] + facet.Points[2] - edge[0] - edge[1];
+    return Cross(direction, points[third] - origin);
+  };
+  const Vec3 a = getNormal(first);
+  const Vec3 b = getNormal(second);
+  return Norm(Cross(a, b)) < -SmoothTangent * Dot(a, b);
+}
 
 class Evaluator
 {
@@ -53,7 +98,8 @@ public:
 private:
   bool EvaluateTetrahedra(const SphereCriteria& criteria, const ExecutionContext& context);
   bool EvaluateFacets(const SphereCriteria& criteria, const ExecutionContext& context);
-  bool EvaluateBorderEdges(const SphereCriteria& criteria, const ExecutionContext& context);
+  void CollectBorderEdges();
+  bool EvaluateStructuralEdges(const SphereCriteria& criteria, const ExecutionContext& context);
   bool EvaluateEdges(const ExecutionContext& context);
   void CountCoincidentPoints();
   void CompareVolumes();
@@ -90,10 +136,13 @@ private:
   std::vector<signed char> Orientations;
   /** Crit. 5.3; false where there is no sphere. */
   std::vector<char> IsDelaunay;
-  /** Facet ids of the tetrahedra at outer and interface facets. */
+  std::vector<BorderFacet> BorderFacets;
+  /** Facet ids of the tetrahedra at them. */
   std::vector<Id> BorderSides;
-  /** Edges of these facets, ascending, and whether they violate Crit. 3.2. */
+  /** Their edges, ascending. */
   std::vector<EdgeIds> BorderEdges;
+  /** Those where they do not go straight on, ascending, and whether they violate Crit. 3.2. */
+  std::vector<EdgeIds> StructuralEdges;
   std::vector<char> HasFilledSphere;
 };
 
@@ -105,7 +154,7 @@ Status Evaluator::Run(const ExecutionContext& context)
   const SphereCriteria criteria(this->Mesh.Points);
   if (!this->EvaluateTetrahedra(criteria, context.Part(0.05, 0.6)) ||
     !this->EvaluateFacets(criteria, context.Part(0.6, 0.75)) ||
-    !this->EvaluateBorderEdges(criteria, context.Part(0.75, 0.8)) ||
+    !this->EvaluateStructuralEdges(criteria, context.Part(0.75, 0.8)) ||
     !this->EvaluateEdges(context.Part(0.8, 1.0)))
   {
     return Status::Aborted();
@@ -228,11 +277,16 @@ void Evaluator::EvaluateFacet(const SphereCriteria& criteria, const TriangleIds&
   {
     return;
   }
-  ++result.BorderFacets;
+  BorderFacet border{ points };
   for (auto record = begin; record != end; ++record)
   {
     result.BorderSides.push_back(record->Simplex);
+    const Id region = this->Mesh.Regions[record->Simplex / 4];
+    border.LowRegion = record == begin ? region : std::min(border.LowRegion, region);
+    border.HighRegion = std::max(border.HighRegion, region);
   }
+  border.LowRegion = end - begin == 1 ? OutsideRegion : border.LowRegion;
+  result.BorderFacets.push_back(border);
   if (!criteria.HasEmptySmallestSphere(points))
   {
     add(MeshFault::FacetSphere);
@@ -273,36 +327,54 @@ bool Evaluator::EvaluateFacets(const SphereCriteria& criteria, const ExecutionCo
   for (const BlockResult& result : results)
   {
     this->Report.Facets += result.Simplices;
-    this->Report.BorderFacets += result.BorderFacets;
+    this->BorderFacets.insert(
+      this->BorderFacets.end(), result.BorderFacets.begin(), result.BorderFacets.end());
     this->BorderSides.insert(
       this->BorderSides.end(), result.BorderSides.begin(), result.BorderSides.end());
   }
+  this->Report.BorderFacets = static_cast<Id>(this->BorderFacets.size());
   return true;
 }
 
-bool Evaluator::EvaluateBorderEdges(const SphereCriteria& criteria, const ExecutionContext& context)
+void Evaluator::CollectBorderEdges()
 {
-  for (const Id side : this->BorderSides)
+  std::vector<BorderEdge> edges;
+  edges.reserve(3 * this->BorderFacets.size());
+  for (Id facet = 0; facet < static_cast<Id>(this->BorderFacets.size()); ++facet)
   {
-    TriangleIds ids = GetFacet(this->Mesh.Tetrahedra[side / 4], side % 4);
-    std::sort(ids.begin(), ids.end());
-    this->BorderEdges.push_back({ ids[0], ids[1] });
-    this->BorderEdges.push_back({ ids[1], ids[2] });
-    this->BorderEdges.push_back({ ids[0], ids[2] });
+    const TriangleIds& ids = this->BorderFacets[facet].Points;
+    edges.push_back({ { ids[0], ids[1] }, facet });
+    edges.push_back({ { ids[1], ids[2] }, facet });
+    edges.push_back({ { ids[0], ids[2] }, facet });
   }
-  std::sort(this->BorderEdges.begin(), this->BorderEdges.end());
-  this->BorderEdges.erase(
-    std::unique(this->BorderEdges.begin(), this->BorderEdges.end()), this->BorderEdges.end());
-  this->Report.BorderEdges = static_cast<Id>(this->BorderEdges.size());
+  std::sort(edges.begin(), edges.end());
+  for (auto begin = edges.cbegin(), end = begin; begin != edges.cend(); begin = end)
+  {
+    end = std::find_if(
+      begin, edges.cend(), [&](const BorderEdge& edge) { return edge.Points != begin->Points; });
+    this->BorderEdges.push_back(begin->Points);
+    if (end - begin != 2 ||
+      !AreSmooth(this->BorderFacets[begin[0].Facet], this->BorderFacets[begin[1].Facet],
+        begin->Points, this->Mesh.Points))
+    {
+      this->StructuralEdges.push_back(begin->Points);
+    }
+  }
+  this->Report.StructuralEdges = static_cast<Id>(this->StructuralEdges.size());
+}
 
-  this->HasFilledSphere.resize(this->BorderEdges.size());
-  return ParallelLoop(this->BorderEdges.size(), this->LoopOptions, context,
-    "Evaluating border edges",
+bool Evaluator::EvaluateStructuralEdges(
+  const SphereCriteria& criteria, const ExecutionContext& context)
+{
+  this->CollectBorderEdges();
+  this->HasFilledSphere.resize(this->StructuralEdges.size());
+  return ParallelLoop(this->StructuralEdges.size(), this->LoopOptions, context,
+    "Evaluating structural edges",
     [&](std::size_t begin, std::size_t end, std::size_t)
     {
       for (std::size_t i = begin; i < end; ++i)
       {
-        this->HasFilledSphere[i] = !criteria.HasEmptySmallestSphere(this->BorderEdges[i]);
+        this->HasFilledSphere[i] = !criteria.HasEmptySmallestSphere(this->StructuralEdges[i]);
       }
     });
 }
@@ -540,11 +612,11 @@ void Evaluator::CompareVolumes()
 void Evaluator::Finish()
 {
   std::vector<MeshViolation>& violations = this->Report.Violations;
-  for (std::size_t i = 0; i < this->BorderEdges.size(); ++i)
+  for (std::size_t i = 0; i < this->StructuralEdges.size(); ++i)
   {
     if (this->HasFilledSphere[i])
     {
-      const EdgeIds& edge = this->BorderEdges[i];
+      const EdgeIds& edge = this->StructuralEdges[i];
       violations.push_back({ MeshFault::EdgeSphere, { edge[0], edge[1], NoId, NoId }, NoId, NoId });
     }
   }
@@ -648,8 +720,8 @@ std::string MeshCriteriaReport::GetCertificate() const
   text += "non-Delaunay " + FormatShare(this->GetCount(MeshFault::NonDelaunayFacet), this->Facets) +
     ", filled smallest sphere " +
     FormatShare(this->GetCount(MeshFault::FacetSphere), this->BorderFacets) +
-    "; border edges: filled smallest sphere " +
-    FormatShare(this->GetCount(MeshFault::EdgeSphere), this->BorderEdges) +
+    "; structural edges: filled smallest sphere " +
+    FormatShare(this->GetCount(MeshFault::EdgeSphere), this->StructuralEdges) +
     "; negative couplings " +
     FormatShare(this->GetCount(MeshFault::NegativeCoupling), this->Couplings) +
     "; open control volumes " + count(MeshFault::OpenControlVolume) + "; negative cotangent sums " +

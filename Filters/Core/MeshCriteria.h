@@ -10,7 +10,9 @@
  *     facets: Crit. 3.1, and whether the circumcenter of a tetrahedron lies beyond (which opens
  *     control volumes, Fig. 3.4), that is whether the facet's smallest sphere holds its fourth
  *     vertex;
- *  3. edges of these facets: Crit. 3.2;
+ *  3. structural edges, those where these facets do not go straight on (Def. 6.2: an edge of other
+ *     than two of them, with different regions, or bent by more than a degree): Crit. 3.2. On the
+ *     other edges a sphere can be filled by points of the same facet only, which is harmless;
  *  4. all edges, gathered at their lowest point: Crit. 3.3, and for each region the coupling of the
  *     box method, the signed area of the Voronoi facet within the region. If all tetrahedra around
  *     an edge inside of a region are Delaunay that facet is a convex polygon, and nothing is
@@ -52,7 +54,7 @@ enum class MeshFault
   NonDelaunayFacet,
   /** Crit. 3.1, outer and interface facets. */
   FacetSphere,
-  /** Crit. 3.2, edges of these facets. */
+  /** Crit. 3.2, structural edges. */
   EdgeSphere,
   /** A tetrahedron whose circumcenter lies beyond one of these facets. */
   OpenControlVolume,
@@ -104,9 +106,9 @@ struct MeshCriteriaReport
   /** Points of tetrahedra that coincide with another such point of smaller id. */
   Id CoincidentPoints = 0;
   Id Facets = 0;
-  /** Outer and interface facets, and their edges. */
+  /** Outer and interface facets. */
   Id BorderFacets = 0;
-  Id BorderEdges = 0;
+  Id StructuralEdges = 0;
   Id Edges = 0;
   /** Pairs of an edge and a region. */
   Id Couplings = 0;

@@ -13,7 +13,7 @@ LoadPlugin(os.environ["CDM_PLUGIN"], remote=False, ns=globals())
 
 expected = {
     "vtkAdvancingFrontTetrahedralizer", "vtkBoundaryTriangulator", "vtkConformingDelaunayMesher",
-    "vtkDelaunaySurfaceRefiner", "vtkSliverRemover", "vtkStructuralEdgeExtractor",
+    "vtkDelaunayMeshCriteria", "vtkDelaunaySurfaceRefiner", "vtkSliverRemover", "vtkStructuralEdgeExtractor",
     "vtkTechnologyStructureSource"}
 missing = expected - set(dir(conforming_delaunay))
 assert not missing, missing
