@@ -42,6 +42,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeTransistor()
   device->SetStructureToMosTransistor();
   vtkNew<vtkConformingDelaunayMesher> mesher;
   mesher->SetInputConnection(device->GetOutputPort());
+  mesher->SetCriterionToSmallestSphereAndEdges();
   mesher->Update();
   return mesher->GetOutput();
 }
@@ -65,6 +66,10 @@ TEST(DelaunayMeshCriteriaFilter, DeviceOfTheSuiteIsClean)
   EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
   ExpectProgress(recorder);
   EXPECT_TRUE(criteria->GetIsClean()) << criteria->GetCertificate();
+  for (const char* name : { "FacetSphereViolations", "EdgeSphereViolations", "OpenControlVolumes" })
+  {
+    EXPECT_EQ(0.0, GetFieldValue(criteria->GetOutput(), name)) << name;
+  }
 
   vtkUnstructuredGrid* output = criteria->GetOutput();
   ASSERT_EQ(mesh->GetNumberOfCells(), output->GetNumberOfCells());
