@@ -445,20 +445,17 @@ bool Evaluator::HasNegativeCotangentSum(RecordIterator begin, RecordIterator end
 bool Evaluator::HasNegativeCoupling(
   const EdgeIds& edge, RecordIterator begin, RecordIterator end, Id region) const
 {
-  DoubleDouble sum;
-  double lengths = Distance(this->Mesh.Points[edge[0]], this->Mesh.Points[edge[1]]);
+  CouplingSum sum;
   for (auto record = begin; record != end; ++record)
   {
     const Id tetrahedron = record->Simplex / 6;
     if (this->Mesh.Regions[tetrahedron] == region && this->Orientations[tetrahedron] > 0)
     {
       const auto [a, b, c, d] = this->GetCorners(tetrahedron);
-      const DoubleDouble term = GetCouplings(a, b, c, d)[record->Simplex % 6];
-      sum = sum + term;
-      lengths += std::abs(term.High);
+      sum.Add(GetCouplings(a, b, c, d)[record->Simplex % 6]);
     }
   }
-  return sum.High < -SumTolerance * lengths;
+  return sum.IsNegative(Distance(this->Mesh.Points[edge[0]], this->Mesh.Points[edge[1]]));
 }
 
 void Evaluator::EvaluateEdge(

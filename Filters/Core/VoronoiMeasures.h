@@ -21,6 +21,7 @@
 #include "Vec3.h"
 
 #include <array>
+#include <cmath>
 
 namespace cdm
 {
@@ -30,6 +31,30 @@ namespace cdm
  */
 std::array<DoubleDouble, 6> GetCouplings(
   const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+/** The sum of the couplings of an edge over the tetrahedra of a region. */
+class CouplingSum
+{
+public:
+  void Add(const DoubleDouble& coupling)
+  {
+    this->Sum = this->Sum + coupling;
+    this->Lengths += std::abs(coupling.High);
+  }
+  double Get() const { return this->Sum.High; }
+  /**
+   * Negative by more than 1e-12 of the lengths involved, that of the edge among them: what rounded
+   * coordinates leave of a coupling that is zero does not count.
+   */
+  bool IsNegative(double edgeLength) const
+  {
+    return this->Sum.High < -1e-12 * (edgeLength + this->Lengths);
+  }
+
+private:
+  DoubleDouble Sum;
+  double Lengths = 0.0;
+};
 
 /** Circumcenter, its coordinates rounded once; the tetrahedron must not be flat. */
 Vec3 GetAccurateCircumcenter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);

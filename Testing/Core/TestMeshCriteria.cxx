@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "AdvancingFrontTetrahedralizer.h"
+#include "HullMeshes.h"
+
 #include "MeshCriteria.h"
 #include "Predicates.h"
 #include "SphereCriteria.h"
@@ -9,9 +10,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 
 using namespace cdm;
+using namespace testing_core;
 
 namespace
 {
@@ -38,50 +39,6 @@ MeshCriteriaReport Evaluate(const TetMesh& mesh, int threads = 2)
   const Status status = EvaluateMeshCriteria(mesh, nullptr, options, {}, report);
   EXPECT_TRUE(status.IsOk()) << status.Message;
   return report;
-}
-
-/** The Delaunay mesh of the hull of points. */
-TetMesh MakeHullMesh(const std::vector<Vec3>& points)
-{
-  AdvancingFrontTetrahedralizerInput input;
-  input.MeshPoints = &points;
-  AdvancingFrontTetrahedralizerOptions options;
-  options.CloseOpenBoundary = true;
-  AdvancingFrontTetrahedralizerOutput output;
-  const Status status = TetrahedralizeByAdvancingFront(input, options, {}, output);
-  EXPECT_TRUE(status.IsOk()) << status.Message;
-  return output.Mesh;
-}
-
-std::vector<Vec3> MakeRandomPoints(int count, unsigned seed, double rounding = 0.0)
-{
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> coordinate(0.0, 1.0);
-  std::vector<Vec3> points(count);
-  for (Vec3& point : points)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      point[axis] = coordinate(random);
-      if (rounding > 0.0)
-      {
-        point[axis] = std::rint(point[axis] / rounding) * rounding;
-      }
-    }
-  }
-  return points;
-}
-
-/** Points of a cubic grid. */
-std::vector<Vec3> MakeGrid(int size, double spacing)
-{
-  std::vector<Vec3> points;
-  for (int i = 0; i < size * size * size; ++i)
-  {
-    points.push_back(
-      { spacing * (i % size), spacing * (i / size % size), spacing * (i / size / size) });
-  }
-  return points;
 }
 } // namespace
 
