@@ -14,7 +14,7 @@ LoadPlugin(os.environ["CDM_PLUGIN"], remote=False, ns=globals())
 expected = {
     "vtkAdvancingFrontTetrahedralizer", "vtkBoundaryTriangulator", "vtkConformingDelaunayMesher",
     "vtkDelaunayMeshCriteria", "vtkDelaunaySurfaceRefiner", "vtkSliverRemover", "vtkStructuralEdgeExtractor",
-    "vtkTechnologyStructureSource"}
+    "vtkTechnologyStructureSource", "vtkVoronoiControlVolumes"}
 missing = expected - set(dir(conforming_delaunay))
 assert not missing, missing
 
