@@ -367,9 +367,15 @@ int ReportFailure(
   {
     return 1;
   }
+  ReportError(filter, status, input);
+  return 0;
+}
+
+//--------------------------------------------------------------------------------------------------
+void ReportError(vtkAlgorithm* filter, const cdm::Status& status, vtkDataSet* input)
+{
   const std::string text = Describe(status, input);
   vtkErrorWithObjectMacro(filter, << text);
-  return 0;
 }
 
 //--------------------------------------------------------------------------------------------------

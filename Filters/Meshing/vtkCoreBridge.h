@@ -63,6 +63,9 @@ cdm::Status Guard(const std::function<cdm::Status()>& function);
 int ReportFailure(vtkAlgorithm* filter, vtkInformationVector* outputs, const cdm::Status& status,
   vtkDataSet* input);
 
+/** Emit the error only, as writers do, which have no outputs. */
+void ReportError(vtkAlgorithm* filter, const cdm::Status& status, vtkDataSet* input);
+
 /** " Cells: 1, 2, ... (n in all).": the first ten of them; empty without cells. */
 std::string ListCells(std::vector<vtkIdType> cells);
 

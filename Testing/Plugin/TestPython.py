@@ -13,8 +13,9 @@ LoadPlugin(os.environ["CDM_PLUGIN"], remote=False, ns=globals())
 
 expected = {
     "vtkAdvancingFrontTetrahedralizer", "vtkBoundaryTriangulator", "vtkConformingDelaunayMesher",
-    "vtkDelaunayMeshCriteria", "vtkDelaunaySurfaceRefiner", "vtkSliverRemover", "vtkStructuralEdgeExtractor",
-    "vtkTechnologyStructureSource", "vtkVoronoiControlVolumes"}
+    "vtkDelaunayMeshCriteria", "vtkDelaunaySurfaceRefiner", "vtkGmshMeshWriter",
+    "vtkSliverRemover", "vtkStructuralEdgeExtractor", "vtkTechnologyStructureSource",
+    "vtkVoronoiControlVolumes"}
 missing = expected - set(dir(conforming_delaunay))
 assert not missing, missing
 
