@@ -16,6 +16,18 @@ namespace
 {
 constexpr Id ContinueInterval = 1 << 10;
 
+/** Tangent of the angle by which two facets may bend and still be drawn as one plane. */
+constexpr double FlatTangent = 1e-9;
+
+/** A triangle of the border at one of its edges. */
+struct EdgeUse
+{
+  EdgeIds Edge;
+  /** Index of the border facet, and its vertex that is not on the edge. */
+  Id Facet;
+  Id Opposite;
+};
+
 /** Sets of equal things, each named by its smallest member. */
 class EqualSets
 {
@@ -68,6 +80,7 @@ private:
   using RecordIterator = std::vector<SimplexIncidence::Record>::const_iterator;
 
   void CollectBorders();
+  void FindFlatEdges();
   void UniteVertices();
   void AddPolygonsAround(const EdgeIds& edge, RecordIterator begin, RecordIterator end);
   void AddBorderPolygons();
@@ -84,6 +97,18 @@ private:
     const auto found = std::lower_bound(this->BorderEdges.begin(), this->BorderEdges.end(), edge);
     return this->FirstEdge + static_cast<Id>(found - this->BorderEdges.begin());
   }
+  /** Points of a border facet, its normal turned out of the region with the larger id. */
+  TriangleIds GetBorderFacet(Id border) const
+  {
+    const Id facet = this->BorderFacets[border];
+    return GetFacet(this->Mesh.Tetrahedra[facet / 4], facet % 4);
+  }
+  bool IsFlat(Id edgeVertex) const
+  {
+    return this->FlatEdges[edgeVertex - this->FirstEdge][0] != NoId;
+  }
+  bool AreFlat(const EdgeUse& first, const EdgeUse& second) const;
+  void WalkAround(Id border, int corner, std::vector<char>& isVisited);
   Vec3 GetPosition(Id vertex) const;
 
   const TetMesh& Mesh;
@@ -91,10 +116,12 @@ private:
   ControlPolyhedra& Polyhedra;
   /** By facet id: index of a border facet, the same from both sides of an interface, or NoId. */
   std::vector<Id> BorderIndices;
-  /** A facet id of each border facet. */
+  /** A facet id of each border facet, in the region with the larger id. */
   std::vector<Id> BorderFacets;
   /** Ascending. */
   std::vector<EdgeIds> BorderEdges;
+  /** For each border edge the two border facets that go straight on there, or NoId. */
+  std::vector<EdgeIds> FlatEdges;
   Id FirstEdge = 0;
   Id FirstTetrahedron = 0;
   Id FirstPoint = 0;
@@ -113,6 +140,7 @@ bool PolyhedronMaker::Run(const ExecutionContext& context)
     return false;
   }
   this->CollectBorders();
+  this->FindFlatEdges();
   this->UniteVertices();
   const SimplexIncidence incidence = SimplexIncidence::OfEdges(this->Mesh);
   std::vector<SimplexIncidence::Record> scratch;
@@ -143,17 +171,16 @@ void PolyhedronMaker::CollectBorders()
     for (int facet = 0; facet < 4; ++facet)
     {
       const Id neighbor = this->Mesh.Neighbors[i][facet];
-      const bool isOuter = neighbor == NoId;
-      if (!isOuter && this->Mesh.Regions[neighbor / 4] == this->Mesh.Regions[i])
+      const Id outside = neighbor == NoId ? OutsideRegion : this->Mesh.Regions[neighbor / 4];
+      if (outside >= this->Mesh.Regions[i])
       {
-        continue;
-      }
-      if (!isOuter && this->BorderIndices[neighbor] != NoId)
-      {
-        this->BorderIndices[4 * i + facet] = this->BorderIndices[neighbor];
         continue;
       }
       this->BorderIndices[4 * i + facet] = static_cast<Id>(this->BorderFacets.size());
+      if (neighbor != NoId)
+      {
+        this->BorderIndices[neighbor] = this->BorderIndices[4 * i + facet];
+      }
       this->BorderFacets.push_back(4 * i + facet);
       TriangleIds ids = GetFacet(this->Mesh.Tetrahedra[i], facet);
       std::sort(ids.begin(), ids.end());
@@ -168,6 +195,53 @@ void PolyhedronMaker::CollectBorders()
   this->FirstEdge = static_cast<Id>(this->BorderFacets.size());
   this->FirstTetrahedron = this->FirstEdge + static_cast<Id>(this->BorderEdges.size());
   this->FirstPoint = this->FirstTetrahedron + count;
+}
+
+bool PolyhedronMaker::AreFlat(const EdgeUse& first, const EdgeUse& second) const
+{
+  const auto getRegions = [this](Id border)
+  {
+    const Id facet = this->BorderFacets[border];
+    const Id neighbor = this->Mesh.Neighbors[facet / 4][facet % 4];
+    return EdgeIds{ this->Mesh.Regions[facet / 4],
+      neighbor == NoId ? OutsideRegion : this->Mesh.Regions[neighbor / 4] };
+  };
+  if (getRegions(first.Facet) != getRegions(second.Facet))
+  {
+    return false;
+  }
+  const std::vector<Vec3>& points = this->Mesh.Points;
+  const Vec3& origin = points[first.Edge[0]];
+  const Vec3 edge = points[first.Edge[1]] - origin;
+  const Vec3 a = Cross(edge, points[first.Opposite] - origin);
+  const Vec3 b = Cross(edge, points[second.Opposite] - origin);
+  return Norm(Cross(a, b)) < -FlatTangent * Dot(a, b);
+}
+
+void PolyhedronMaker::FindFlatEdges()
+{
+  std::vector<EdgeUse> uses;
+  for (Id border = 0; border < this->FirstEdge; ++border)
+  {
+    const TriangleIds ids = this->GetBorderFacet(border);
+    for (int i = 0; i < 3; ++i)
+    {
+      const Id a = ids[i];
+      const Id b = ids[(i + 1) % 3];
+      uses.push_back({ { std::min(a, b), std::max(a, b) }, border, ids[(i + 2) % 3] });
+    }
+  }
+  std::sort(uses.begin(), uses.end(),
+    [](const EdgeUse& a, const EdgeUse& b)
+    { return std::tie(a.Edge, a.Facet) < std::tie(b.Edge, b.Facet); });
+  for (auto begin = uses.cbegin(), end = begin; begin != uses.cend(); begin = end)
+  {
+    end =
+      std::find_if(begin, uses.cend(), [&](const EdgeUse& use) { return use.Edge != begin->Edge; });
+    const bool isFlat = end - begin == 2 && this->AreFlat(begin[0], begin[1]);
+    this->FlatEdges.push_back(
+      isFlat ? EdgeIds{ begin[0].Facet, begin[1].Facet } : EdgeIds{ NoId, NoId });
+  }
 }
 
 void PolyhedronMaker::UniteVertices()
@@ -201,15 +275,28 @@ void PolyhedronMaker::UniteVertices()
   }
   for (Id border = 0; border < this->FirstEdge; ++border)
   {
-    const Id facet = this->BorderFacets[border];
-    const TriangleIds ids = GetFacet(this->Mesh.Tetrahedra[facet / 4], facet % 4);
+    const TriangleIds ids = this->GetBorderFacet(border);
     for (int i = 0; i < 3; ++i)
     {
       const Id a = ids[i];
       const Id b = ids[(i + 1) % 3];
-      if (InDiametralSphere(points[a], points[b], points[ids[(i + 2) % 3]]) == 0)
+      const Id c = ids[(i + 2) % 3];
+      const Id edge = this->GetEdgeVertex(a, b);
+      if (InDiametralSphere(points[a], points[b], points[c]) == 0)
       {
-        this->Sets.Unite(border, this->GetEdgeVertex(a, b));
+        this->Sets.Unite(border, edge);
+      }
+      const EdgeIds& flat = this->FlatEdges[edge - this->FirstEdge];
+      if (flat[0] == border)
+      {
+        // Triangles of one circle.
+        const TriangleIds other = this->GetBorderFacet(flat[1]);
+        const Id opposite = other[0] + other[1] + other[2] - a - b;
+        if (Orientation(points[a], points[b], points[c], points[opposite]) == 0 &&
+          InEquatorialSphere(points[a], points[b], points[c], points[opposite]) == 0)
+        {
+          this->Sets.Unite(border, flat[1]);
+        }
       }
     }
   }
@@ -220,8 +307,7 @@ Vec3 PolyhedronMaker::GetPosition(Id vertex) const
   const std::vector<Vec3>& points = this->Mesh.Points;
   if (vertex < this->FirstEdge)
   {
-    const Id facet = this->BorderFacets[vertex];
-    const TriangleIds ids = GetFacet(this->Mesh.Tetrahedra[facet / 4], facet % 4);
+    const TriangleIds ids = this->GetBorderFacet(vertex);
     return GetCircumcenter(points[ids[0]], points[ids[1]], points[ids[2]]);
   }
   if (vertex < this->FirstTetrahedron)
@@ -315,7 +401,11 @@ void PolyhedronMaker::AddPolygonsAround(
       if (this->BorderIndices[exit] != NoId)
       {
         this->Polygon.push_back(this->BorderIndices[exit]);
-        this->Polygon.push_back(this->GetEdgeVertex(edge[0], edge[1]));
+        const Id middle = this->GetEdgeVertex(edge[0], edge[1]);
+        if (!this->IsFlat(middle))
+        {
+          this->Polygon.push_back(middle);
+        }
         break;
       }
       step = findStep(this->Mesh.Neighbors[step->Tetrahedron][step->Exit] / 4);
@@ -346,26 +436,59 @@ void PolyhedronMaker::AddPolygonsAround(
 
 void PolyhedronMaker::AddBorderPolygons()
 {
-  for (Id border = 0; border < this->FirstEdge; ++border)
+  std::vector<char> isVisited(3 * this->BorderFacets.size(), 0);
+  // Fans that begin and end at edges where the border bends first; what is left goes all around.
+  for (const bool isOpen : { true, false })
   {
-    const Id facet = this->BorderFacets[border];
-    const Id neighbor = this->Mesh.Neighbors[facet / 4][facet % 4];
-    const TriangleIds ids = GetFacet(this->Mesh.Tetrahedra[facet / 4], facet % 4);
-    for (int i = 0; i < 3; ++i)
+    for (Id border = 0; border < this->FirstEdge; ++border)
     {
-      const Id point = ids[i];
-      this->Polygon = { this->FirstPoint + point, this->GetEdgeVertex(point, ids[(i + 1) % 3]),
-        border, this->GetEdgeVertex(point, ids[(i + 2) % 3]) };
-      const Id polygon = this->AddPolygon();
-      if (polygon == NoId)
+      const TriangleIds ids = this->GetBorderFacet(border);
+      for (int corner = 0; corner < 3; ++corner)
       {
-        continue;
+        const Id entry = this->GetEdgeVertex(ids[corner], ids[(corner + 1) % 3]);
+        if (!isVisited[3 * border + corner] && this->IsFlat(entry) != isOpen)
+        {
+          this->WalkAround(border, corner, isVisited);
+        }
       }
-      this->Uses.push_back({ point, this->Mesh.Regions[facet / 4], polygon });
-      if (neighbor != NoId)
-      {
-        this->Uses.push_back({ point, this->Mesh.Regions[neighbor / 4], ~polygon });
-      }
+    }
+  }
+}
+
+/** Add the part of a plane piece of the border that belongs to the point at a corner. */
+void PolyhedronMaker::WalkAround(Id border, int corner, std::vector<char>& isVisited)
+{
+  const Id facet = this->BorderFacets[border];
+  const Id neighbor = this->Mesh.Neighbors[facet / 4][facet % 4];
+  const Id point = this->GetBorderFacet(border)[corner];
+  const Id entry = this->GetEdgeVertex(point, this->GetBorderFacet(border)[(corner + 1) % 3]);
+  this->Polygon.clear();
+  if (!this->IsFlat(entry))
+  {
+    this->Polygon = { this->FirstPoint + point, entry };
+  }
+  while (!isVisited[3 * border + corner])
+  {
+    isVisited[3 * border + corner] = 1;
+    this->Polygon.push_back(border);
+    const Id exit = this->GetEdgeVertex(point, this->GetBorderFacet(border)[(corner + 2) % 3]);
+    if (!this->IsFlat(exit))
+    {
+      this->Polygon.push_back(exit);
+      break;
+    }
+    const EdgeIds& flat = this->FlatEdges[exit - this->FirstEdge];
+    border = flat[flat[0] == border ? 1 : 0];
+    const TriangleIds next = this->GetBorderFacet(border);
+    corner = static_cast<int>(std::find(next.begin(), next.end(), point) - next.begin());
+  }
+  const Id polygon = this->AddPolygon();
+  if (polygon != NoId)
+  {
+    this->Uses.push_back({ point, this->Mesh.Regions[facet / 4], polygon });
+    if (neighbor != NoId)
+    {
+      this->Uses.push_back({ point, this->Mesh.Regions[neighbor / 4], ~polygon });
     }
   }
 }

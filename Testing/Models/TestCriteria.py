@@ -4,11 +4,11 @@
     TestCriteria.py validator --shared FOLDER --validator PROGRAM --output FOLDER
     TestCriteria.py gmsh --shared FOLDER --output FOLDER
 
-validator: meshes of models of a collection that lies beside the project, as the mesher makes them and
-with points moved at random: every count and measure that both programs know is the same.
-gmsh: meshes of devices as Gmsh makes them by default for the same edge length: their certificate is not
-clean, that of the suite's own meshes is; on the device of the yardstick the shares of non-Delaunay
-facets and negative couplings are near those that were measured elsewhere.
+validator: meshes of models of a collection that lies beside the project, as the mesher makes them
+and with points moved at random: every count and measure that both programs know is the same.
+gmsh: meshes of devices as Gmsh makes them by default for the same edge length: their certificate is
+not clean, that of the suite's own meshes is; on the device of the yardstick the shares of
+non-Delaunay facets and negative couplings are near those that were measured elsewhere.
 Exit status 77: no collection, or no Gmsh.
 """
 import argparse
@@ -66,7 +66,7 @@ def Certify(mesh):
 
 
 def MovePoints(mesh, share):
-    """A copy in which every fifth point is moved at random by a share of the bounding box's diagonal."""
+    """A copy, every fifth point moved at random by a share of the bounding box's diagonal."""
     moved = vtkUnstructuredGrid()
     moved.DeepCopy(mesh)
     points = moved.GetPoints()
@@ -156,7 +156,8 @@ def RunValidator(arguments):
             faults += not values["IsClean"][0]
             if differences:
                 failures += 1
-                print("%s, moved by %g: %s\n  %s" % (name, move, "; ".join(differences), certificate))
+                print("%s, moved by %g: %s\n  %s" % (
+                    name, move, "; ".join(differences), certificate))
     print("%d meshes, %d of them not clean, %d with differences" % (compared, faults, failures))
     return 1 if failures or compared < 30 or faults < 10 else 0
 
@@ -224,8 +225,9 @@ def WriteGeometry(surface, path):
             loops.setdefault(region, set()).add(surfaces[sides])
     for region, members in sorted(loops.items()):
         if region >= 0:
-            text.append("Surface Loop(%d) = {%s}; Volume(%d) = {%d}; Physical Volume(%d) = {%d};" % (
-                region + 1, ", ".join(map(str, sorted(members))), *[region + 1] * 4))
+            text.append("Surface Loop(%d) = {%s};" % (
+                region + 1, ", ".join(map(str, sorted(members)))))
+            text.append("Volume(%d) = {%d}; Physical Volume(%d) = {%d};" % ((region + 1,) * 4))
     with open(path, "w", encoding="ascii") as file:
         file.write("\n".join(text) + "\n")
 
@@ -295,7 +297,8 @@ def CompareWithGmsh(arguments):
             couplings = 100.0 * theirs["NegativeCouplings"][0] / theirs["Couplings"][0]
             facets_before, couplings_before = MEASURED[name]
             print("%s: %.2f %% of the facets, %.2f %% of the couplings" % (name, facets, couplings))
-            if not (0.5 < facets / facets_before < 2.0 and 0.5 < couplings / couplings_before < 2.0):
+            if not all(0.5 < now / before < 2.0 for now, before in (
+                    (facets, facets_before), (couplings, couplings_before))):
                 failures.append("%s: far from %g %% and %g %%" % (
                     name, facets_before, couplings_before))
     for failure in failures:
