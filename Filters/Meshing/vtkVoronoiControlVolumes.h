@@ -33,7 +33,8 @@
  * Failure: an error that names the cells, and empty outputs, for an empty input, cells of another
  * type, tetrahedra that are inverted, flat or overlap. An aborted run has empty outputs.
  *
- * Cost: O(n log n) on all processor cores; 200 bytes per tetrahedron, 1000 with boxes.
+ * Cost: O(n log n) on all processor cores; 180 bytes per tetrahedron, and
+ * 500 more for the boxes.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
  * control volumes. Filters/Core/ControlVolumes.h and ControlPolyhedra.h are the engine.
