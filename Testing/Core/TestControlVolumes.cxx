@@ -4,6 +4,7 @@
 #include "ControlPolyhedra.h"
 #include "Measures.h"
 #include "MeshChecks.h"
+#include "MeshCriteria.h"
 #include "VoronoiMeasures.h"
 
 #include <gtest/gtest.h>
@@ -272,6 +273,30 @@ TEST(ControlVolumes, SumsHoldWithNegativeCouplings)
     EXPECT_EQ(volumes.NegativeCouplings, negative);
     ExpectSums(mesh, volumes, 1e-12);
     ExpectClosedPolyhedra(mesh, volumes, 1e-9);
+  }
+}
+
+TEST(ControlVolumes, CertificateCountsTheSameNegativeCouplings)
+{
+  // Delaunay meshes of two regions, and grids whose points are moved under their tetrahedra.
+  for (const double jitter : { 0.0, 0.1, 0.2 })
+  {
+    std::vector<Vec3> points = jitter > 0.0 ? MakeGrid(7, 1.0) : MakeRandomPoints(700, 12);
+    TetMesh mesh = MakeHullMesh(points);
+    const std::vector<Vec3> moves = MakeRandomPoints(static_cast<int>(mesh.Points.size()), 13);
+    for (std::size_t i = 0; i < mesh.Points.size(); ++i)
+    {
+      mesh.Points[i] = mesh.Points[i] + jitter * (moves[i] - Vec3{ 0.5, 0.5, 0.5 });
+    }
+    SplitAt(mesh, jitter > 0.0 ? 3.0 : 0.5);
+    const ControlVolumes volumes = Compute(mesh);
+    MeshCriteriaReport report;
+    ASSERT_TRUE(EvaluateMeshCriteria(mesh, nullptr, {}, {}, report).IsOk());
+    EXPECT_EQ(jitter > 0.0, report.GetCount(MeshFault::NonDelaunayTetrahedron) > 0);
+    EXPECT_GT(volumes.NegativeCouplings, 0);
+    EXPECT_EQ(volumes.NegativeCouplings, report.GetCount(MeshFault::NegativeCoupling));
+    EXPECT_EQ(static_cast<Id>(volumes.Couplings.size()), report.Couplings);
+    ExpectSums(mesh, volumes, 1e-12);
   }
 }
 

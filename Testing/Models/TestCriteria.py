@@ -7,8 +7,8 @@
 validator: meshes of models of a collection that lies beside the project, as the mesher makes them
 and with points moved at random: every count and measure that both programs know is the same.
 gmsh: meshes of devices as Gmsh makes them by default for the same edge length: their certificate is
-not clean, that of the suite's own meshes is; on the device of the yardstick the shares of
-non-Delaunay facets and negative couplings are near those that were measured elsewhere.
+not clean, that of the suite's own meshes is; on the yardstick the shares of non-Delaunay
+facets and negative couplings are near those that were measured elsewhere.
 Exit status 77: no collection, or no Gmsh.
 """
 import argparse
@@ -31,7 +31,15 @@ SMALL_MODEL = 400
 SEED = 20260807
 EDGE = 0.055
 # Meshes of Gmsh 4.8: per cent of non-Delaunay facets and of negative couplings.
-MEASURED = {"device_oxide_0.02": (1.3, 4.6)}
+MEASURED = {"device_oxide_0.02": (1.3, 4.6), "box_with_sphere": (1.1, 0.8)}
+# The box with a sphere is made of triangles: to Gmsh it is given as a sphere.
+SPHERE = """SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 1, 1, 1};
+Sphere(2) = {0.45, 0.52, 0.5, 0.3};
+BooleanFragments{ Volume{1}; Delete; }{ Volume{2}; Delete; }
+Physical Volume(1) = {2};
+Physical Volume(2) = {3};
+"""
 
 
 def ReadSurface(path):
@@ -284,13 +292,19 @@ def CompareWithGmsh(arguments):
         if not ours["IsClean"][0]:
             failures.append(name + ": the suite's own mesh is not clean")
         geometry = os.path.join(arguments.output, name + ".geo")
-        WriteGeometry(surface, geometry)
+        isSphere = name == "box_with_sphere"
+        if isSphere:
+            with open(geometry, "w", encoding="ascii") as file:
+                file.write(SPHERE)
+        else:
+            WriteGeometry(surface, geometry)
         theirs, certificate = Certify(RunGmsh(geometry, edge))
         print("%s, Gmsh: %s" % (name, certificate))
         if theirs["IsClean"][0]:
             failures.append(name + ": Gmsh's mesh is clean")
         for volume, other in zip(ours["RegionVolumes"], theirs["RegionVolumes"]):
-            if abs(volume - other) > 1e-9 * volume:
+            # The triangles cut a little off the sphere.
+            if abs(volume - other) > (0.02 if isSphere else 1e-9) * volume:
                 failures.append("%s: volumes %g and %g" % (name, volume, other))
         if name in MEASURED:
             facets = 100.0 * theirs["NonDelaunayFacets"][0] / theirs["Facets"][0]
