@@ -15,6 +15,7 @@ namespace cdm
 namespace
 {
 constexpr Id ContinueInterval = 1 << 10;
+constexpr const char* Activity = "Making polyhedra";
 
 /** Tangent of the angle by which two facets may bend and still be drawn as one plane. */
 constexpr double FlatTangent = 1e-9;
@@ -81,7 +82,7 @@ private:
 
   void CollectBorders();
   void FindFlatEdges();
-  void UniteVertices();
+  bool UniteVertices(const ExecutionContext& context);
   void AddPolygonsAround(const EdgeIds& edge, RecordIterator begin, RecordIterator end);
   void AddBorderPolygons();
   void GatherBoxes();
@@ -135,20 +136,22 @@ private:
 
 bool PolyhedronMaker::Run(const ExecutionContext& context)
 {
-  if (!context.Continue(0.0, "Making polyhedra"))
+  if (!context.Continue(0.0, Activity))
   {
     return false;
   }
   this->CollectBorders();
   this->FindFlatEdges();
-  this->UniteVertices();
+  if (!this->UniteVertices(context.Part(0.1, 0.3)))
+  {
+    return false;
+  }
   const SimplexIncidence incidence = SimplexIncidence::OfEdges(this->Mesh);
   std::vector<SimplexIncidence::Record> scratch;
   const Id count = static_cast<Id>(this->Mesh.Points.size());
   for (Id point = 0; point < count; ++point)
   {
-    if (point % ContinueInterval == 0 &&
-      !context.Continue(0.2 + 0.6 * point / count, "Making polyhedra"))
+    if (point % ContinueInterval == 0 && !context.Continue(0.3 + 0.6 * point / count, Activity))
     {
       return false;
     }
@@ -159,7 +162,7 @@ bool PolyhedronMaker::Run(const ExecutionContext& context)
   }
   this->AddBorderPolygons();
   this->GatherBoxes();
-  return context.Continue(1.0, "Making polyhedra");
+  return context.Continue(1.0, Activity);
 }
 
 void PolyhedronMaker::CollectBorders()
@@ -244,14 +247,19 @@ void PolyhedronMaker::FindFlatEdges()
   }
 }
 
-void PolyhedronMaker::UniteVertices()
+bool PolyhedronMaker::UniteVertices(const ExecutionContext& context)
 {
   const Id size = this->FirstPoint + static_cast<Id>(this->Mesh.Points.size());
   this->Sets = EqualSets(size);
   this->OutputPoints.assign(size, NoId);
   const std::vector<Vec3>& points = this->Mesh.Points;
-  for (Id i = 0; i < static_cast<Id>(this->Mesh.Tetrahedra.size()); ++i)
+  const Id count = static_cast<Id>(this->Mesh.Tetrahedra.size());
+  for (Id i = 0; i < count; ++i)
   {
+    if (i % ContinueInterval == 0 && !context.Continue(static_cast<double>(i) / count, Activity))
+    {
+      return false;
+    }
     const TetrahedronIds& ids = this->Mesh.Tetrahedra[i];
     for (int facet = 0; facet < 4; ++facet)
     {
@@ -300,6 +308,7 @@ void PolyhedronMaker::UniteVertices()
       }
     }
   }
+  return true;
 }
 
 Vec3 PolyhedronMaker::GetPosition(Id vertex) const

@@ -15,6 +15,8 @@ namespace cdm
 {
 namespace
 {
+constexpr std::size_t ContinueInterval = 1 << 14;
+
 class Calculator
 {
 public:
@@ -31,7 +33,7 @@ private:
   Status CheckOrientations() const;
   bool SumCouplings(const ExecutionContext& context);
   void CollectBoxes();
-  void SumBoxes();
+  bool SumBoxes(const ExecutionContext& context);
   void SumBoundaryAreas();
 
   using RecordIterator = std::vector<SimplexIncidence::Record>::const_iterator;
@@ -68,15 +70,17 @@ Status Calculator::Run(const ExecutionContext& context)
   {
     return status;
   }
-  if (!this->SumCouplings(context.Part(0.5, 0.8)) ||
-    !context.Continue(0.8, "Summing up control volumes"))
+  if (!this->SumCouplings(context.Part(0.5, 0.8)))
   {
     return Status::Aborted();
   }
   this->CollectBoxes();
-  this->SumBoxes();
+  if (!this->SumBoxes(context.Part(0.8, 0.95)))
+  {
+    return Status::Aborted();
+  }
   this->SumBoundaryAreas();
-  return {};
+  return context.Continue(1.0, "Summing up boundary areas") ? Status() : Status::Aborted();
 }
 
 bool Calculator::ComputeShares(const ExecutionContext& context)
@@ -215,12 +219,18 @@ void Calculator::CollectBoxes()
   }
 }
 
-void Calculator::SumBoxes()
+bool Calculator::SumBoxes(const ExecutionContext& context)
 {
   std::vector<DoubleDouble> sums(this->Volumes.Boxes.size());
   const std::vector<Vec3>& points = this->Mesh.Points;
-  for (std::size_t i = 0; i < this->Mesh.Tetrahedra.size(); ++i)
+  const std::size_t count = this->Mesh.Tetrahedra.size();
+  for (std::size_t i = 0; i < count; ++i)
   {
+    if (i % ContinueInterval == 0 &&
+      !context.Continue(static_cast<double>(i) / count, "Summing up control volumes"))
+    {
+      return false;
+    }
     const TetrahedronIds& ids = this->Mesh.Tetrahedra[i];
     for (int edge = 0; edge < 6; ++edge)
     {
@@ -238,6 +248,7 @@ void Calculator::SumBoxes()
   {
     this->Volumes.Boxes[box].Volume = sums[box].High / 6.0;
   }
+  return true;
 }
 
 void Calculator::SumBoundaryAreas()
