@@ -20,6 +20,7 @@
 #include "Types.h"
 #include "Vec3.h"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -65,10 +66,11 @@ public:
 
   /**
    * Calls isInside(id) for every point that may lie in the sphere, until it returns true; returns
-   * whether it did.
+   * whether it did. The simplex's own vertices are passed over: they lie on the sphere, which is
+   * what takes longest to tell.
    */
-  template <typename Predicate>
-  bool FindInside(const SphereForm& sphere, Predicate&& isInside) const
+  template <typename Simplex, typename Predicate>
+  bool FindInside(const SphereForm& sphere, const Simplex& simplex, Predicate&& isInside) const
   {
     // Every level of the tree leaves at most one node behind.
     std::array<Id, 64> stack;
@@ -93,7 +95,9 @@ public:
       }
       for (Id i = node.Begin; i < node.End; ++i)
       {
-        if (sphere.MayHold(this->Positions[i]) && isInside(this->Order[i]))
+        const Id point = this->Order[i];
+        if (std::find(simplex.begin(), simplex.end(), point) == simplex.end() &&
+          sphere.MayHold(this->Positions[i]) && isInside(point))
         {
           return true;
         }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshChecks.h"
 
-#include "EmptySphereSearch.h"
 #include "Predicates.h"
+#include "SphereCriteria.h"
+#include "VolumeSums.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,42 +22,6 @@ constexpr std::size_t MaximumNumberOfExamples = 10;
 
 /** Facet ids are 4 * tetrahedron + i and have to fit into an Id. */
 constexpr std::size_t MaximumNumberOfTetrahedra = std::numeric_limits<Id>::max() / 4;
-
-/**
- * Sum whose error does not grow with the number of terms (A. Neumaier, 1974,
- * doi:10.1002/zamm.19740540106), in extended precision where the machine has it.
- */
-class CompensatedSum
-{
-public:
-  void Add(long double term)
-  {
-    const long double sum = this->Sum + term;
-    this->Correction +=
-      std::abs(this->Sum) >= std::abs(term) ? (this->Sum - sum) + term : (term - sum) + this->Sum;
-    this->Sum = sum;
-  }
-  double Get() const { return static_cast<double>(this->Sum + this->Correction); }
-
-private:
-  long double Sum = 0.0L;
-  long double Correction = 0.0L;
-};
-
-/** Six volumes of the tetrahedron (origin, a, b, c). */
-long double GetDeterminant(const Vec3& origin, const Vec3& a, const Vec3& b, const Vec3& c)
-{
-  const long double ax = static_cast<long double>(a.X) - origin.X;
-  const long double ay = static_cast<long double>(a.Y) - origin.Y;
-  const long double az = static_cast<long double>(a.Z) - origin.Z;
-  const long double bx = static_cast<long double>(b.X) - origin.X;
-  const long double by = static_cast<long double>(b.Y) - origin.Y;
-  const long double bz = static_cast<long double>(b.Z) - origin.Z;
-  const long double cx = static_cast<long double>(c.X) - origin.X;
-  const long double cy = static_cast<long double>(c.Y) - origin.Y;
-  const long double cz = static_cast<long double>(c.Z) - origin.Z;
-  return ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx);
-}
 
 /** Sort the points of a triangle; true if its normal keeps its direction. */
 bool SortPoints(TriangleIds& triangle)
@@ -162,51 +127,6 @@ Status CheckTetrahedra(const TetMesh& mesh)
   return {};
 }
 
-Status CheckInput(const TetMesh& mesh, const TriangleMesh* boundary)
-{
-  Status status = CheckTetrahedra(mesh);
-  if (!status.IsOk())
-  {
-    return status;
-  }
-  if (mesh.Regions.size() != mesh.Tetrahedra.size() ||
-    mesh.Neighbors.size() != mesh.Tetrahedra.size())
-  {
-    return Status::InvalidInput("The mesh needs one region and four neighbours for each "
-                                "tetrahedron: BuildNeighbors() makes the latter.");
-  }
-  std::vector<Id> points = FindNotFinite(mesh.Points);
-  if (!points.empty())
-  {
-    return Status::InvalidInput(
-      std::to_string(points.size()) + " points of the mesh have coordinates that are not finite.",
-      {}, points);
-  }
-  if (boundary == nullptr)
-  {
-    return {};
-  }
-  std::vector<Id> triangles = FindOutOfRange(boundary->Triangles, boundary->Points.size());
-  if (!triangles.empty())
-  {
-    return Status::InvalidInput(std::to_string(triangles.size()) +
-        " triangles of the boundary refer to points that do not exist.",
-      triangles);
-  }
-  if (!boundary->Labels.empty() && boundary->Labels.size() != boundary->Triangles.size())
-  {
-    return Status::InvalidInput("The boundary needs no labels or one pair for each triangle.");
-  }
-  points = FindNotFinite(boundary->Points);
-  if (!points.empty())
-  {
-    return Status::InvalidInput(std::to_string(points.size()) +
-        " points of the boundary have coordinates that are not finite.",
-      {}, points);
-  }
-  return {};
-}
-
 /** Runs the checks one after the other on one mesh. */
 class Checker
 {
@@ -233,8 +153,8 @@ private:
   void CollectRegions();
   bool CheckTetrahedra(const ExecutionContext& context);
   bool CheckFacets(const ExecutionContext& context);
-  bool CheckSpheres(const EmptySphereSearch& search, const ExecutionContext& context);
-  bool CheckBoundarySpheres(const EmptySphereSearch& search, const ExecutionContext& context);
+  bool CheckSpheres(const SphereCriteria& criteria, const ExecutionContext& context);
+  bool CheckBoundarySpheres(const SphereCriteria& criteria, const ExecutionContext& context);
   void FinishVolumes();
 
   Id FindMeshPoint(Id boundaryPoint) const;
@@ -276,9 +196,9 @@ Status Checker::Run(const ExecutionContext& context)
     return Status::Aborted();
   }
   this->FinishVolumes();
-  const EmptySphereSearch search(this->Mesh.Points);
-  if (!this->CheckSpheres(search, context.Part(0.5, 0.9)) ||
-    !this->CheckBoundarySpheres(search, context.Part(0.9, 1.0)))
+  const SphereCriteria criteria(this->Mesh.Points);
+  if (!this->CheckSpheres(criteria, context.Part(0.5, 0.9)) ||
+    !this->CheckBoundarySpheres(criteria, context.Part(0.9, 1.0)))
   {
     return Status::Aborted();
   }
@@ -381,7 +301,7 @@ bool Checker::CheckTetrahedra(const ExecutionContext& context)
       ++(orientation < 0 ? this->Report.InvertedTetrahedra : this->Report.FlatTetrahedra);
       this->AddExample(tetrahedron);
     }
-    const long double determinant = GetDeterminant(p[0], p[1], p[2], p[3]);
+    const long double determinant = GetSixVolumes(p[0], p[1], p[2], p[3]);
     Region& region = *this->FindRegion(this->Mesh.Regions[i]);
     ++region.Tetrahedra;
     region.Volume.Add(determinant / 6.0L);
@@ -485,7 +405,7 @@ void Checker::AddEnclosedVolume(Id triangle, const RegionPair& regions)
       region->Origin = ids[0];
     }
     const long double volume =
-      GetDeterminant(points[region->Origin], points[ids[0]], points[ids[1]], points[ids[2]]) / 6.0L;
+      GetSixVolumes(points[region->Origin], points[ids[0]], points[ids[1]], points[ids[2]]) / 6.0L;
     region->EnclosedVolume.Add(isFront ? -volume : volume);
   }
 }
@@ -595,21 +515,17 @@ void Checker::FinishVolumes()
   for (std::size_t i = 0; i < this->Regions.size(); ++i)
   {
     const Region& region = this->Regions[i];
-    const double volume = region.Volume.Get();
-    const double enclosed = region.EnclosedVolume.Get();
-    this->Report.Regions.push_back({ this->RegionIds[i], region.Tetrahedra, volume, enclosed });
+    this->Report.Regions.push_back(
+      { this->RegionIds[i], region.Tetrahedra, region.Volume.Get(), region.EnclosedVolume.Get() });
     if (this->Boundary != nullptr)
     {
-      const double difference = std::abs(volume - enclosed);
-      const double error = difference == 0.0 ? 0.0
-        : enclosed == 0.0                    ? std::numeric_limits<double>::infinity()
-                                             : difference / std::abs(enclosed);
-      this->Report.LargestVolumeError = std::max(this->Report.LargestVolumeError, error);
+      this->Report.LargestVolumeError =
+        std::max(this->Report.LargestVolumeError, this->Report.Regions.back().GetRelativeError());
     }
   }
 }
 
-bool Checker::CheckSpheres(const EmptySphereSearch& search, const ExecutionContext& context)
+bool Checker::CheckSpheres(const SphereCriteria& criteria, const ExecutionContext& context)
 {
   const std::size_t count = this->Mesh.Tetrahedra.size();
   for (std::size_t i = 0; i < count; ++i)
@@ -629,18 +545,7 @@ bool Checker::CheckSpheres(const EmptySphereSearch& search, const ExecutionConte
     {
       std::swap(ids[0], ids[1]);
     }
-    const std::vector<Vec3>& points = this->Mesh.Points;
-    const Vec3& a = points[ids[0]];
-    const Vec3& b = points[ids[1]];
-    const Vec3& c = points[ids[2]];
-    const Vec3& d = points[ids[3]];
-    const bool holdsPoint = search.FindInside(SphereForm(a, b, c, d),
-      [&](Id point)
-      {
-        return std::find(ids.begin(), ids.end(), point) == ids.end() &&
-          InSphere(a, b, c, d, points[point]) > 0;
-      });
-    if (holdsPoint)
+    if (!criteria.IsDelaunay(ids))
     {
       ++this->Report.NonDelaunayTetrahedra;
       this->AddExample(static_cast<Id>(i));
@@ -649,9 +554,8 @@ bool Checker::CheckSpheres(const EmptySphereSearch& search, const ExecutionConte
   return true;
 }
 
-bool Checker::CheckBoundarySpheres(const EmptySphereSearch& search, const ExecutionContext& context)
+bool Checker::CheckBoundarySpheres(const SphereCriteria& criteria, const ExecutionContext& context)
 {
-  const std::vector<Vec3>& points = this->Mesh.Points;
   std::vector<EdgeIds> edges;
   for (std::size_t i = 0; i < this->BorderFacets.size(); ++i)
   {
@@ -664,17 +568,8 @@ bool Checker::CheckBoundarySpheres(const EmptySphereSearch& search, const Execut
     edges.push_back({ ids[0], ids[1] });
     edges.push_back({ ids[1], ids[2] });
     edges.push_back({ ids[0], ids[2] });
-    const Vec3& a = points[ids[0]];
-    const Vec3& b = points[ids[1]];
-    const Vec3& c = points[ids[2]];
     // A degenerate triangle has no sphere; it shows as flat tetrahedra.
-    if (!AreCollinear(a, b, c) &&
-      search.FindInside(SphereForm(a, b, c),
-        [&](Id point)
-        {
-          return std::find(ids.begin(), ids.end(), point) == ids.end() &&
-            InEquatorialSphere(a, b, c, points[point]) > 0;
-        }))
+    if (!criteria.HasEmptySmallestSphere(ids))
     {
       ++this->Report.SmallestSphereViolations;
     }
@@ -688,13 +583,7 @@ bool Checker::CheckBoundarySpheres(const EmptySphereSearch& search, const Execut
     {
       return false;
     }
-    const EdgeIds& ids = edges[i];
-    if (search.FindInside(SphereForm(points[ids[0]], points[ids[1]]),
-          [&](Id point)
-          {
-            return point != ids[0] && point != ids[1] &&
-              InDiametralSphere(points[ids[0]], points[ids[1]], points[point]) > 0;
-          }))
+    if (!criteria.HasEmptySmallestSphere(edges[i]))
     {
       ++this->Report.EdgeSphereViolations;
     }
@@ -708,6 +597,14 @@ std::string Count(Id count, const char* singular, const char* plural)
   return std::to_string(count) + " " + (count == 1 ? singular : plural);
 }
 } // namespace
+
+double RegionVolume::GetRelativeError() const
+{
+  const double difference = std::abs(this->Volume - this->EnclosedVolume);
+  return difference == 0.0        ? 0.0
+    : this->EnclosedVolume == 0.0 ? std::numeric_limits<double>::infinity()
+                                  : difference / std::abs(this->EnclosedVolume);
+}
 
 bool MeshCheckReport::IsValid(double volumeTolerance) const
 {
@@ -759,11 +656,59 @@ std::string MeshCheckReport::GetSummary() const
   return text + (this->IsValid() ? ": valid" : ": not valid");
 }
 
+Status CheckMeshInput(const TetMesh& mesh, const TriangleMesh* boundary)
+{
+  Status status = CheckTetrahedra(mesh);
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  if (mesh.Regions.size() != mesh.Tetrahedra.size())
+  {
+    return Status::InvalidInput("The mesh needs one region for each tetrahedron.");
+  }
+  std::vector<Id> points = FindNotFinite(mesh.Points);
+  if (!points.empty())
+  {
+    return Status::InvalidInput(
+      std::to_string(points.size()) + " points of the mesh have coordinates that are not finite.",
+      {}, points);
+  }
+  if (boundary == nullptr)
+  {
+    return {};
+  }
+  std::vector<Id> triangles = FindOutOfRange(boundary->Triangles, boundary->Points.size());
+  if (!triangles.empty())
+  {
+    return Status::InvalidInput(std::to_string(triangles.size()) +
+        " triangles of the boundary refer to points that do not exist.",
+      triangles);
+  }
+  if (!boundary->Labels.empty() && boundary->Labels.size() != boundary->Triangles.size())
+  {
+    return Status::InvalidInput("The boundary needs no labels or one pair for each triangle.");
+  }
+  points = FindNotFinite(boundary->Points);
+  if (!points.empty())
+  {
+    return Status::InvalidInput(std::to_string(points.size()) +
+        " points of the boundary have coordinates that are not finite.",
+      {}, points);
+  }
+  return {};
+}
+
 Status CheckTetMesh(const TetMesh& mesh, const TriangleMesh* boundary,
   const ExecutionContext& context, MeshCheckReport& report)
 {
   report = {};
-  const Status status = CheckInput(mesh, boundary);
+  const Status status = CheckMeshInput(mesh, boundary);
+  if (status.IsOk() && mesh.Neighbors.size() != mesh.Tetrahedra.size())
+  {
+    return Status::InvalidInput(
+      "The mesh needs four neighbours for each tetrahedron: BuildNeighbors() makes them.");
+  }
   return status.IsOk() ? Checker(mesh, boundary, report).Run(context) : status;
 }
 

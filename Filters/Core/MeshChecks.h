@@ -46,6 +46,9 @@ struct RegionVolume
    * those that bound the region's tetrahedra.
    */
   double EnclosedVolume = 0.0;
+
+  /** |Volume - EnclosedVolume| / |EnclosedVolume|; infinite if only the latter is zero. */
+  double GetRelativeError() const;
 };
 
 struct MeshCheckReport
@@ -89,6 +92,12 @@ struct MeshCheckReport
   /** One line of text. */
   std::string GetSummary() const;
 };
+
+/**
+ * InvalidInput for what no check can look at: ids out of range, arrays of the wrong length,
+ * coordinates that are not finite. Neighbors are left alone; boundary may be null.
+ */
+Status CheckMeshInput(const TetMesh& mesh, const TriangleMesh* boundary);
 
 /** boundary may be null: then boundary and volumes are not compared. */
 Status CheckTetMesh(const TetMesh& mesh, const TriangleMesh* boundary,

@@ -38,6 +38,10 @@ struct TetMesh
  */
 constexpr int FacetVertices[4][3] = { { 1, 2, 3 }, { 0, 3, 2 }, { 0, 1, 3 }, { 0, 2, 1 } };
 
+/** Vertices of the edges; edges i and 5 - i are opposite to each other. */
+constexpr int TetrahedronEdges[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 },
+  { 2, 3 } };
+
 inline TriangleIds GetFacet(const TetrahedronIds& tetrahedron, int facet)
 {
   return { tetrahedron[FacetVertices[facet][0]], tetrahedron[FacetVertices[facet][1]],

@@ -115,6 +115,20 @@ cdm::Status ToLabels(
   return {};
 }
 
+cdm::Status NotTetrahedra(std::vector<cdm::Id> cells)
+{
+  return cdm::Status::InvalidInput(
+    "The input has cells that are not linear tetrahedra (VTK_TETRA). Remove or split them.",
+    std::move(cells));
+}
+
+int GetCellDimension(int type)
+{
+  const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
+  // Of a type that this VTK does not know nothing can be told.
+  return cell ? cell->GetCellDimension() : 3;
+}
+
 /** Arrays that are shorter than the data set would be read behind their end. */
 cdm::Status CheckArrays(vtkDataSet* input)
 {
@@ -464,9 +478,15 @@ int ReportFailure(
   {
     return 1;
   }
+  ReportError(filter, status, input);
+  return 0;
+}
+
+//--------------------------------------------------------------------------------------------------
+void ReportError(vtkAlgorithm* filter, const cdm::Status& status, vtkDataSet* input)
+{
   const std::string text = Describe(status, input);
   vtkErrorWithObjectMacro(filter, << text);
-  return 0;
 }
 
 //--------------------------------------------------------------------------------------------------
@@ -671,17 +691,14 @@ cdm::Status ToSeeds(vtkPointSet* input, std::vector<cdm::RegionSeed>& seeds)
 }
 
 //--------------------------------------------------------------------------------------------------
-cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh)
+cdm::Status ToTetrahedra(
+  vtkUnstructuredGrid* input, cdm::TetMesh& mesh, std::vector<vtkIdType>& cells)
 {
   const vtkIdType count = input->GetNumberOfCells();
-  if (count == 0)
+  // Ids of facets and edges are up to six times as large as those of tetrahedra.
+  if (count > LargestId / 6)
   {
-    return cdm::Status::InvalidInput("The input is empty: it has no cells.");
-  }
-  // Facet ids are four times as large as the ids of tetrahedra.
-  if (count > LargestId / 4)
-  {
-    return TooLarge("facets of tetrahedra", 4 * count);
+    return TooLarge("edges of tetrahedra", 6 * count);
   }
   cdm::Status status = CheckArrays(input);
   if (!status.IsOk())
@@ -689,8 +706,11 @@ cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh)
     return status;
   }
   vtkDataArray* regions = input->GetCellData()->GetArray(RegionIdName);
-  mesh.Tetrahedra.resize(count);
-  mesh.Regions.assign(count, 0);
+  mesh = {};
+  mesh.Tetrahedra.reserve(count);
+  mesh.Regions.reserve(count);
+  cells.clear();
+  cells.reserve(count);
   std::vector<cdm::Id> notTetrahedra;
   std::vector<cdm::Id> missingPoints;
   std::vector<cdm::Id> wrongRegions;
@@ -700,7 +720,10 @@ cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh)
     const auto id = static_cast<cdm::Id>(cell);
     if (input->GetCellType(cell) != VTK_TETRA)
     {
-      notTetrahedra.push_back(id);
+      if (GetCellDimension(input->GetCellType(cell)) > 2)
+      {
+        notTetrahedra.push_back(id);
+      }
       continue;
     }
     input->GetCellPoints(cell, ids);
@@ -709,18 +732,19 @@ cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh)
       missingPoints.push_back(id);
       continue;
     }
-    std::copy_n(ids->GetPointer(0), 4, mesh.Tetrahedra[cell].begin());
+    cells.push_back(cell);
+    mesh.Tetrahedra.emplace_back();
+    std::copy_n(ids->GetPointer(0), 4, mesh.Tetrahedra.back().begin());
+    mesh.Regions.push_back(0);
     if (regions &&
-      (!ToRegion(regions->GetComponent(cell, 0), mesh.Regions[cell]) || mesh.Regions[cell] < 0))
+      (!ToRegion(regions->GetComponent(cell, 0), mesh.Regions.back()) || mesh.Regions.back() < 0))
     {
       wrongRegions.push_back(id);
     }
   }
   if (!notTetrahedra.empty())
   {
-    return cdm::Status::InvalidInput(
-      "The input has cells that are not linear tetrahedra (VTK_TETRA). Remove or split them.",
-      std::move(notTetrahedra));
+    return NotTetrahedra(std::move(notTetrahedra));
   }
   if (!missingPoints.empty())
   {
@@ -731,6 +755,12 @@ cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh)
     return cdm::Status::InvalidInput(
       "The cell array RegionId holds values that are no whole numbers from 0 on.",
       std::move(wrongRegions));
+  }
+  if (cells.empty())
+  {
+    return cdm::Status::InvalidInput(count == 0
+        ? "The input is empty: it has no cells."
+        : "The input has no tetrahedra. Choose a tetrahedral mesh.");
   }
   status = ToVectors(input->GetPoints(), mesh.Points);
   for (std::size_t i = 0; i < mesh.Points.size(); ++i)
@@ -745,6 +775,26 @@ cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh)
     return cdm::Status::InvalidInput(
       "Points have coordinates that are not finite: remove or correct them.", {}, status.Points);
   }
+  return status;
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh)
+{
+  std::vector<cdm::Id> others;
+  for (vtkIdType cell = 0; cell < std::min(input->GetNumberOfCells(), LargestId); ++cell)
+  {
+    if (input->GetCellType(cell) != VTK_TETRA)
+    {
+      others.push_back(static_cast<cdm::Id>(cell));
+    }
+  }
+  if (!others.empty())
+  {
+    return NotTetrahedra(std::move(others));
+  }
+  std::vector<vtkIdType> cells;
+  const cdm::Status status = ToTetrahedra(input, mesh, cells);
   return status.IsOk() ? cdm::BuildNeighbors(mesh) : status;
 }
 

@@ -64,6 +64,9 @@ cdm::Status Guard(const std::function<cdm::Status()>& function);
 int ReportFailure(vtkAlgorithm* filter, vtkInformationVector* outputs, const cdm::Status& status,
   vtkDataSet* input);
 
+/** Emit the error only, as writers do, which have no outputs. */
+void ReportError(vtkAlgorithm* filter, const cdm::Status& status, vtkDataSet* input);
+
 /** " Cells: 1, 2, ... (n in all).": the first ten of them; empty without cells. */
 std::string ListCells(std::vector<vtkIdType> cells);
 
@@ -91,6 +94,13 @@ cdm::Status ToPoints(vtkPointSet* input, const char* name, std::vector<cdm::Vec3
 
 /** Points as seeds; regions from the point array RegionId, or from 0 on by order. */
 cdm::Status ToSeeds(vtkPointSet* input, std::vector<cdm::RegionSeed>& seeds);
+
+/**
+ * The tetrahedra among the cells, with the VTK cell of each; cells of up to two dimensions are
+ * passed over. Regions are 0 without the array RegionId; neighbors are left empty.
+ */
+cdm::Status ToTetrahedra(
+  vtkUnstructuredGrid* input, cdm::TetMesh& mesh, std::vector<vtkIdType>& cells);
 
 /** All cells must be tetrahedra. Regions are 0 without the array RegionId; makes neighbors. */
 cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh);

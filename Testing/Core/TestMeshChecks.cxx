@@ -474,6 +474,9 @@ TEST(MeshChecks, AbortIsHonoured)
 
 namespace
 {
+/** The search passes over none of the points. */
+constexpr std::array<Id, 0> NoVertices{};
+
 /** Points found by the search must hold all points that the exact predicate finds. */
 void CompareWithAllPoints(const std::vector<Vec3>& points, const TetrahedronIds& ids)
 {
@@ -485,7 +488,7 @@ void CompareWithAllPoints(const std::vector<Vec3>& points, const TetrahedronIds&
   if (Orientation(a, b, c, d) > 0)
   {
     std::set<Id> candidates;
-    search.FindInside(SphereForm(a, b, c, d),
+    search.FindInside(SphereForm(a, b, c, d), NoVertices,
       [&](Id point)
       {
         candidates.insert(point);
@@ -498,7 +501,7 @@ void CompareWithAllPoints(const std::vector<Vec3>& points, const TetrahedronIds&
     }
   }
   std::set<Id> candidates;
-  search.FindInside(SphereForm(a, b, c),
+  search.FindInside(SphereForm(a, b, c), NoVertices,
     [&](Id point)
     {
       candidates.insert(point);
@@ -573,6 +576,7 @@ TEST(EmptySphereSearch, SpheresOfFlatTetrahedraStayNarrow)
     ++tetrahedra;
     // Whichever side the sphere lies on, candidates above the layer are truly inside.
     search.FindInside(SphereForm(points[i], points[i + 1], points[i + 2], points[i + 3]),
+      NoVertices,
       [&](Id point)
       {
         EXPECT_TRUE(point < 100 ||

@@ -38,8 +38,9 @@ def GetOptions(cls):
 
 proxies = {}
 for path in sorted(glob.glob(os.path.join(os.environ["CDM_PLUGIN_XML_DIR"], "*.xml"))):
-    for proxy in ElementTree.parse(path).getroot().iter("SourceProxy"):
-        proxies[proxy.get("class")] = proxy
+    for kind in ("SourceProxy", "WriterProxy"):
+        for proxy in ElementTree.parse(path).getroot().iter(kind):
+            proxies[proxy.get("class")] = proxy
 Check(proxies, "no server-manager XML found")
 
 classes = {name: getattr(conforming_delaunay, name)
@@ -53,7 +54,11 @@ for name, proxy in sorted(proxies.items()):
         Check(documentation is not None and documentation.get(attribute), name, "lacks", attribute)
     Check(proxy.get("label", "").strip(), name, "has no label")
     menus = [entry.get("category") for entry in proxy.iter("ShowInMenu")]
-    Check(menus == ["Conforming Delaunay"], name, "is in the menus", menus)
+    if proxy.tag == "WriterProxy":
+        factory = proxy.find("Hints/WriterFactory")
+        Check(factory is not None and factory.get("extensions"), name, "writes no kind of file")
+    else:
+        Check(menus == ["Conforming Delaunay"], name, "is in the menus", menus)
 
     properties = {}
     for child in proxy:
@@ -70,6 +75,9 @@ for name, proxy in sorted(proxies.items()):
             problems.append("%s has no property for Set%s" % (name, option))
             continue
         text = commands["Set" + option].get("default_values")
+        if default is None:
+            Check(text is None, name, option, "has no default, but in the plugin", text)
+            continue
         values = default if isinstance(default, (tuple, list)) else [default]
         Check(text is not None and [float(word) for word in text.split()] ==
               [float(value) for value in values],

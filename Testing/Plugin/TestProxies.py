@@ -3,6 +3,7 @@
 
 import os
 import sys
+import tempfile
 
 from paraview.simple import *
 
@@ -49,6 +50,30 @@ assert abs(Volume(front) - 6.0) < 6e-12, "volume %.17g" % Volume(front)
 better = SliverRemover(Input=front)
 better.UpdatePipeline()
 assert abs(Volume(better) - 6.0) < 6e-12, "volume %.17g" % Volume(better)
+
+criteria = DelaunayMeshCriteria(Input=better)
+criteria.UpdatePipeline()
+assert Count(criteria) == Count(better)
+fields = servermanager.Fetch(criteria).GetFieldData()
+print(fields.GetAbstractArray("Certificate").GetValue(0))
+assert fields.GetArray("NonDelaunayTetrahedra").GetValue(0) == 0
+
+volumes = VoronoiControlVolumes(Input=better)
+volumes.UpdatePipeline()
+points = better.GetDataInformation().GetNumberOfPoints()
+assert Count(volumes) == points, "one region: one box for each point"
+assert Count(volumes, 1) > points and Count(volumes, 2) > 0 and Count(volumes, 3) == 0
+volumes.GenerateBoxes = 1
+volumes.UpdatePipeline()
+assert Count(volumes, 3) == points
+
+with tempfile.TemporaryDirectory() as folder:
+    path = os.path.join(folder, "box.msh")
+    SaveData(path, proxy=better)
+    with open(path, encoding="ascii") as file:
+        text = file.read()
+    assert text.startswith("$MeshFormat\n2.2 0 8\n") and text.endswith("$EndElements\n")
+    assert '"region_0_zmax"' in text
 
 mesher = ConformingDelaunayMesher(Input=cube, MaximumEdgeLength=1.0)
 mesher.UpdatePipeline()
@@ -105,6 +130,10 @@ devices = ConformingDelaunayMesher(Input=device)
 devices.UpdatePipeline()
 low, high = devices.GetCellDataInformation().GetArray("RegionId").GetRange()
 assert high > low, "the device has several regions"
+certified = DelaunayMeshCriteria(Input=devices, Boundary=device)
+certified.UpdatePipeline()
+errors = servermanager.Fetch(certified).GetFieldData().GetArray("RegionVolumeErrors")
+assert errors.GetNumberOfTuples() == high + 1 and errors.GetRange()[1] < 1e-12
 
 print("proxies: ok")
 sys.stdout.flush()

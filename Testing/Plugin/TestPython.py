@@ -13,8 +13,9 @@ LoadPlugin(os.environ["CDM_PLUGIN"], remote=False, ns=globals())
 
 expected = {
     "vtkAdvancingFrontTetrahedralizer", "vtkBoundaryTriangulator", "vtkConformingDelaunayMesher",
-    "vtkDelaunaySurfaceRefiner", "vtkMeshPointGenerator", "vtkSizingFromSolution",
-    "vtkSliverRemover", "vtkStructuralEdgeExtractor", "vtkTechnologyStructureSource"}
+    "vtkDelaunayMeshCriteria", "vtkDelaunaySurfaceRefiner", "vtkGmshMeshWriter",
+    "vtkMeshPointGenerator", "vtkSizingFromSolution", "vtkSliverRemover",
+    "vtkStructuralEdgeExtractor", "vtkTechnologyStructureSource", "vtkVoronoiControlVolumes"}
 missing = expected - set(dir(conforming_delaunay))
 assert not missing, missing
 

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VoronoiMeasures.h"
+
+namespace cdm
+{
+namespace
+{
+DoubleDouble3 operator+(const DoubleDouble3& a, const DoubleDouble3& b)
+{
+  return { { a.X[0] + b.X[0], a.X[1] + b.X[1], a.X[2] + b.X[2] } };
+}
+
+DoubleDouble3 operator*(const DoubleDouble& s, const DoubleDouble3& a)
+{
+  return { { s * a.X[0], s * a.X[1], s * a.X[2] } };
+}
+
+DoubleDouble3 operator-(const DoubleDouble3& a, const DoubleDouble3& b)
+{
+  return { { a.X[0] - b.X[0], a.X[1] - b.X[1], a.X[2] - b.X[2] } };
+}
+
+DoubleDouble Scale(double s, const DoubleDouble& a)
+{
+  return DoubleDouble{ s, 0.0 } * a;
+}
+
+/** A tetrahedron with its first vertex as the origin. */
+struct Frame
+{
+  Frame(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+    : U(DoubleDouble3::FromDifference(b, a)), V(DoubleDouble3::FromDifference(c, a)),
+      W(DoubleDouble3::FromDifference(d, a)), NormalC(Cross(W, U)), NormalB(Cross(V, W)),
+      NormalD(Cross(U, V)), SixVolumes(Dot(NormalD, W))
+  {
+    // The normals of the four facets, each turned inwards and as long as twice the area, vanish in
+    // sum.
+    const DoubleDouble3 sum = this->NormalB + this->NormalC + this->NormalD;
+    this->NormalA = DoubleDouble3{ { -sum.X[0], -sum.X[1], -sum.X[2] } };
+  }
+
+  /** Circumcenter times twelve volumes. */
+  DoubleDouble3 GetScaledCircumcenter() const
+  {
+    return Dot(this->W, this->W) * this->NormalD + Dot(this->V, this->V) * this->NormalC +
+      Dot(this->U, this->U) * this->NormalB;
+  }
+
+  DoubleDouble3 U;
+  DoubleDouble3 V;
+  DoubleDouble3 W;
+  /** Of the facet opposite to the vertex. */
+  DoubleDouble3 NormalC;
+  DoubleDouble3 NormalB;
+  DoubleDouble3 NormalD;
+  DoubleDouble3 NormalA;
+  DoubleDouble SixVolumes;
+};
+} // namespace
+
+std::array<DoubleDouble, 6> GetCouplings(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  const Frame frame(a, b, c, d);
+  const DoubleDouble3 center = frame.GetScaledCircumcenter();
+  const DoubleDouble twelveVolumes = Scale(2.0, frame.SixVolumes);
+  const DoubleDouble denominator = Scale(4.0, twelveVolumes);
+  // Of a facet: distance of the circumcenter, over four lengths of the normal.
+  const auto facet = [&](const DoubleDouble3& normal, const DoubleDouble3& fromVertex)
+  { return Dot(fromVertex, normal) / (denominator * Dot(normal, normal)); };
+  const DoubleDouble facetB = facet(frame.NormalB, center);
+  const DoubleDouble facetC = facet(frame.NormalC, center);
+  const DoubleDouble facetD = facet(frame.NormalD, center);
+  const DoubleDouble facetA = facet(frame.NormalA, center - twelveVolumes * frame.U);
+
+  const DoubleDouble3& u = frame.U;
+  const DoubleDouble3& v = frame.V;
+  const DoubleDouble3& w = frame.W;
+  const DoubleDouble3 vu = v - u;
+  const DoubleDouble3 wu = w - u;
+  const DoubleDouble3 wv = w - v;
+  // Each edge has two facets, and sees in each the third vertex with the angle whose cosine is
+  // this product.
+  return { Dot(v, vu) * facetD + Dot(w, wu) * facetC, // ab: abc, abd
+    -(Dot(u, vu)) * facetD + Dot(w, wv) * facetB,     // ac: abc, acd
+    -(Dot(u, wu)) * facetC - Dot(v, wv) * facetB,     // ad: abd, acd
+    Dot(u, v) * facetD + Dot(wu, wv) * facetA,        // bc: abc, bcd
+    Dot(u, w) * facetC - Dot(vu, wv) * facetA,        // bd: abd, bcd
+    Dot(v, w) * facetB + Dot(vu, wu) * facetA };      // cd: acd, bcd
+}
+
+Vec3 GetAccurateCircumcenter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  const Frame frame(a, b, c, d);
+  const DoubleDouble3 center = frame.GetScaledCircumcenter();
+  const DoubleDouble twelveVolumes = Scale(2.0, frame.SixVolumes);
+  Vec3 result;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    result[axis] = (center.X[axis] / twelveVolumes + DoubleDouble{ a[axis], 0.0 }).High;
+  }
+  return result;
+}
+
+std::array<DoubleDouble, 3> GetVertexAreas(const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  const DoubleDouble3 ab = DoubleDouble3::FromDifference(b, a);
+  const DoubleDouble3 ac = DoubleDouble3::FromDifference(c, a);
+  const DoubleDouble3 bc = DoubleDouble3::FromDifference(c, b);
+  const DoubleDouble3 normal = Cross(ab, ac);
+  // The square is eight times the length of the normal: the root is rounded, which is well enough.
+  const DoubleDouble eightNormals = { 8.0 * std::sqrt(Dot(normal, normal).High), 0.0 };
+  // Of an edge: length times distance of the circumcenter over four, for either end.
+  const DoubleDouble shareAB = Dot(ab, ab) * Dot(ac, bc) / eightNormals;
+  const DoubleDouble shareAC = -(Dot(ac, ac) * Dot(ab, bc)) / eightNormals;
+  const DoubleDouble shareBC = Dot(bc, bc) * Dot(ab, ac) / eightNormals;
+  return { shareAB + shareAC, shareAB + shareBC, shareAC + shareBC };
+}
+
+std::array<DoubleDouble, 6> GetOppositeCotangents(
+  const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  const Frame frame(a, b, c, d);
+  const auto get = [&frame](const DoubleDouble3& first, const DoubleDouble3& second)
+  { return -(Dot(first, second)) / frame.SixVolumes; };
+  return { get(frame.NormalA, frame.NormalB), get(frame.NormalA, frame.NormalC),
+    get(frame.NormalA, frame.NormalD), get(frame.NormalB, frame.NormalC),
+    get(frame.NormalB, frame.NormalD), get(frame.NormalC, frame.NormalD) };
+}
+
+DoubleDouble GetSquaredDistance(const Vec3& a, const Vec3& b)
+{
+  const DoubleDouble3 edge = DoubleDouble3::FromDifference(b, a);
+  return Dot(edge, edge);
+}
+} // namespace cdm

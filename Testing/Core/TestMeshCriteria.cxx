@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "HullMeshes.h"
+
+#include "MeshCriteria.h"
+#include "Predicates.h"
+#include "SphereCriteria.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace cdm;
+using namespace testing_core;
+
+namespace
+{
+/** Alternate corners of the cube [-1, 1]^3, positive. */
+const Vec3 A{ -1, -1, -1 };
+const Vec3 B{ 1, 1, -1 };
+const Vec3 C{ -1, 1, 1 };
+const Vec3 D{ 1, -1, 1 };
+
+TetMesh MakeMesh(std::vector<Vec3> points, RawVector<TetrahedronIds> tetrahedra)
+{
+  TetMesh mesh;
+  mesh.Points = std::move(points);
+  mesh.Tetrahedra = std::move(tetrahedra);
+  mesh.Regions.assign(mesh.Tetrahedra.size(), 0);
+  return mesh;
+}
+
+MeshCriteriaReport Evaluate(const TetMesh& mesh, int threads = 2)
+{
+  MeshCriteriaReport report;
+  MeshCriteriaOptions options;
+  options.NumberOfThreads = threads;
+  const Status status = EvaluateMeshCriteria(mesh, nullptr, options, {}, report);
+  EXPECT_TRUE(status.IsOk()) << status.Message;
+  return report;
+}
+} // namespace
+
+TEST(MeshCriteria, QualityOfTheRegularTetrahedron)
+{
+  const TetrahedronQuality quality = GetTetrahedronQuality(A, B, C, D);
+  // Edge sqrt(8), R = sqrt(3), r = R / 3, V = 8 / 3.
+  EXPECT_NEAR(std::sqrt(8.0 / 3.0), quality.Q[0], 1e-15);
+  EXPECT_NEAR(std::sqrt(3.0) / 3.0 / std::sqrt(8.0), quality.Q[1], 1e-15);
+  EXPECT_NEAR(1.0 / 3.0, quality.Q[2], 1e-15);
+  EXPECT_NEAR(1.0, quality.Q[3], 1e-15);
+  EXPECT_NEAR(8.0 / 3.0 / std::pow(8.0, 1.5), quality.Q[4], 1e-15);
+  EXPECT_NEAR(std::sqrt(3.0 / 8.0), quality.RadiusEdgeRatio, 1e-15);
+  EXPECT_NEAR(3.0, quality.AspectRatio, 1e-14);
+  EXPECT_NEAR(std::acos(1.0 / 3.0) * 180.0 / std::acos(-1.0), quality.SmallestDihedralAngle, 1e-12);
+  EXPECT_NEAR(quality.SmallestDihedralAngle, quality.LargestDihedralAngle, 1e-12);
+}
+
+TEST(MeshCriteria, QualityOfDegenerateTetrahedraIsTheWorst)
+{
+  const TetrahedronQuality flat =
+    GetTetrahedronQuality({ 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 });
+  EXPECT_EQ(0.0, flat.Q[0]);
+  EXPECT_EQ(0.0, flat.Q[1]);
+  EXPECT_EQ(0.0, flat.Q[2]);
+  EXPECT_NEAR(std::sqrt(0.5), flat.Q[3], 1e-15);
+  EXPECT_EQ(0.0, flat.Q[4]);
+  EXPECT_TRUE(std::isinf(flat.AspectRatio));
+  EXPECT_LT(GetTetrahedronQuality(B, A, C, D).Q[4], 0.0) << "inverted";
+  const TetrahedronQuality point = GetTetrahedronQuality(A, A, A, A);
+  for (const double q : point.Q)
+  {
+    EXPECT_EQ(0.0, q);
+  }
+}
+
+TEST(MeshCriteria, RegularTetrahedronIsClean)
+{
+  const MeshCriteriaReport report = Evaluate(MakeMesh({ A, B, C, D }, { { 0, 1, 2, 3 } }));
+  EXPECT_TRUE(report.IsClean()) << report.GetCertificate();
+  EXPECT_TRUE(report.Violations.empty()) << report.GetCertificate();
+  EXPECT_EQ(4, report.Facets);
+  EXPECT_EQ(4, report.BorderFacets);
+  EXPECT_EQ(6, report.Edges);
+  EXPECT_EQ(6, report.StructuralEdges);
+  EXPECT_EQ(6, report.Couplings);
+  ASSERT_EQ(1u, report.Regions.size());
+  EXPECT_NEAR(8.0 / 3.0, report.Regions[0].Volume, 1e-15);
+  EXPECT_NEAR(8.0 / 3.0, report.Regions[0].EnclosedVolume, 1e-15);
+}
+
+TEST(MeshCriteria, EachFaultIsFound)
+{
+  const auto count = [](const MeshCriteriaReport& report, MeshFault fault)
+  { return report.GetCount(fault); };
+
+  const MeshCriteriaReport inverted = Evaluate(MakeMesh({ B, A, C, D }, { { 0, 1, 2, 3 } }));
+  EXPECT_EQ(1, count(inverted, MeshFault::InvertedTetrahedron));
+  EXPECT_EQ(0, count(inverted, MeshFault::NonDelaunayTetrahedron));
+  EXPECT_FALSE(inverted.IsClean());
+
+  const MeshCriteriaReport flat =
+    Evaluate(MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 } }, { { 0, 1, 2, 3 } }));
+  EXPECT_EQ(1, count(flat, MeshFault::FlatTetrahedron));
+  EXPECT_EQ(0.0, flat.SmallestDihedralAngle);
+  EXPECT_EQ(1, flat.Under5Degrees);
+
+  // A fifth point inside of the circumsphere, used by no tetrahedron; it is in no smallest sphere
+  // of a facet or edge.
+  const MeshCriteriaReport disturbed =
+    Evaluate(MakeMesh({ A, B, C, D, { 0, 0, 0.125 } }, { { 0, 1, 2, 3 } }));
+  EXPECT_EQ(1, count(disturbed, MeshFault::NonDelaunayTetrahedron));
+  EXPECT_EQ(0, count(disturbed, MeshFault::NonDelaunayFacet));
+
+  // Three tetrahedra at a facet.
+  const MeshCriteriaReport overfull = Evaluate(MakeMesh(
+    { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0.3, 0.3, 1 }, { 0.3, 0.3, -1 }, { 0.2, 0.2, 2 } },
+    { { 0, 1, 2, 3 }, { 0, 2, 1, 4 }, { 0, 1, 2, 5 } }));
+  EXPECT_EQ(1, count(overfull, MeshFault::OverfullFacet));
+
+  // Two flat-topped tetrahedra whose common facet is not Delaunay: 2-3 flip wanted.
+  const MeshCriteriaReport facet = Evaluate(
+    MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0.3, 0.3, 0.1 }, { 0.3, 0.3, -0.1 } },
+      { { 0, 1, 2, 3 }, { 0, 2, 1, 4 } }));
+  EXPECT_EQ(2, count(facet, MeshFault::NonDelaunayTetrahedron));
+  EXPECT_EQ(1, count(facet, MeshFault::NonDelaunayFacet));
+  EXPECT_EQ(0, facet.Facets - 7);
+  // The apices see the facet under obtuse angles: its edges have negative couplings.
+  EXPECT_EQ(3, count(facet, MeshFault::NegativeCoupling));
+
+  const MeshCriteriaReport copies =
+    Evaluate(MakeMesh({ A, B, C, D, A, B, C, { -1, -1, 1 } }, { { 0, 1, 2, 3 }, { 4, 5, 6, 7 } }));
+  EXPECT_EQ(3, copies.CoincidentPoints);
+  EXPECT_FALSE(copies.IsClean());
+}
+
+TEST(MeshCriteria, SmallestSpheresOfTheBorder)
+{
+  // The top vertex lies inside of the smallest sphere of the bottom, exactly on it, outside.
+  const auto evaluate = [](double height)
+  {
+    return Evaluate(
+      MakeMesh({ { -4, -3, 0 }, { 4, -3, 0 }, { 0, 5, 0 }, { 0, 0, height } }, { { 0, 1, 2, 3 } }));
+  };
+  const double inside = std::nextafter(5.0, 0.0);
+  EXPECT_EQ(1, evaluate(inside).GetCount(MeshFault::FacetSphere));
+  EXPECT_EQ(1, evaluate(inside).GetCount(MeshFault::OpenControlVolume));
+  EXPECT_EQ(0, evaluate(5.0).GetCount(MeshFault::FacetSphere));
+  EXPECT_EQ(0, evaluate(5.0).GetCount(MeshFault::OpenControlVolume));
+  EXPECT_EQ(0, evaluate(inside).GetCount(MeshFault::EdgeSphere));
+  // The bottom edge (-4, -3), (4, -3): 3^2 + height^2 against 4^2; the two others, with the midpoint
+  // (2, 1): 5 + height^2 against 20.
+  EXPECT_EQ(0, evaluate(3.9).GetCount(MeshFault::EdgeSphere));
+  EXPECT_EQ(2, evaluate(3.8).GetCount(MeshFault::EdgeSphere));
+  EXPECT_EQ(2, evaluate(2.7).GetCount(MeshFault::EdgeSphere));
+  EXPECT_EQ(3, evaluate(2.6).GetCount(MeshFault::EdgeSphere));
+}
+
+TEST(MeshCriteria, VolumesAreThoseOfTheBoundary)
+{
+  const TetMesh mesh = MakeMesh({ A, B, C, D }, { { 0, 1, 2, 3 } });
+  TriangleMesh boundary;
+  boundary.Points = mesh.Points;
+  for (int i = 0; i < 4; ++i)
+  {
+    boundary.Triangles.push_back(GetFacet(mesh.Tetrahedra[0], i));
+    boundary.Labels.push_back({ OutsideRegion, 0 });
+  }
+  MeshCriteriaReport report;
+  ASSERT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, {}, report).IsOk());
+  EXPECT_TRUE(report.IsClean());
+  for (Vec3& point : boundary.Points)
+  {
+    point = 2.0 * point;
+  }
+  ASSERT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, {}, report).IsOk());
+  EXPECT_NEAR(7.0 / 8.0, report.LargestVolumeError, 1e-15);
+  EXPECT_FALSE(report.IsClean());
+  boundary.Labels[2] = { OutsideRegion, 4 };
+  ASSERT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, {}, report).IsOk());
+  ASSERT_EQ(2u, report.Regions.size());
+  EXPECT_EQ(4, report.Regions[1].Region);
+  EXPECT_EQ(0, report.Regions[1].Tetrahedra);
+}
+
+TEST(MeshCriteria, DelaunayMeshesHaveDelaunayFacetsAndNoNegativeInnerCouplings)
+{
+  for (const double rounding : { 0.0, 1.0 / 8.0 })
+  {
+    std::vector<Vec3> points = MakeRandomPoints(400, 7, rounding);
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    const TetMesh mesh = MakeHullMesh(points);
+    const MeshCriteriaReport report = Evaluate(mesh);
+    EXPECT_EQ(0, report.GetCount(MeshFault::NonDelaunayTetrahedron));
+    EXPECT_EQ(0, report.GetCount(MeshFault::NonDelaunayFacet));
+    // Euler's formula for a ball of tetrahedra.
+    EXPECT_EQ(
+      1, static_cast<Id>(mesh.Points.size()) - report.Edges + report.Facets - report.Tetrahedra);
+  }
+}
+
+TEST(MeshCriteria, TrianglesAgainstAllSpheresOfThePencil)
+{
+  // A triangle is Delaunay if some sphere through it is empty: the smallest one, or that through
+  // it and another point.
+  int delaunay = 0;
+  int other = 0;
+  for (const double rounding : { 0.0, 1.0 / 4.0 })
+  {
+    const std::vector<Vec3> points = MakeRandomPoints(24, 11, rounding);
+    const SphereCriteria criteria(points);
+    for (Id i = 0; i < 24; ++i)
+    {
+      for (Id j = i + 1; j < 24; ++j)
+      {
+        for (Id k = j + 1; k < 24; ++k)
+        {
+          const Vec3& a = points[i];
+          const Vec3& b = points[j];
+          const Vec3& c = points[k];
+          if (AreCollinear(a, b, c))
+          {
+            EXPECT_TRUE(criteria.IsDelaunay(TriangleIds{ i, j, k }));
+            continue;
+          }
+          bool expected = criteria.HasEmptySmallestSphere(TriangleIds{ i, j, k });
+          for (const Vec3& d : points)
+          {
+            const int side = Orientation(a, b, c, d);
+            expected = expected ||
+              (side != 0 &&
+                std::none_of(points.begin(), points.end(),
+                  [&](const Vec3& e) { return side * InSphere(a, b, c, d, e) > 0; }));
+          }
+          EXPECT_EQ(expected, criteria.IsDelaunay(TriangleIds{ i, j, k })) << i << j << k;
+          ++(expected ? delaunay : other);
+        }
+      }
+    }
+  }
+  EXPECT_GT(delaunay, 100);
+  EXPECT_GT(other, 100);
+}
+
+TEST(MeshCriteria, GridsAreCleanAndRoundingLeavesNoNegativeSums)
+{
+  const TetMesh grid = MakeHullMesh(MakeGrid(6, 0.1));
+  const MeshCriteriaReport straight = Evaluate(grid);
+  EXPECT_TRUE(straight.IsClean()) << straight.GetCertificate();
+  EXPECT_TRUE(straight.Violations.empty()) << straight.GetCertificate();
+  EXPECT_EQ(3 * 25 * 6 * 2 / 3, straight.BorderFacets);
+  EXPECT_EQ(12 * 5, straight.StructuralEdges) << "those of the cube";
+  EXPECT_NEAR(0.125, straight.Regions[0].Volume, 1e-15);
+
+  // The same tetrahedra on rotated and rounded points: hardly any is Delaunay in the exact sense,
+  // but couplings and cotangent sums that are zero stay so to rounding.
+  TetMesh rotated = grid;
+  for (Vec3& point : rotated.Points)
+  {
+    point = { 0.6 * point.X - 0.8 * point.Y,
+      0.28 * (0.8 * point.X + 0.6 * point.Y) - 0.96 * point.Z,
+      0.96 * (0.8 * point.X + 0.6 * point.Y) + 0.28 * point.Z };
+  }
+  const MeshCriteriaReport turned = Evaluate(rotated);
+  EXPECT_GT(turned.GetCount(MeshFault::NonDelaunayTetrahedron), 100);
+  EXPECT_EQ(0, turned.GetCount(MeshFault::NegativeCoupling));
+  EXPECT_EQ(0, turned.GetCount(MeshFault::NegativeCotangentSum));
+  EXPECT_NEAR(straight.SmallestDihedralAngle, turned.SmallestDihedralAngle, 1e-10);
+}
+
+TEST(MeshCriteria, SameForAnyNumberOfThreads)
+{
+  const TetMesh mesh = MakeHullMesh(MakeRandomPoints(9000, 3));
+  const MeshCriteriaReport one = Evaluate(mesh, 1);
+  const MeshCriteriaReport three = Evaluate(mesh, 3);
+  EXPECT_EQ(one.GetCertificate(), three.GetCertificate());
+  ASSERT_EQ(one.Violations.size(), three.Violations.size());
+  ASSERT_GT(one.Violations.size(), 100u);
+  for (std::size_t i = 0; i < one.Violations.size(); ++i)
+  {
+    EXPECT_EQ(one.Violations[i].Fault, three.Violations[i].Fault);
+    EXPECT_EQ(one.Violations[i].Points, three.Violations[i].Points);
+    EXPECT_EQ(one.Violations[i].Tetrahedron, three.Violations[i].Tetrahedron);
+    EXPECT_EQ(one.Violations[i].Region, three.Violations[i].Region);
+  }
+}
+
+TEST(MeshCriteria, InterfacesAreBordersAndCouplingsBelongToRegions)
+{
+  TetMesh mesh = MakeHullMesh(MakeGrid(3, 1.0));
+  const MeshCriteriaReport one = Evaluate(mesh);
+  for (std::size_t i = 0; i < mesh.Tetrahedra.size(); ++i)
+  {
+    double x = 0.0;
+    for (const Id point : mesh.Tetrahedra[i])
+    {
+      x += mesh.Points[point].X / 4.0;
+    }
+    mesh.Regions[i] = x > 1.0 ? 5 : 2;
+  }
+  const MeshCriteriaReport two = Evaluate(mesh);
+  EXPECT_EQ(one.BorderFacets + 8, two.BorderFacets) << "the interface has four squares";
+  EXPECT_EQ(one.StructuralEdges + 8, two.StructuralEdges) << "the rim of the interface";
+  EXPECT_EQ(one.Couplings + 16, two.Couplings) << "edges of the interface count twice";
+  ASSERT_EQ(2u, two.Regions.size());
+  EXPECT_EQ(4.0, two.Regions[0].Volume);
+  EXPECT_EQ(4.0, two.Regions[1].EnclosedVolume);
+  EXPECT_TRUE(two.IsClean()) << two.GetCertificate();
+}
+
+TEST(MeshCriteria, AbortAndInvalidInput)
+{
+  const TetMesh mesh = MakeHullMesh(MakeRandomPoints(3000, 5));
+  for (const double limit : { 0.0, 0.3, 0.65, 0.9 })
+  {
+    double reached = -1.0;
+    const ExecutionContext context([&](double fraction, const char*)
+      { reached = std::max(reached, fraction); },
+      [&] { return reached >= limit; });
+    MeshCriteriaReport report;
+    EXPECT_TRUE(EvaluateMeshCriteria(mesh, nullptr, {}, context, report).IsAborted());
+    EXPECT_GE(reached, limit);
+  }
+  TetMesh broken = mesh;
+  broken.Tetrahedra[2][1] = 3000;
+  MeshCriteriaReport report;
+  Status status = EvaluateMeshCriteria(broken, nullptr, {}, {}, report);
+  EXPECT_EQ(StatusCode::InvalidInput, status.Code);
+  EXPECT_EQ(std::vector<Id>{ 2 }, status.Cells);
+  broken = mesh;
+  broken.Points[7].Y = std::numeric_limits<double>::quiet_NaN();
+  status = EvaluateMeshCriteria(broken, nullptr, {}, {}, report);
+  EXPECT_EQ(std::vector<Id>{ 7 }, status.Points);
+  broken = mesh;
+  broken.Regions.pop_back();
+  EXPECT_EQ(StatusCode::InvalidInput, EvaluateMeshCriteria(broken, nullptr, {}, {}, report).Code);
+}
