@@ -2,11 +2,11 @@
 #include "AdvancingFrontTetrahedralizer.h"
 
 #include "DelaunayTetrahedralization.h"
+#include "ParallelLoop.h"
 #include "Predicates.h"
 #include "SpatialSort.h"
 #include "SurfaceDelaunayTest.h"
 #include "SurfaceSides.h"
-#include "Threads.h"
 
 #include <algorithm>
 #include <atomic>
@@ -122,7 +122,8 @@ private:
   template <typename Work>
   void ForAll(std::size_t size, const Work& work) const
   {
-    ForParts(std::max(1, this->Options.NumberOfThreads), size, work);
+    ParallelLoop(size, { std::max(1, this->Options.NumberOfThreads), std::size_t(1) << 15 }, {}, "",
+      [&work](std::size_t begin, std::size_t end, std::size_t) { work(begin, end); });
   }
   bool HasSurface() const { return this->NumberOfSurfaceTriangles > 0; }
   bool HasSeeds() const { return this->Input.Seeds != nullptr && !this->Input.Seeds->empty(); }

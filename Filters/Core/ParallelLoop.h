@@ -12,14 +12,12 @@
 #define cdmParallelLoop_h
 
 #include "ExecutionContext.h"
+#include "Threads.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <exception>
-#include <mutex>
 #include <thread>
-#include <vector>
 
 namespace cdm
 {
@@ -47,74 +45,41 @@ bool ParallelLoop(std::size_t count, const ParallelLoopOptions& options,
   const std::size_t numberOfBlocks = GetNumberOfBlocks(count, options);
   std::atomic<std::size_t> next{ 0 };
   std::atomic<bool> isStopped{ false };
-  std::exception_ptr failure;
-  std::mutex failureMutex;
-
-  const auto runBlock = [&]
-  {
-    const std::size_t block = next++;
-    if (block >= numberOfBlocks || isStopped)
-    {
-      return false;
-    }
-    try
-    {
-      const std::size_t begin = block * options.BlockSize;
-      body(begin, std::min(begin + options.BlockSize, count), block);
-    }
-    catch (...)
-    {
-      const std::lock_guard<std::mutex> lock(failureMutex);
-      failure = std::current_exception();
-      isStopped = true;
-    }
-    return true;
-  };
-
+  bool isAborted = false;
   const std::size_t wanted = options.NumberOfThreads > 0
     ? static_cast<std::size_t>(options.NumberOfThreads)
     : std::max(1U, std::thread::hardware_concurrency());
-  std::vector<std::thread> threads;
-  const auto join = [&threads]
-  {
-    for (std::thread& thread : threads)
+  RunOnThreads(static_cast<int>(std::max<std::size_t>(1, std::min(wanted, numberOfBlocks))),
+    [&](int thread)
     {
-      thread.join();
-    }
-  };
-  bool isAborted = false;
-  try
-  {
-    for (std::size_t i = 1; i < std::min(wanted, numberOfBlocks); ++i)
-    {
-      threads.emplace_back(
-        [&runBlock]
-        {
-          while (runBlock())
-            ;
-        });
-    }
-    do
-    {
-      const std::size_t done = std::min(next.load(), numberOfBlocks);
-      if (!context.Continue(numberOfBlocks == 0 ? 1.0 : double(done) / numberOfBlocks, activity))
+      for (;;)
       {
-        isAborted = true;
-        isStopped = true;
+        const std::size_t block = next++;
+        if (thread == 0)
+        {
+          const double done = static_cast<double>(std::min(block, numberOfBlocks));
+          if (!context.Continue(numberOfBlocks == 0 ? 1.0 : done / numberOfBlocks, activity))
+          {
+            isAborted = true;
+            isStopped = true;
+          }
+        }
+        if (block >= numberOfBlocks || isStopped)
+        {
+          return;
+        }
+        const std::size_t begin = block * options.BlockSize;
+        try
+        {
+          body(begin, std::min(begin + options.BlockSize, count), block);
+        }
+        catch (...)
+        {
+          isStopped = true;
+          throw;
+        }
       }
-    } while (runBlock());
-  }
-  catch (...)
-  {
-    isStopped = true;
-    join();
-    throw;
-  }
-  join();
-  if (failure)
-  {
-    std::rethrow_exception(failure);
-  }
+    });
   return !isAborted;
 }
 } // namespace cdm

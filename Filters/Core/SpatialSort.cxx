@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SpatialSort.h"
 
+#include "ParallelLoop.h"
 #include "RawVector.h"
-#include "Threads.h"
 
 #include <algorithm>
 #include <array>
@@ -111,8 +111,8 @@ public:
     };
     static const CurveTable Table;
     RawVector<Item> items(count);
-    ForParts(this->NumberOfThreads, count,
-      [&](std::size_t first, std::size_t last)
+    ParallelLoop(count, { this->NumberOfThreads, std::size_t(1) << 15 }, {}, "",
+      [&](std::size_t first, std::size_t last, std::size_t)
       {
         for (std::size_t i = first; i < last; ++i)
         {

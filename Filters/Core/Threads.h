@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Threads.h
- * @brief Runs the same work on some threads; the engine's only use of them.
+ * @brief Runs the same work on some threads. For loops there is ParallelLoop.h.
  *
  * Callers split their work so that results do not depend on the number of threads. Exceptions (only
  * std::bad_alloc can come) are thrown again on the calling thread when all threads have ended.
@@ -49,20 +49,6 @@ void RunOnThreads(int count, const Work& work)
       std::rethrow_exception(exception);
     }
   }
-}
-
-/** work(begin, end) for equal parts of the numbers from 0 to size - 1. */
-template <typename Work>
-void ForParts(int count, std::size_t size, const Work& work)
-{
-  constexpr std::size_t Small = 20000;
-  const std::size_t parts = size < Small ? 1 : static_cast<std::size_t>(count);
-  RunOnThreads(static_cast<int>(parts),
-    [&work, size, parts](int i)
-    {
-      const std::size_t part = static_cast<std::size_t>(i);
-      work(size * part / parts, size * (part + 1) / parts);
-    });
 }
 } // namespace cdm
 
