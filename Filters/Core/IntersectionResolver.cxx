@@ -313,7 +313,7 @@ struct Piece
   bool IsActive = true;
   /** Cut, or equal to another one. */
   bool IsTouched = false;
-  /** On one line; to be removed in the next round. */
+  /** On one line, or a triangle of the input narrower than the tolerance; removed next. */
   bool IsDegenerate = false;
 };
 
@@ -986,10 +986,9 @@ public:
     // Far from the origin rounding errors grow with the distance from it.
     this->Tolerance = std::max({ options.Tolerance, ToleranceRatio * Distance(box.Low, box.High),
       64.0 * std::numeric_limits<double>::epsilon() * largest });
-    this->NeedleWidth = this->Tolerance;
     for (std::size_t t = 0; t < this->Pieces.size(); ++t)
     {
-      this->Pieces[t].IsDegenerate = IsNeedle(this->Points, this->Triangles[t], this->NeedleWidth);
+      this->Pieces[t].IsDegenerate = IsNeedle(this->Points, this->Triangles[t], this->Tolerance);
     }
   }
 
@@ -1496,8 +1495,6 @@ private:
   /** For each triangle of the input. */
   std::vector<char> IsCut;
   double Tolerance = 0.0;
-  /** The first tolerance. */
-  double NeedleWidth = 0.0;
 };
 } // namespace
 
