@@ -29,7 +29,7 @@ constexpr std::size_t ReportInterval = 256;
 constexpr double SmallestPiece = 0.05;
 /** A disturbing point this close to the plane of a triangle, in units of its circumradius, is
  * mirrored into the plane: thin layers get matching points instead of small triangles. */
-constexpr double ThinLayerRatio = 1.0;
+constexpr double ThinLayerRatio = 0.75;
 /** A disturbing point this close to an edge, in units of its length, is matched exactly. */
 constexpr double ThinGapRatio = 0.1;
 /** Disturbing points closer than this need no match near an end of the edge, in that unit, ... */
@@ -38,7 +38,7 @@ constexpr double NeedleGapRatio = 1e-3;
 constexpr double CloseEndRatio = 0.25;
 /** Another point on an edge, closer to the match than this part of the disturbing point's distance,
  * is matched instead. */
-constexpr double CloseMatchRatio = 0.8;
+constexpr double CloseMatchRatio = 0.5;
 /** Distance from a position to the nearest point other than one. */
 class NearestPointVisitor
 {
