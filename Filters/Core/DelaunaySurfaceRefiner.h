@@ -106,6 +106,6 @@ struct DelaunaySurfaceRefinerOutput
 Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,
   const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
   DelaunaySurfaceRefinerOutput& output);
-}
+} // namespace cdm
 
 #endif
