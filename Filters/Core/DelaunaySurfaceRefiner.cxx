@@ -2,6 +2,7 @@
 #include "DelaunaySurfaceRefiner.h"
 
 #include "BallIndex.h"
+#include "DuplicateTriangles.h"
 #include "Measures.h"
 #include "Predicates.h"
 #include "RefinableSurface.h"
@@ -25,13 +26,19 @@ constexpr double Pi = 3.14159265358979323846;
 constexpr std::size_t ReportInterval = 256;
 
 /** New points keep this distance, as a ratio of the edge, from the ends of an edge they split. */
-constexpr double SmallestPiece = 0.15;
+constexpr double SmallestPiece = 0.05;
 /** A disturbing point this close to the plane of a triangle, in units of its circumradius, is
  * mirrored into the plane: thin layers get matching points instead of small triangles. */
-constexpr double ThinLayerRatio = 0.5;
+constexpr double ThinLayerRatio = 0.75;
 /** A disturbing point this close to an edge, in units of its length, is matched exactly. */
 constexpr double ThinGapRatio = 0.1;
-
+/** Disturbing points closer than this need no match near an end of the edge, in that unit, ... */
+constexpr double NeedleGapRatio = 1e-3;
+/** ... where the match lies within this part of the point's distance from the end. */
+constexpr double CloseEndRatio = 0.25;
+/** Another point on an edge, closer to the match than this part of the disturbing point's distance,
+ * is matched instead. */
+constexpr double CloseMatchRatio = 0.5;
 /** Distance from a position to the nearest point other than one. */
 class NearestPointVisitor
 {
@@ -52,12 +59,15 @@ public:
 
   void Visit(Id id, const Vec3& p)
   {
-    if (id != this->Except)
+    const double distance = SquaredNorm(p - this->Position);
+    if (id != this->Except && distance < this->SquaredDistance)
     {
-      this->SquaredDistance = std::min(this->SquaredDistance, SquaredNorm(p - this->Position));
+      this->SquaredDistance = distance;
+      this->Nearest = id;
     }
   }
 
+  Id Nearest = NoId;
   double SquaredDistance = Infinity;
 
 private:
@@ -123,6 +133,63 @@ Vec3 SnapToCoordinates(Vec3 position, const Vec3& model, double size)
     }
   }
   return position;
+}
+
+/**
+ * Two points that match across a narrow gap leave the pieces at them alone only if they differ along
+ * the gap by less than its squared width over the size of the pieces. Where that is less than
+ * rounding leaves, one of the doubles next to the position is taken.
+ * @param getOffset distance from the model along the gap, in extended precision
+ * @param range at most so many units in the last place are gone from the position
+ */
+template <typename GetOffset>
+Vec3 MatchExactly(
+  const Vec3& position, const Vec3& model, double size, int range, GetOffset&& getOffset)
+{
+  const auto getOffsetAt = [&](const Vec3& p)
+  {
+    return getOffset(static_cast<long double>(p.X - model.X),
+      static_cast<long double>(p.Y - model.Y), static_cast<long double>(p.Z - model.Z));
+  };
+  const long double allowed = SquaredNorm(position - model) / (8.0 * size);
+  Vec3 best = position;
+  long double smallest = getOffsetAt(position);
+  if (smallest <= allowed)
+  {
+    return best;
+  }
+  std::vector<double> steps[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    steps[axis].resize(2 * range + 1, position[axis]);
+    for (int i = 1; i <= range; ++i)
+    {
+      steps[axis][range + i] = std::nextafter(steps[axis][range + i - 1], Infinity);
+      steps[axis][range - i] = std::nextafter(steps[axis][range - i + 1], -Infinity);
+    }
+  }
+  // Shell by shell: no farther than needed.
+  for (int shell = 1; shell <= range && smallest > allowed; ++shell)
+  {
+    for (int i = -shell; i <= shell; ++i)
+    {
+      for (int j = -shell; j <= shell; ++j)
+      {
+        const bool isFace = std::abs(i) == shell || std::abs(j) == shell;
+        for (int k = -shell; k <= shell; k += isFace ? 1 : 2 * shell)
+        {
+          const Vec3 candidate{ steps[0][range + i], steps[1][range + j], steps[2][range + k] };
+          const long double offset = getOffsetAt(candidate);
+          if (offset < smallest)
+          {
+            smallest = offset;
+            best = candidate;
+          }
+        }
+      }
+    }
+  }
+  return best;
 }
 
 /** Points strictly inside the diametral sphere of an edge, other than its ends. */
@@ -199,6 +266,7 @@ private:
   bool ResolveByFlip(Id t);
   bool ResolveByEdge(Id t);
   bool ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMirrored);
+  Vec3 MatchAcross(Id t, Id disturbing, const Vec3& position, double radius) const;
   bool MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) const;
   bool RotateAboutAxis(Id t, Id disturbing, Vec3& target) const;
   bool RotateAboutCorner(Id t, Id disturbing, Vec3& target) const;
@@ -206,7 +274,7 @@ private:
   bool SplitSegment(Id segment, Id disturbing);
   bool SplitLongestEdge(Id t);
   Vec3 PlaceOnSegment(Id segment, Id disturbing) const;
-  bool PlacePartner(Id segment, Id disturbing, double& way) const;
+  bool PlacePartner(Id segment, Id disturbing, double& way, Vec3& along) const;
 
   bool CanFlip(Id use) const;
   bool ShouldFlip(Id use) const;
@@ -219,7 +287,7 @@ private:
     this->Octree.Visit(visitor);
     return std::sqrt(visitor.SquaredDistance);
   }
-  void Finish();
+  Status Finish();
 
   const DelaunaySurfaceRefinerInput& Input;
   const DelaunaySurfaceRefinerOptions& Options;
@@ -620,7 +688,8 @@ bool SurfaceRefiner::IsCocircularFacet(Id t) const
 
 bool SurfaceRefiner::IsGood(Id t)
 {
-  this->Test.Run(this->Surface->GetTriangle(t).Points, this->Found);
+  this->Test.Run(this->Surface->GetTriangle(t).Points, this->Found,
+    this->Options.Criterion != SurfaceCriterion::Delaunay);
   if (!this->Found.IsDelaunay || (!this->Found.Cocircular.empty() && !this->IsCocircularFacet(t)))
   {
     return false;
@@ -661,10 +730,11 @@ bool SurfaceRefiner::ResolveByFlip(Id t)
     }
     SurfaceDelaunayTest::Result first;
     SurfaceDelaunayTest::Result second;
-    this->Test.Run({ a, d, c }, first);
-    this->Test.Run({ d, b, c }, second);
-    const bool isAllowed = this->Options.Criterion == SurfaceCriterion::Delaunay ||
-      (first.InsideSmallestSphere.empty() && second.InsideSmallestSphere.empty());
+    const bool isStronger = this->Options.Criterion != SurfaceCriterion::Delaunay;
+    this->Test.Run({ a, d, c }, first, isStronger);
+    this->Test.Run({ d, b, c }, second, isStronger);
+    const bool isAllowed =
+      !isStronger || (first.InsideSmallestSphere.empty() && second.InsideSmallestSphere.empty());
     if (first.IsDelaunay && second.IsDelaunay && isAllowed && first.Cocircular.empty() &&
       second.Cocircular.empty())
     {
@@ -686,7 +756,7 @@ bool SurfaceRefiner::ResolveByFlip(Id t)
  * ladder between them, and a point is outside of the diametral spheres of all pieces that end at
  * its partner.
  */
-bool SurfaceRefiner::PlacePartner(Id segment, Id disturbing, double& way) const
+bool SurfaceRefiner::PlacePartner(Id segment, Id disturbing, double& way, Vec3& along) const
 {
   const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
   const Vec3& a = this->Points[ends[0]];
@@ -722,10 +792,11 @@ bool SurfaceRefiner::PlacePartner(Id segment, Id disturbing, double& way) const
     const double foot = Dot(p - a, direction);
     // Distance of p from the common perpendicular along its line, times 1 - cosine: a shift of the
     // foot that stays small and accurate where the lines are almost parallel.
-    const double along =
+    const double distance =
       squaredSine > 0.0 ? Dot(Cross(p - a, direction), across) / squaredSine : 0.0;
-    const double shift = squaredSine > 1e-24 ? -along * squaredSine / (1.0 + cosine) : 0.0;
+    const double shift = squaredSine > 1e-24 ? -distance * squaredSine / (1.0 + cosine) : 0.0;
     way = foot + shift;
+    along = 0.5 * (direction + line);
   }
   return best > 0.0;
 }
@@ -737,26 +808,55 @@ Vec3 SurfaceRefiner::PlaceOnSegment(Id segment, Id disturbing) const
   const Vec3& b = this->Points[ends[1]];
   const double length = Distance(a, b);
   const Vec3 direction = (1.0 / length) * (b - a);
-  if (disturbing != NoId)
+  for (int attempt = 0; disturbing != NoId; ++attempt)
   {
     const Vec3& p = this->Points[disturbing];
     const double foot = Dot(p - a, direction);
     const double height = Distance(p, a + foot * direction);
     const bool isThin = height < ThinGapRatio * length;
     double way = foot;
-    const bool isPartner = this->PlacePartner(segment, disturbing, way);
+    Vec3 along = direction;
+    const bool isPartner = this->PlacePartner(segment, disturbing, way, along);
+    // Close to an end of the piece, that end is the partner as good as there is: p stays outside of
+    // pieces that are shorter than its squared height over its distance along.
+    const double rest = std::abs(std::min(way, length - way));
+    const bool isClose = height < NeedleGapRatio * length && rest < CloseEndRatio * height;
+    if (isClose)
+    {
+      const double shorter = std::max(
+        height, rest > 0.0 ? std::min(0.5 * length, 0.5 * height * (height / rest)) : 0.5 * length);
+      way = way < 0.5 * length ? shorter : length - shorter;
+    }
     const double margin = isThin ? 0.0
       : isPartner                ? SmallestPiece * length
                                  : std::min(height, 0.5 * length);
     if (way > margin && way < length - margin)
     {
-      return SnapToCoordinates(a + way * direction, p, this->Diagonal);
+      const Vec3 position = a + way * direction;
+      if (isClose)
+      {
+        return position;
+      }
+      // A point that is much nearer is the one to match exactly.
+      NearestPointVisitor visitor(position, NoId);
+      this->Octree.Visit(visitor);
+      if (attempt == 0 && visitor.Nearest != disturbing && visitor.Nearest != ends[0] &&
+        visitor.Nearest != ends[1] && !this->PointEdges[visitor.Nearest].empty() &&
+        std::sqrt(visitor.SquaredDistance) < CloseMatchRatio * height)
+      {
+        disturbing = visitor.Nearest;
+        continue;
+      }
+      return MatchExactly(SnapToCoordinates(position, p, this->Diagonal), p, length, 10,
+        [&along](long double x, long double y, long double z)
+        { return std::abs(x * along.X + y * along.Y + z * along.Z); });
     }
     if (!isPartner && foot > 0.0 && foot < length)
     {
       // Type P, not nearer to the ends than the disturbing point is to the edge.
       return a + std::min(std::max(foot, margin), length - margin) * direction;
     }
+    break;
   }
   // From an acute corner only powers of two are used, so that all edges there end up alike.
   const bool isAcuteA = ends[0] < this->NumberOfSurfacePoints && this->IsAcuteCorner[ends[0]];
@@ -993,12 +1093,46 @@ bool SurfaceRefiner::MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) co
     this->RotateAboutCorner(t, disturbing, target) || this->ProjectOntoFacet(t, disturbing, target);
 }
 
+/** Moves a point in a plane facet by rounding errors, to match one of another facet exactly. */
+Vec3 SurfaceRefiner::MatchAcross(Id t, Id disturbing, const Vec3& position, double radius) const
+{
+  const Vec3& p = this->Points[disturbing];
+  const Vec3& own = this->FacetNormals[this->Surface->GetTriangle(t).Facet];
+  Vec3 across;
+  double best = 0.5;
+  for (Id facet : this->PointFacets[disturbing])
+  {
+    const double cosine = Dot(this->FacetNormals[facet], own);
+    if (std::abs(cosine) > best)
+    {
+      best = std::abs(cosine);
+      across = own + (cosine < 0.0 ? -1.0 : 1.0) * this->FacetNormals[facet];
+    }
+  }
+  if (best <= 0.5 || Distance(position, p) > NeedleGapRatio * radius)
+  {
+    return position;
+  }
+  const long double square = SquaredNorm(across);
+  return MatchExactly(position, p, radius, 10,
+    [&across, square](long double x, long double y, long double z)
+    {
+      const long double along = (x * across.X + y * across.Y + z * across.Z) / square;
+      x -= along * across.X;
+      y -= along * across.Y;
+      z -= along * across.Z;
+      return std::sqrt(x * x + y * y + z * z);
+    });
+}
+
 bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMirrored)
 {
   const RefinableSurface& surface = *this->Surface;
   const TriangleIds& start = surface.GetTriangle(t).Points;
   const Vec3& a = this->Points[start[0]];
   const Vec3 normal = Cross(this->Points[start[1]] - a, this->Points[start[2]] - a);
+  const double radius =
+    Norm(GetCircumcenterOffset(a, this->Points[start[1]], this->Points[start[2]]));
 
   // Walk (thesis 6.3, "Locate Triangle"): over the edge that faces the target most.
   Id current = t;
@@ -1044,6 +1178,7 @@ bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMir
       if (isMirrored)
       {
         position = SnapToCoordinates(position, this->Points[disturbing], this->Diagonal);
+        position = this->MatchAcross(current, disturbing, position, radius);
       }
       place = surface.Locate(current, position);
       if (place.second)
@@ -1327,7 +1462,7 @@ Status SurfaceRefiner::Refine()
   return Status();
 }
 
-void SurfaceRefiner::Finish()
+Status SurfaceRefiner::Finish()
 {
   // Mesh points lie between the given and the new points of the surface: take them out.
   const Id shift = this->NumberOfGivenPoints - this->NumberOfSurfacePoints;
@@ -1335,6 +1470,23 @@ void SurfaceRefiner::Finish()
   { return id >= this->NumberOfGivenPoints ? id - shift : id; };
   TriangleMesh& surface = this->Output.Surface;
   this->Surface->Export(surface);
+  const std::vector<DuplicateTriangle> duplicates = FindDuplicateTriangles(surface.Triangles);
+  if (!duplicates.empty())
+  {
+    std::vector<Id> cells;
+    for (const DuplicateTriangle& duplicate : duplicates)
+    {
+      cells.push_back(surface.SourceCells[duplicate.Original]);
+      cells.push_back(surface.SourceCells[duplicate.Triangle]);
+    }
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    return Status::InvalidInput("Two sheets of the surface with the same points lie within "
+                                "FlatnessRatio of each other and have become one: lower "
+                                "FlatnessRatio, or unite the sheets with a MergeTolerance of "
+                                "vtkBoundaryTriangulator.",
+      std::move(cells));
+  }
   if (this->Input.Surface->Labels.empty())
   {
     surface.Labels.clear();
@@ -1370,6 +1522,7 @@ void SurfaceRefiner::Finish()
       this->Output.UnresolvedTriangles.push_back(t);
     }
   }
+  return Status();
 }
 
 Status SurfaceRefiner::Run()
@@ -1382,11 +1535,7 @@ Status SurfaceRefiner::Run()
   this->FlipBudget = 100000 + 50 * this->Surface->GetNumberOfTriangles();
   this->Saturate();
   status = this->Refine();
-  if (status.IsOk())
-  {
-    this->Finish();
-  }
-  return status;
+  return status.IsOk() ? this->Finish() : status;
 }
 } // namespace
 

@@ -21,7 +21,8 @@
  *
  * Guarantees: exact decisions; input points keep their coordinates and ids; new points follow them.
  * Deterministic.
- * Failure: InvalidInput for a surface that breaks the invariants of TriangleMesh.h. Triangles that
+ * Failure: InvalidInput for a surface that breaks the invariants of TriangleMesh.h, or of which two
+ * sheets within FlatnessRatio have become the same triangles. Triangles that
  * stay bad because a limit stops the refinement are listed in UnresolvedTriangles: never silently.
  * Cost: a triangle that is Delaunay takes one search of the octree, O(log n); a new point takes a few
  * searches and one query of the spheres that prove the other triangles. About 350 bytes per triangle.

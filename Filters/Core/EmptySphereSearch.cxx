@@ -202,11 +202,11 @@ bool SphereForm::MayTouch(const Vec3& lower, const Vec3& upper) const
   return !(smallest > error);
 }
 
-bool SphereForm::MayHold(const Vec3& point) const
+int SphereForm::GetSide(const Vec3& point) const
 {
   if (!this->MayTouch(point, point))
   {
-    return false;
+    return -1;
   }
   const WideVec3 offset = SubtractExactly(point, this->Origin, 1.0);
   const WideVec3 gradient{ { this->Gradient.X, this->GradientRest.X },
@@ -214,7 +214,8 @@ bool SphereForm::MayHold(const Vec3& point) const
   const Wide value =
     Wide{ this->Curvature, this->CurvatureRest } * Dot(offset, offset) - Dot(offset, gradient);
   const double reach = std::abs(offset.X.High) + std::abs(offset.Y.High) + std::abs(offset.Z.High);
-  return !(value.High > WideBound * reach * (reach + this->Size));
+  const double error = WideBound * reach * (reach + this->Size);
+  return value.High > error ? -1 : value.High < -error ? 1 : 0;
 }
 
 EmptySphereSearch::EmptySphereSearch(const std::vector<Vec3>& points) : Order(points.size())

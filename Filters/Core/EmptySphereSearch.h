@@ -44,7 +44,10 @@ public:
    * False only if the point lies outside of the sphere; rarely true for a point that does, as g is
    * evaluated in twice the working precision where the box's bound does not tell.
    */
-  bool MayHold(const Vec3& point) const;
+  bool MayHold(const Vec3& point) const { return this->GetSide(point) >= 0; }
+
+  /** +1: the point surely lies inside, -1: surely outside; 0: too close to tell. */
+  int GetSide(const Vec3& point) const;
 
 private:
   Vec3 Origin;

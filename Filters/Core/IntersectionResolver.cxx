@@ -273,6 +273,34 @@ double GetOverlapWidth(const std::vector<Vec3>& points, const TriangleIds& s, co
   return longest > 0.0 ? Norm(area) / longest : 0.0;
 }
 
+/** Number of the longest edge; edge i runs from vertex i to the next one. */
+int FindLongestEdge(const std::vector<Vec3>& points, const TriangleIds& t)
+{
+  int longest = 0;
+  double length = -1.0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const double candidate = SquaredNorm(points[t[(i + 1) % 3]] - points[t[i]]);
+    if (candidate > length)
+    {
+      longest = i;
+      length = candidate;
+    }
+  }
+  return longest;
+}
+
+/** Whether a triangle is narrower than a tolerance, but not because two vertices are so close. */
+bool IsNeedle(const std::vector<Vec3>& points, const TriangleIds& t, double tolerance)
+{
+  const int i = FindLongestEdge(points, t);
+  const Vec3& a = points[t[i]];
+  const Vec3& b = points[t[(i + 1) % 3]];
+  const Vec3& apex = points[t[(i + 2) % 3]];
+  return Norm(Cross(b - a, apex - a)) <= tolerance * Distance(a, b) &&
+    std::min(Distance(apex, a), Distance(apex, b)) > 2.0 * tolerance;
+}
+
 /** A triangle or what was cut from one. */
 struct Piece
 {
@@ -285,7 +313,7 @@ struct Piece
   bool IsActive = true;
   /** Cut, or equal to another one. */
   bool IsTouched = false;
-  /** On one line; to be removed in the next round. */
+  /** On one line, or a triangle of the input narrower than the tolerance; removed next. */
   bool IsDegenerate = false;
 };
 
@@ -351,14 +379,12 @@ public:
     }
   }
 
-  /** For a triangle on one line: its middle vertex divides its long edge. */
+  /** For a triangle on one line, up to the tolerance: its middle vertex divides its long edge. */
   void AddDegenerate(Id t)
   {
     const TriangleIds& ids = this->Triangles[t];
-    TriangleIds sorted = ids;
-    std::sort(sorted.begin(), sorted.end(),
-      [this](Id a, Id b) { return this->Points[a] < this->Points[b]; });
-    this->DivideEdge(sorted[1], sorted[0], sorted[2]);
+    const int i = FindLongestEdge(this->Points, ids);
+    this->DivideEdge(ids[(i + 2) % 3], ids[i], ids[(i + 1) % 3]);
   }
 
   /** Lets chains meet: at points beside them, then where they cross. */
@@ -960,6 +986,10 @@ public:
     // Far from the origin rounding errors grow with the distance from it.
     this->Tolerance = std::max({ options.Tolerance, ToleranceRatio * Distance(box.Low, box.High),
       64.0 * std::numeric_limits<double>::epsilon() * largest });
+    for (std::size_t t = 0; t < this->Pieces.size(); ++t)
+    {
+      this->Pieces[t].IsDegenerate = IsNeedle(this->Points, this->Triangles[t], this->Tolerance);
+    }
   }
 
   Status Run()

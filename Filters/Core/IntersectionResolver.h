@@ -17,6 +17,8 @@
  *  5. rounded points lie beside the planes and edges they belong to, which may make new, tiny
  *     intersections: check again. The tolerance grows from round to round, so that what keeps
  *     intersecting is pulled together. If points are nearer than that they are merged first.
+ *     Triangles of the input that are narrower than the first tolerance (what is left of a
+ *     T-junction in a file whose coordinates are rounded) are closed in the first round, too.
  * Last, of an unlabelled surface only the pieces that bound the outside are kept, unless all are
  * asked for. The boundary of a union: with windings counted (one more on the back of each piece),
  * those with winding 0 on one side only. Where orientations contradict each other, those of which a
@@ -30,7 +32,8 @@
  * that it lies in, with its barycentric coordinates.
  * Guarantees: on Ok the invariants of TriangleMesh.h hold; points of the input are not moved, but
  * those of intersecting triangles merged if nearer than the tolerance; a triangle without
- * intersections is changed only where a neighbour's cut divides its edge. Deterministic.
+ * intersections is changed only where a neighbour's cut divides its edge, or if it is narrower than
+ * the tolerance. Deterministic.
  * Failure: InvalidInput names the cells that still intersect after MaximumRounds (seen where many
  * triangles cross at angles of some hundred tolerances over their length), or that cover each other
  * with different regions on the same side; the surface is then left as it was.

@@ -64,7 +64,7 @@ struct StructuralEdgeOptions
   /** Degrees, 0 to 180: edges that bend by no more are smooth. 0: only numerically flat ones. */
   double AccuracyAngle = 0.0;
   /** Distance, as a ratio of the bounding box diagonal, within which triangles count as flat. */
-  double FlatnessRatio = 1e-8;
+  double FlatnessRatio = 1e-9;
 };
 
 struct StructuralEdgesOutput

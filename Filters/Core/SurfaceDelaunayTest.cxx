@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SurfaceDelaunayTest.h"
 
+#include "EmptySphereSearch.h"
 #include "Measures.h"
 #include "Predicates.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace cdm
 {
@@ -14,17 +16,17 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double Epsilon = std::numeric_limits<double>::epsilon();
 
+/** Of points in a sphere so many are looked for. */
+constexpr std::size_t EnoughPoints = 64;
+
 /** Collects the points in and on the smallest sphere through a triangle. */
 class SmallestSphereVisitor
 {
 public:
   SmallestSphereVisitor(const std::vector<Vec3>& points, const TriangleIds& triangle,
-    SurfaceDelaunayTest::Result& result)
-    : Triangle(triangle)
-    , A(points[triangle[0]])
-    , B(points[triangle[1]])
-    , C(points[triangle[2]])
-    , Found(result)
+    bool isOneEnough, SurfaceDelaunayTest::Result& result)
+    : IsOneEnough(isOneEnough), Triangle(triangle), A(points[triangle[0]]), B(points[triangle[1]]),
+      C(points[triangle[2]]), Found(result)
   {
     this->Center = this->A + GetCircumcenterOffset(this->A, this->B, this->C);
     this->Radius = Distance(this->Center, this->A);
@@ -37,6 +39,10 @@ public:
     const double size = std::abs(this->A.X) + std::abs(this->A.Y) + std::abs(this->A.Z);
     this->Slack = error * reach + 16.0 * Epsilon * (size + reach);
     this->IsHopeless = !(this->Slack < 0.1 * this->Radius);
+    if (!(this->Slack < 1e-6 * this->Radius))
+    {
+      this->Form.emplace(this->A, this->B, this->C);
+    }
   }
 
   double Order(const Box& box) const
@@ -48,8 +54,16 @@ public:
       const double nearest = std::min(std::max(c, box.Low[axis]), box.High[axis]) - c;
       distance += nearest * nearest;
     }
+    if (this->IsOneEnough && this->Found.InsideSmallestSphere.size() >= EnoughPoints)
+    {
+      return Infinity;
+    }
+    if (this->Form)
+    {
+      return this->Form->MayTouch(box.Low, box.High) ? distance : Infinity;
+    }
     const double reach = this->Radius + this->Slack;
-    return distance > reach * reach && !this->IsHopeless ? Infinity : distance;
+    return distance > reach * reach ? Infinity : distance;
   }
 
   void Visit(Id id, const Vec3& q)
@@ -59,20 +73,23 @@ public:
       return;
     }
     const double distance = Distance(q, this->Center);
-    if (!this->IsHopeless && distance > this->Radius + this->Slack)
+    int position = this->Form                 ? this->Form->GetSide(q)
+      : distance > this->Radius + this->Slack ? -1
+      : distance < this->Radius - this->Slack ? 1
+                                              : 0;
+    if (position < 0)
     {
       return;
     }
-    const int position = !this->IsHopeless && distance < this->Radius - this->Slack
-      ? 1
-      : InEquatorialSphere(this->A, this->B, this->C, q);
+    position = position == 0 ? InEquatorialSphere(this->A, this->B, this->C, q) : position;
     if (position > 0)
     {
       this->Found.InsideSmallestSphere.push_back(id);
       if (distance < this->Deepest)
       {
         this->Deepest = distance;
-        std::swap(this->Found.InsideSmallestSphere.front(), this->Found.InsideSmallestSphere.back());
+        std::swap(
+          this->Found.InsideSmallestSphere.front(), this->Found.InsideSmallestSphere.back());
       }
     }
     else if (position == 0)
@@ -84,35 +101,51 @@ public:
 
   Vec3 Center;
   double Radius;
-  /** The triangle is a needle whose sphere doubles cannot describe: everything is exact. */
+  /** How far off center and radius may be. */
+  double Slack;
+  /** The triangle is a needle whose sphere doubles cannot describe. */
   bool IsHopeless;
 
 private:
+  /** One point inside of the sphere settles the matter. */
+  bool IsOneEnough;
   TriangleIds Triangle;
   Vec3 A;
   Vec3 B;
   Vec3 C;
-  double Slack;
+  /** The sphere in twice the working precision, for needles. */
+  std::optional<SphereForm> Form;
   double Deepest = Infinity;
   SurfaceDelaunayTest::Result& Found;
 };
-}
+} // namespace
 
-void SurfaceDelaunayTest::Run(const TriangleIds& triangle, Result& result)
+void SurfaceDelaunayTest::Run(
+  const TriangleIds& triangle, Result& result, bool isSmallestSphereWanted)
 {
   result.InsideSmallestSphere.clear();
   result.OnSmallestSphere.clear();
   result.Cocircular.clear();
-  SmallestSphereVisitor visitor(this->Points, triangle, result);
+  SmallestSphereVisitor visitor(this->Points, triangle, isSmallestSphereWanted, result);
   this->Octree.Visit(visitor);
   std::sort(result.Cocircular.begin(), result.Cocircular.end());
   // The proof may be a little larger than the empty sphere: that costs a needless test at most.
   constexpr double Inflation = 1.0 + 1e-6;
   result.ProofCenter = visitor.Center;
-  result.ProofRadius = visitor.Radius * Inflation;
+  result.ProofRadius = (visitor.Radius + 2.0 * visitor.Slack) * Inflation;
+  if (!std::isfinite(result.ProofRadius))
+  {
+    result.ProofRadius = Infinity;
+  }
   if (result.InsideSmallestSphere.empty() && result.OnSmallestSphere.empty())
   {
     result.IsDelaunay = true;
+    return;
+  }
+
+  if (isSmallestSphereWanted && !result.InsideSmallestSphere.empty())
+  {
+    result.IsDelaunay = false;
     return;
   }
 
@@ -122,7 +155,7 @@ void SurfaceDelaunayTest::Run(const TriangleIds& triangle, Result& result)
   const Vec3& b = this->Points[triangle[1]];
   const Vec3& c = this->Points[triangle[2]];
   const Id disturbing = !result.InsideSmallestSphere.empty() ? result.InsideSmallestSphere.front()
-                                                              : result.OnSmallestSphere.front();
+                                                             : result.OnSmallestSphere.front();
   const TriangleIds reversed{ triangle[0], triangle[2], triangle[1] };
   const bool isFrontFirst = Orientation(a, b, c, this->Points[disturbing]) > 0;
   FourthPoint& first = isFrontFirst ? this->Front : this->Back;
@@ -153,4 +186,4 @@ void SurfaceDelaunayTest::Run(const TriangleIds& triangle, Result& result)
     }
   }
 }
-}
+} // namespace cdm

@@ -25,7 +25,10 @@ public:
   {
     /** Strongly Delaunay, Cocircular points apart. */
     bool IsDelaunay = false;
-    /** Strictly inside of the smallest sphere through the triangle; the deepest one first. */
+    /**
+     * Strictly inside of the smallest sphere through the triangle, the deepest one first; if there
+     * are many, some of those near its center.
+     */
     std::vector<Id> InsideSmallestSphere;
     /** On that sphere, but not in the plane of the triangle. */
     std::vector<Id> OnSmallestSphere;
@@ -40,13 +43,15 @@ public:
   };
 
   SurfaceDelaunayTest(const std::vector<Vec3>& points, const PointOctree& octree)
-    : Points(points)
-    , Octree(octree)
-    , Search(points, octree)
+    : Points(points), Octree(octree), Search(points, octree)
   {
   }
 
-  void Run(const TriangleIds& triangle, Result& result);
+  /**
+   * If the smallest sphere has to be empty and is not, nothing more is searched: the triangle counts
+   * as not Delaunay.
+   */
+  void Run(const TriangleIds& triangle, Result& result, bool isSmallestSphereWanted = false);
 
 private:
   const std::vector<Vec3>& Points;
@@ -55,6 +60,6 @@ private:
   FourthPoint Front;
   FourthPoint Back;
 };
-}
+} // namespace cdm
 
 #endif

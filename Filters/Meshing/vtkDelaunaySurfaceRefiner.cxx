@@ -129,9 +129,12 @@ int vtkDelaunaySurfaceRefiner::RequestData(
   if (this->NumberOfUnresolvedTriangles > 0)
   {
     AddUnresolvedArray(result.UnresolvedTriangles, output);
-    vtkWarningMacro(<< this->NumberOfUnresolvedTriangles
-                    << " triangles do not fulfil the criterion within the limits "
-                       "(MinimumEdgeRatio, MaximumNewPoints): see the cell array Unresolved.");
+    vtkWarningMacro(
+      << this->NumberOfUnresolvedTriangles
+      << " triangles do not fulfil the criterion within the limits "
+         "(MinimumEdgeRatio, MaximumNewPoints): see the cell array Unresolved. Sheets "
+         "that lie closer together than that can be united with a MergeTolerance of "
+         "vtkBoundaryTriangulator.");
   }
   if (this->NumberOfDroppedMeshPoints > 0)
   {

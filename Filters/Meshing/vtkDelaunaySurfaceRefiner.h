@@ -81,7 +81,7 @@ public:
   /**
    * Distance within which triangles count as flat, as a ratio of the bounding box diagonal: the
    * rounding of coordinates. Raise it to 1e-7 for coordinates that were rounded to
-   * single precision, which saves points. Default 1e-8; range 0 to 1.
+   * single precision, which saves points. Default 1e-9; range 0 to 1.
    */
   vtkSetClampMacro(FlatnessRatio, double, 0.0, 1.0);
   vtkGetMacro(FlatnessRatio, double);
@@ -150,7 +150,7 @@ protected:
 
   int Criterion = Delaunay;
   double AccuracyAngle = 0.0;
-  double FlatnessRatio = 1e-8;
+  double FlatnessRatio = 1e-9;
   double MinimumAngle = 0.0;
   double MaximumArea = 0.0;
   double MaximumEdgeLength = 0.0;

@@ -661,3 +661,29 @@ TEST(IntersectionResolver, AbortLeavesNothing)
     EXPECT_TRUE(output.NewPoints.empty());
   }
 }
+
+/** What a T-junction leaves in a file whose coordinates are rounded: a triangle of no width. */
+TEST(IntersectionResolver, ClosesNeedlesOfTheInput)
+{
+  TriangleMesh surface;
+  surface.Points = { { -0.19253, 5.75, 2.364 }, { -0.19761, 5.72, 2.3706 }, { 0.3, 5.8, 2.2 },
+    { 0.1, 6.2, 2.5 }, { -0.19507, 5.735, 2.3673 } };
+  // A tetrahedron; facet (0, 1, 3) is divided at the middle of edge (0, 1), facet (0, 2, 1) is not.
+  surface.Triangles = { { 0, 2, 1 }, { 0, 4, 3 }, { 4, 1, 3 }, { 1, 2, 3 }, { 2, 0, 3 },
+    { 0, 1, 4 } };
+  surface.SourceCells = { 0, 1, 2, 3, 4, 5 };
+  ASSERT_FALSE(AreCollinear(surface.Points[0], surface.Points[1], surface.Points[4]));
+  std::vector<PointParents> newPoints;
+  IntersectionResolverReport report;
+  ASSERT_TRUE(ResolveIntersections({}, {}, surface, newPoints, report).IsOk());
+  EXPECT_TRUE(newPoints.empty());
+  std::set<TriangleIds> triangles;
+  for (TriangleIds ids : surface.Triangles)
+  {
+    std::sort(ids.begin(), ids.end());
+    triangles.insert(ids);
+  }
+  EXPECT_EQ(triangles,
+    (std::set<TriangleIds>{
+      { 0, 2, 4 }, { 1, 2, 4 }, { 0, 3, 4 }, { 1, 3, 4 }, { 1, 2, 3 }, { 0, 2, 3 } }));
+}

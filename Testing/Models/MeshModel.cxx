@@ -7,7 +7,8 @@
  *
  * Options: criterion (0 Delaunay, 1 smallest sphere, 2 smallest sphere of triangle and edges),
  * maximum-edge-length, maximum-new-points, maximum-gap-edges, flatness-ratio (of the sliver
- * remover; 0: nothing is peeled off).
+ * remover; 0: nothing is peeled off), resolve (1: self-intersections), merge-tolerance,
+ * accuracy-angle.
  *
  * One line of "name value" pairs goes to the standard output: open edges and points of the cleaned
  * input, points added, tetrahedra, seconds of each stage. Errors and warnings of the filters go to
@@ -63,7 +64,8 @@ int main(int argc, char* argv[])
 {
   vtkNew<vtkSliverRemover> remover;
   std::map<std::string, double> options{ { "--criterion", 0.0 }, { "--maximum-edge-length", 0.0 },
-    { "--maximum-new-points", 0.0 }, { "--maximum-gap-edges", 0.0 },
+    { "--maximum-new-points", 0.0 }, { "--maximum-gap-edges", 0.0 }, { "--resolve", 0.0 },
+    { "--merge-tolerance", 0.0 }, { "--accuracy-angle", 0.0 },
     { "--flatness-ratio", remover->GetFlatnessRatio() } };
   bool isRightUse = argc >= 3 && argc % 2 == 1;
   for (int i = 3; isRightUse && i < argc; i += 2)
@@ -89,9 +91,12 @@ int main(int argc, char* argv[])
   }
   vtkNew<vtkBoundaryTriangulator> triangulator;
   triangulator->SetMaximumGapEdges(static_cast<int>(options["--maximum-gap-edges"]));
+  triangulator->SetResolveSelfIntersections(options["--resolve"] != 0.0);
+  triangulator->SetMergeTolerance(options["--merge-tolerance"]);
   triangulator->SetInputConnection(reader->GetOutputPort());
   vtkNew<vtkDelaunaySurfaceRefiner> refiner;
   refiner->SetCriterion(static_cast<int>(options["--criterion"]));
+  refiner->SetAccuracyAngle(options["--accuracy-angle"]);
   refiner->SetMaximumEdgeLength(options["--maximum-edge-length"]);
   refiner->SetMaximumNewPoints(static_cast<int>(options["--maximum-new-points"]));
   refiner->SetInputConnection(triangulator->GetOutputPort());
