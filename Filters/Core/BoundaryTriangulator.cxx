@@ -88,7 +88,7 @@ Box GetBox(const std::vector<Vec3>& points, const TriangleIds& t)
   Box box;
   for (const Id id : t)
   {
-    box.Extend(points[id]);
+    box.Add(points[id]);
   }
   return box;
 }
@@ -433,8 +433,8 @@ private:
     std::vector<Box> boxes(edges.size());
     for (std::size_t e = 0; e < edges.size(); ++e)
     {
-      boxes[e].Extend(this->Points[edges[e][0]]);
-      boxes[e].Extend(this->Points[edges[e][1]]);
+      boxes[e].Add(this->Points[edges[e][0]]);
+      boxes[e].Add(this->Points[edges[e][1]]);
       boxes[e].Low = boxes[e].Low - margin;
       boxes[e].High = boxes[e].High + margin;
     }
@@ -454,7 +454,7 @@ private:
       const Id vertex = vertices[i];
       const Vec3& p = this->Points[vertex];
       Box box;
-      box.Extend(p);
+      box.Add(p);
       tree.VisitOverlaps(box,
         [&](Id e)
         {

@@ -31,7 +31,7 @@ void BoxTree::Build(Id begin, Id end)
   node.End = end;
   for (Id i = begin; i < end; ++i)
   {
-    node.Bounds.Extend(this->Boxes[this->Order[i]]);
+    node.Bounds.Add(this->Boxes[this->Order[i]]);
   }
   if (end - begin > LeafSize)
   {

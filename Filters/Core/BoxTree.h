@@ -12,6 +12,7 @@
 #ifndef cdmBoxTree_h
 #define cdmBoxTree_h
 
+#include "Box.h"
 #include "Types.h"
 #include "Vec3.h"
 
@@ -20,34 +21,6 @@
 
 namespace cdm
 {
-/** Axis-aligned closed box; empty as constructed. */
-struct Box
-{
-  Vec3 Low{ std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-    std::numeric_limits<double>::infinity() };
-  Vec3 High{ -std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
-    -std::numeric_limits<double>::infinity() };
-
-  void Extend(const Vec3& p)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      this->Low[axis] = p[axis] < this->Low[axis] ? p[axis] : this->Low[axis];
-      this->High[axis] = p[axis] > this->High[axis] ? p[axis] : this->High[axis];
-    }
-  }
-  void Extend(const Box& box)
-  {
-    this->Extend(box.Low);
-    this->Extend(box.High);
-  }
-  bool Overlaps(const Box& box) const
-  {
-    return this->Low.X <= box.High.X && box.Low.X <= this->High.X && this->Low.Y <= box.High.Y &&
-      box.Low.Y <= this->High.Y && this->Low.Z <= box.High.Z && box.Low.Z <= this->High.Z;
-  }
-};
-
 class BoxTree
 {
 public:

@@ -980,7 +980,7 @@ public:
     Box box;
     for (const Vec3& p : surface.Points)
     {
-      box.Extend(p);
+      box.Add(p);
     }
     const double largest = std::max(Norm(box.Low), Norm(box.High));
     // Far from the origin rounding errors grow with the distance from it.
@@ -1208,7 +1208,7 @@ private:
     {
       for (const Id id : this->Triangles[t])
       {
-        boxes[t].Extend(this->Points[id]);
+        boxes[t].Add(this->Points[id]);
       }
       boxes[t].Low = boxes[t].Low - margin;
       boxes[t].High = boxes[t].High + margin;

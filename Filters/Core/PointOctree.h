@@ -15,6 +15,7 @@
 #ifndef cdmPointOctree_h
 #define cdmPointOctree_h
 
+#include "Box.h"
 #include "Types.h"
 #include "Vec3.h"
 
@@ -26,26 +27,6 @@
 
 namespace cdm
 {
-/** Axis-parallel box; empty (inverted) when default constructed. */
-struct Box
-{
-  Vec3 Low{ std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-    std::numeric_limits<double>::infinity() };
-  Vec3 High{ -std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
-    -std::numeric_limits<double>::infinity() };
-
-  bool IsEmpty() const { return this->Low.X > this->High.X; }
-
-  void Add(const Vec3& p)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      this->Low[axis] = std::min(this->Low[axis], p[axis]);
-      this->High[axis] = std::max(this->High[axis], p[axis]);
-    }
-  }
-};
-
 class PointOctree
 {
 public:

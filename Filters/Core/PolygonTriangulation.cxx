@@ -155,9 +155,9 @@ private:
       return ear;
     }
     Box box;
-    box.Extend(this->At(before));
-    box.Extend(this->At(tip));
-    box.Extend(this->At(after));
+    box.Add(this->At(before));
+    box.Add(this->At(tip));
+    box.Add(this->At(after));
     const int u = (this->Axis + 1) % 3;
     const int v = (this->Axis + 2) % 3;
     for (Id p = this->Next[after]; p != before; p = this->Next[p])
@@ -520,7 +520,7 @@ double GetPolygonNonPlanarityRatio(const std::vector<Vec3>& points, const std::v
   Vec3 centre;
   for (const Id id : polygon)
   {
-    box.Extend(points[id]);
+    box.Add(points[id]);
     centre = centre + (1.0 / static_cast<double>(polygon.size())) * points[id];
   }
   const Vec3 size = box.High - box.Low;

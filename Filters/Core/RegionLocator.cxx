@@ -76,9 +76,9 @@ Status RegionLocator::Build()
   {
     for (const Id id : this->Surface.Triangles[t])
     {
-      boxes[t].Extend(this->Surface.Points[id]);
+      boxes[t].Add(this->Surface.Points[id]);
     }
-    bounds.Extend(boxes[t]);
+    bounds.Add(boxes[t]);
   }
   this->Low = bounds.Low;
   this->High = bounds.High;
@@ -191,8 +191,8 @@ bool RegionLocator::CountCrossings(
     }
   };
   Box box;
-  box.Extend(point);
-  box.Extend(outside);
+  box.Add(point);
+  box.Add(outside);
   bool isDegenerate = false;
   const auto visit = [&](Id t)
   {

@@ -412,7 +412,7 @@ bool FindIntersectingPairs(const std::vector<Vec3>& points,
   {
     for (const Id id : triangles[t])
     {
-      boxes[t].Extend(points[id]);
+      boxes[t].Add(points[id]);
     }
   }
   const BoxTree tree(boxes);

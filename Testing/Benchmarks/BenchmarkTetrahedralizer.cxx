@@ -4,7 +4,7 @@
  * @brief User CPU time and peak memory of the tetrahedralizer beside those of other programs.
  *
  * Usage: BenchmarkTetrahedralizer [-n points]... [-r repetitions] [-i input]... [-p program]...
- *                                 [--limit seconds]
+ *                                 [-t threads] [--limit seconds]
  *
  * Every measurement runs in a process of its own; the programs take turns, so that what else the
  * machine does falls on all of them. Prints the median of each, and ratios to ours. A program that
@@ -28,6 +28,7 @@
 #endif
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -155,15 +156,29 @@ double GetUserTime()
   return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * usage.ru_utime.tv_usec;
 }
 
+/** Started by a program when it has its input. */
+struct Clock
+{
+  double User = 0.0;
+  std::chrono::steady_clock::time_point Wall;
+
+  void Start()
+  {
+    this->User = GetUserTime();
+    this->Wall = std::chrono::steady_clock::now();
+  }
+};
+
 struct Result
 {
   double Seconds = -1.0;
+  double WallSeconds = 0.0;
   double Megabytes = 0.0;
   double Tetrahedra = 0.0;
 };
 
 /** A program converts the points, starts the clock, and returns the number of its tetrahedra. */
-using Program = std::function<std::size_t(const PointSet&, double& start)>;
+using Program = std::function<std::size_t(const PointSet&, Clock& clock)>;
 
 Result Measure(const std::string& input, std::size_t count, const Program& program)
 {
@@ -177,10 +192,12 @@ Result Measure(const std::string& input, std::size_t count, const Program& progr
   {
     close(ends[0]);
     const PointSet points = MakePoints(input, count);
-    double start = 0.0;
+    Clock clock;
     Result result;
-    result.Tetrahedra = static_cast<double>(program(points, start));
-    result.Seconds = GetUserTime() - start;
+    result.Tetrahedra = static_cast<double>(program(points, clock));
+    result.Seconds = GetUserTime() - clock.User;
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - clock.Wall;
+    result.WallSeconds = wall.count();
     const bool isWritten = write(ends[1], &result, sizeof(result)) == sizeof(result);
     _exit(isWritten ? 0 : 1);
   }
@@ -199,20 +216,21 @@ Result Measure(const std::string& input, std::size_t count, const Program& progr
   return result;
 }
 
-std::size_t RunOurs(const PointSet& points, double& start)
+std::size_t RunOurs(const PointSet& points, Clock& clock, int threads)
 {
-  start = GetUserTime();
+  clock.Start();
   cdm::AdvancingFrontTetrahedralizerInput input;
   input.MeshPoints = &points;
   cdm::AdvancingFrontTetrahedralizerOptions options;
   options.CloseOpenBoundary = true;
+  options.NumberOfThreads = threads;
   cdm::AdvancingFrontTetrahedralizerOutput output;
   const cdm::Status status = cdm::TetrahedralizeByAdvancingFront(input, options, {}, output);
   return status.IsOk() ? output.Mesh.Tetrahedra.size() : 0;
 }
 
 #ifdef CDM_HAS_CGAL_TRIANGULATION
-std::size_t RunCgal(const PointSet& points, double& start)
+std::size_t RunCgal(const PointSet& points, Clock& clock)
 {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   std::vector<Kernel::Point_3> converted;
@@ -220,7 +238,7 @@ std::size_t RunCgal(const PointSet& points, double& start)
   {
     converted.emplace_back(p.X, p.Y, p.Z);
   }
-  start = GetUserTime();
+  clock.Start();
   // The constructor sorts the points along a curve.
   const CGAL::Delaunay_triangulation_3<Kernel> mesh(converted.begin(), converted.end());
   return mesh.number_of_finite_cells();
@@ -228,7 +246,7 @@ std::size_t RunCgal(const PointSet& points, double& start)
 #endif
 
 #ifdef CDM_HAS_TETGEN
-std::size_t RunTetgen(const PointSet& points, double& start)
+std::size_t RunTetgen(const PointSet& points, Clock& clock)
 {
   tetgenio in;
   tetgenio out;
@@ -240,7 +258,7 @@ std::size_t RunTetgen(const PointSet& points, double& start)
     in.pointlist[3 * i + 1] = points[i].Y;
     in.pointlist[3 * i + 2] = points[i].Z;
   }
-  start = GetUserTime();
+  clock.Start();
   char switches[] = "Q";
   tetrahedralize(switches, &in, &out);
   return static_cast<std::size_t>(out.numberoftetrahedra);
@@ -248,7 +266,7 @@ std::size_t RunTetgen(const PointSet& points, double& start)
 #endif
 
 #ifdef CDM_HAS_VTK_DELAUNAY3D
-std::size_t RunVtk(const PointSet& points, double& start)
+std::size_t RunVtk(const PointSet& points, Clock& clock)
 {
   vtkNew<vtkPoints> converted;
   converted->SetDataTypeToDouble();
@@ -258,7 +276,7 @@ std::size_t RunVtk(const PointSet& points, double& start)
   }
   vtkNew<vtkPolyData> input;
   input->SetPoints(converted);
-  start = GetUserTime();
+  clock.Start();
   vtkNew<vtkDelaunay3D> delaunay;
   delaunay->SetInputData(input);
   delaunay->Update();
@@ -280,6 +298,7 @@ int main(int argc, char* argv[])
   std::vector<std::string> inputs;
   std::vector<std::string> chosen;
   int repetitions = 5;
+  int threads = 1;
   double limit = 60.0;
   for (int i = 1; i + 1 < argc; i += 2)
   {
@@ -292,6 +311,10 @@ int main(int argc, char* argv[])
     else if (option == "-r")
     {
       repetitions = std::atoi(value);
+    }
+    else if (option == "-t")
+    {
+      threads = std::atoi(value);
     }
     else if (option == "-i")
     {
@@ -314,7 +337,17 @@ int main(int argc, char* argv[])
   {
     inputs = { "random", "graded", "sphere", "clusters", "grid", "grid0.1", "rotated" };
   }
-  std::vector<std::pair<std::string, Program>> programs{ { "ours", RunOurs } };
+  const auto makeOurs = [](int threads) -> Program
+  {
+    return [threads](const PointSet& points, Clock& clock)
+    { return RunOurs(points, clock, threads); };
+  };
+  std::vector<std::pair<std::string, Program>> programs{ { "ours", makeOurs(1) } };
+  if (threads > 1)
+  {
+    programs.emplace_back("ours, " + std::to_string(threads) + " threads", makeOurs(threads));
+  }
+  const std::size_t own = programs.size();
 #ifdef CDM_HAS_CGAL_TRIANGULATION
   programs.emplace_back("CGAL", RunCgal);
 #endif
@@ -324,7 +357,7 @@ int main(int argc, char* argv[])
 #ifdef CDM_HAS_VTK_DELAUNAY3D
   programs.emplace_back("vtkDelaunay3D", RunVtk);
 #endif
-  programs.erase(std::remove_if(programs.begin() + 1, programs.end(),
+  programs.erase(std::remove_if(programs.begin() + static_cast<std::ptrdiff_t>(own), programs.end(),
                    [&chosen](const auto& program)
                    {
                      return !chosen.empty() &&
@@ -332,9 +365,9 @@ int main(int argc, char* argv[])
                    }),
     programs.end());
 
-  std::printf(
-    "| input | points | program | s | ratio to ours | tetrahedra/s | MB | B/tetrahedron |\n"
-    "|---|---:|---|---:|---:|---:|---:|---:|\n");
+  std::printf("| input | points | program | s | ratio to ours | wall s | tetrahedra/s | MB | "
+              "B/tetrahedron |\n"
+              "|---|---:|---|---:|---:|---:|---:|---:|---:|\n");
   std::map<std::pair<std::string, std::string>, bool> isTooSlow;
   for (std::size_t size : sizes)
   {
@@ -362,12 +395,12 @@ int main(int argc, char* argv[])
         const Result median = GetMedian(results[name]);
         if (median.Seconds < 0.0)
         {
-          std::printf("| %s | %zu | %s | failed | | | | |\n", input.c_str(), size, name.c_str());
+          std::printf("| %s | %zu | %s | failed | | | | | |\n", input.c_str(), size, name.c_str());
           continue;
         }
-        std::printf("| %s | %zu | %s | %.3f | %.2f | %.0f | %.0f | %.0f |\n", input.c_str(), size,
-          name.c_str(), median.Seconds, ours > 0.0 ? median.Seconds / ours : 0.0,
-          median.Tetrahedra / median.Seconds, median.Megabytes,
+        std::printf("| %s | %zu | %s | %.3f | %.2f | %.3f | %.0f | %.0f | %.0f |\n", input.c_str(),
+          size, name.c_str(), median.Seconds, ours > 0.0 ? median.Seconds / ours : 0.0,
+          median.WallSeconds, median.Tetrahedra / median.Seconds, median.Megabytes,
           median.Megabytes * 1048576.0 / median.Tetrahedra);
         std::fflush(stdout);
       }

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Box.h
+ * @brief Axis-parallel closed box.
+ */
+#ifndef cdmBox_h
+#define cdmBox_h
+
+#include "Vec3.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace cdm
+{
+/** Empty (inverted) when default constructed. */
+struct Box
+{
+  Vec3 Low{ std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+    std::numeric_limits<double>::infinity() };
+  Vec3 High{ -std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+    -std::numeric_limits<double>::infinity() };
+
+  bool IsEmpty() const { return this->Low.X > this->High.X; }
+
+  void Add(const Vec3& p)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Low[axis] = std::min(this->Low[axis], p[axis]);
+      this->High[axis] = std::max(this->High[axis], p[axis]);
+    }
+  }
+  void Add(const Box& box)
+  {
+    this->Add(box.Low);
+    this->Add(box.High);
+  }
+  bool Overlaps(const Box& box) const
+  {
+    return this->Low.X <= box.High.X && box.Low.X <= this->High.X && this->Low.Y <= box.High.Y &&
+      box.Low.Y <= this->High.Y && this->Low.Z <= box.High.Z && box.Low.Z <= this->High.Z;
+  }
+};
+} // namespace cdm
+
+#endif
