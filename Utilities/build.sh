@@ -12,6 +12,9 @@ packages=(
   libgtest-dev                     # unit tests
   xvfb libqt5svg5                  # a display, and the icons of the GUI on it
 )
+if [ "$1" = ON ]; then
+  packages+=(libeigen3-dev gmsh)   # solvers, and meshes to compare with
+fi
 
 missing=()
 for package in "${packages[@]}"; do
