@@ -2,6 +2,7 @@
 #include "AdvancingFrontTetrahedralizer.h"
 
 #include "DelaunayTetrahedralization.h"
+#include "DuplicateTriangles.h"
 #include "ParallelLoop.h"
 #include "Predicates.h"
 #include "SpatialSort.h"
@@ -93,7 +94,7 @@ private:
   Status MeshRegions();
   Status Advance(const Seed& seed);
   void TakeAll();
-  Status AttachToSurface(Id side, Id region);
+  Status CheckSideLabel(Id side, Id region);
   Status MakeHullError(const Seed& seed, const TriangleIds& points) const;
   void CollectFront();
   void Finish();
@@ -157,8 +158,6 @@ private:
   std::vector<Id> Front;
   Id NumberOfTetrahedra = 0;
   bool IsStopped = false;
-  /** All points are vertices of the mesh. */
-  bool IsWhole = false;
   /** Facets that close an open boundary. */
   std::vector<Id> HullFacets;
 };
@@ -567,22 +566,12 @@ bool AdvancingFront::IsSurelyStronglyDelaunay(Id triangle) const
 
 Status AdvancingFront::CheckSurface()
 {
-  std::vector<std::pair<TriangleIds, Id>> sorted;
-  for (Id t = 0; t < this->NumberOfSurfaceTriangles; ++t)
+  const std::vector<DuplicateTriangle> duplicates = FindDuplicateTriangles(this->Surface.Triangles);
+  if (!duplicates.empty())
   {
-    TriangleIds ids = this->Surface.Triangles[t];
-    std::sort(ids.begin(), ids.end());
-    sorted.emplace_back(ids, t);
-  }
-  std::sort(sorted.begin(), sorted.end());
-  for (std::size_t i = 1; i < sorted.size(); ++i)
-  {
-    if (sorted[i].first == sorted[i - 1].first)
-    {
-      return Status::InvalidInput("Two triangles of the surface have the same points; clean the "
-                                  "surface with vtkBoundaryTriangulator first.",
-        { sorted[i].second });
-    }
+    return Status::InvalidInput("Two triangles of the surface have the same points; clean the "
+                                "surface with vtkBoundaryTriangulator first.",
+      { duplicates.front().Triangle });
   }
   this->FindFacetsOfSurface();
   std::vector<Id> doubtful;
@@ -687,7 +676,7 @@ Status AdvancingFront::FindSeeds()
     : Status();
 }
 
-Status AdvancingFront::AttachToSurface(Id side, Id region)
+Status AdvancingFront::CheckSideLabel(Id side, Id region)
 {
   if (this->HasLabels && !this->HasSeeds() && this->GetSideLabel(side) != region)
   {
@@ -736,7 +725,7 @@ Status AdvancingFront::Advance(const Seed& seed)
       const Id beyond = this->All.Neighbors[t][i];
       if (beyond < 0)
       {
-        const Status status = this->AttachToSurface(FirstBarrier - beyond, seed.Region);
+        const Status status = this->CheckSideLabel(FirstBarrier - beyond, seed.Region);
         if (!status.IsOk())
         {
           return status;
@@ -791,7 +780,6 @@ void AdvancingFront::TakeAll()
       this->HullFacets.insert(this->HullFacets.end(), hull.begin(), hull.end());
       this->NumberOfTetrahedra += count;
     });
-  this->IsWhole = true;
   this->Output.Report.NumberOfRegions = 1;
 }
 
@@ -825,17 +813,24 @@ void AdvancingFront::CollectFront()
 void AdvancingFront::CollectPointsUsed()
 {
   std::vector<Id> places(this->Points.size(), NoId);
-  for (Id point : this->Order)
+  if (!this->HasSurface() && !this->IsStopped)
   {
-    places[point] = this->IsWhole ? 0 : NoId;
-  }
-  for (std::size_t t = 0; t < this->States.size() && !this->IsWhole; ++t)
-  {
-    if (this->States[t] == Meshed)
+    // The mesh of the convex hull has all points.
+    for (Id point : this->Order)
     {
-      for (Id vertex : this->All.Tetrahedra[t])
+      places[point] = 0;
+    }
+  }
+  else
+  {
+    for (std::size_t t = 0; t < this->States.size(); ++t)
+    {
+      if (this->States[t] == Meshed)
       {
-        places[this->Order[vertex]] = 0;
+        for (Id vertex : this->All.Tetrahedra[t])
+        {
+          places[this->Order[vertex]] = 0;
+        }
       }
     }
   }

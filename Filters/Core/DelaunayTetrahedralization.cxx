@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DelaunayTetrahedralization.h"
 
+#include "Determinants.h"
 #include "Predicates.h"
 #include "TetMesh.h"
 #include "Threads.h"
@@ -11,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <string>
 
 namespace cdm
 {
@@ -19,8 +21,6 @@ namespace
 // Unit roundoffs of double and float.
 constexpr double Epsilon = std::numeric_limits<double>::epsilon() / 2.0;
 constexpr double FloatEpsilon = std::numeric_limits<float>::epsilon() / 2.0;
-/** Bounds below this may have lost digits to underflow. */
-constexpr double Underflow = 1e-280;
 
 /** Rounds of fewer vertices are inserted by one thread. */
 constexpr std::size_t SmallRound = 8192;
@@ -46,11 +46,6 @@ struct RoughSphere
 
 constexpr RoughSphere NoSphere{ 0.0f, 0.0f, 0.0f, std::numeric_limits<float>::infinity() };
 
-inline double GetMaximum(double a, double b, double c)
-{
-  return std::max(std::max(a, b), c);
-}
-
 /** A vertex relative to the last one of its tetrahedra. */
 struct RelativeVertex
 {
@@ -70,7 +65,7 @@ inline RoughSphere MakeRoughSphere(
   const Vec3 center = inverse * (a.Square * bc + b.Square * ca + c.Square * ab);
   // The numerators are sums of 18 products of at most size^4 and the determinant is one of 6
   // products of at most size^3: each is off by less than 16 roundings of that.
-  const double offset = GetMaximum(std::abs(center.X), std::abs(center.Y), std::abs(center.Z));
+  const double offset = GetLargest(std::abs(center.X), std::abs(center.Y), std::abs(center.Z));
   const double error = 512.0 * Epsilon * size * size * size * (size + offset) * std::abs(inverse);
   const double tolerance = 2.05 * (1.01 * FloatEpsilon * offset + error);
   // Not if an error in the last bits of a float, or of the double, could be larger than that.
@@ -149,7 +144,7 @@ private:
   template <bool IsShared>
   bool FillHole(Id vertex, Worker& worker);
   static Id TakePlace(Worker& worker);
-  void AddRoom(std::size_t room, Worker& worker);
+  bool AddRoom(std::size_t room, Worker& worker);
   static void MovePlaces(Worker& from, Worker& to, std::size_t wanted);
   void ConnectByTable(Worker& worker);
   void ConnectBySorting(Worker& worker);
@@ -220,24 +215,10 @@ void Builder::SetUnit()
 
 int Builder::GetSide(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const
 {
-  const Vec3 p = a - d;
-  const Vec3 q = b - d;
-  const Vec3 r = c - d;
-  const double determinant =
-    p.X * (q.Y * r.Z - q.Z * r.Y) + p.Y * (q.Z * r.X - q.X * r.Z) + p.Z * (q.X * r.Y - q.Y * r.X);
-  const double x = GetMaximum(std::abs(p.X), std::abs(q.X), std::abs(r.X));
-  const double y = GetMaximum(std::abs(p.Y), std::abs(q.Y), std::abs(r.Y));
-  const double z = GetMaximum(std::abs(p.Z), std::abs(q.Z), std::abs(r.Z));
-  // Six products, each off by less than eight roundings.
-  const double bound = 48.0 * Epsilon * x * y * z;
-  if (bound > Underflow && std::abs(determinant) > bound)
-  {
-    return determinant > 0.0 ? -1 : 1;
-  }
-  return bound < this->ExactSideBound ? (determinant > 0.0      ? -1
-                                            : determinant < 0.0 ? 1
-                                                                : 0)
-                                      : ExactOrientation(a, b, c, d);
+  const auto determinant = GetOrientationDeterminant<double>(a, b, c, d);
+  return determinant.IsCertain() || determinant.Bound < this->ExactSideBound
+    ? determinant.GetSign()
+    : ExactOrientation(a, b, c, d);
 }
 
 int Builder::GetPosition(const TetrahedronIds& ids, Id vertex, Worker& worker) const
@@ -247,39 +228,10 @@ int Builder::GetPosition(const TetrahedronIds& ids, Id vertex, Worker& worker) c
   const Vec3& c = this->Points[ids[2]];
   const Vec3& d = this->Points[ids[3]];
   const Vec3& e = this->Points[vertex];
-  const Vec3 p = a - e;
-  const Vec3 q = b - e;
-  const Vec3 r = c - e;
-  const Vec3 s = d - e;
-  const double pq = p.X * q.Y - q.X * p.Y;
-  const double qr = q.X * r.Y - r.X * q.Y;
-  const double rs = r.X * s.Y - s.X * r.Y;
-  const double sp = s.X * p.Y - p.X * s.Y;
-  const double pr = p.X * r.Y - r.X * p.Y;
-  const double qs = q.X * s.Y - s.X * q.Y;
-  const double pqr = p.Z * qr - q.Z * pr + r.Z * pq;
-  const double qrs = q.Z * rs - r.Z * qs + s.Z * qr;
-  const double rsp = r.Z * sp + s.Z * pr + p.Z * rs;
-  const double spq = s.Z * pq + p.Z * qs + q.Z * sp;
-  const double pp = SquaredNorm(p);
-  const double qq = SquaredNorm(q);
-  const double rr = SquaredNorm(r);
-  const double ss = SquaredNorm(s);
-  const double determinant = (rr * spq - ss * pqr) + (pp * qrs - qq * rsp);
-  // The permanent has 24 products; see InSphere().
-  const double x = std::max(GetMaximum(std::abs(p.X), std::abs(q.X), std::abs(r.X)), std::abs(s.X));
-  const double y = std::max(GetMaximum(std::abs(p.Y), std::abs(q.Y), std::abs(r.Y)), std::abs(s.Y));
-  const double z = std::max(GetMaximum(std::abs(p.Z), std::abs(q.Z), std::abs(r.Z)), std::abs(s.Z));
-  const double permanent = 24.0 * x * y * z * std::max(GetMaximum(pp, qq, rr), ss);
-  const double bound = 17.0 * Epsilon * permanent;
-  if (bound > Underflow && std::abs(determinant) > bound)
-  {
-    return determinant > 0.0 ? 1 : -1;
-  }
-  const int sign = bound < this->ExactPositionBound ? (determinant > 0.0      ? 1
-                                                          : determinant < 0.0 ? -1
-                                                                              : 0)
-                                                    : ExactInSphere(a, b, c, d, e);
+  const auto determinant = GetInSphereDeterminant<double>(a, b, c, d, e);
+  const int sign = determinant.IsCertain() || determinant.Bound < this->ExactPositionBound
+    ? determinant.GetSign()
+    : ExactInSphere(a, b, c, d, e);
   if (sign != 0)
   {
     return sign;
@@ -354,7 +306,7 @@ inline bool Builder::IsInConflict(Id tetrahedron, Id vertex, Worker& worker) con
     const double power =
       d.X * (d.X - 2.0 * sphere.X) + d.Y * (d.Y - 2.0 * sphere.Y) + d.Z * (d.Z - 2.0 * sphere.Z);
     const double bound =
-      sphere.Tolerance * (std::abs(d.X) + std::abs(d.Y) + std::abs(d.Z)) + Underflow;
+      sphere.Tolerance * (std::abs(d.X) + std::abs(d.Y) + std::abs(d.Z)) + SmallestCertainBound;
     if (std::abs(power) > bound)
     {
       return power < 0.0;
@@ -505,11 +457,10 @@ bool Builder::FillHole(Id vertex, Worker& worker)
   }
   while (removed + worker.NumberOfPlaces < count)
   {
-    if (IsShared)
+    if (IsShared || !this->AddRoom(std::max<std::size_t>(1024, tetrahedra.size() / 32), worker))
     {
       return false;
     }
-    this->AddRoom(std::max<std::size_t>(1024, tetrahedra.size() / 32), worker);
   }
   for (std::size_t k = removed; k < count; ++k)
   {
@@ -545,7 +496,7 @@ bool Builder::FillHole(Id vertex, Worker& worker)
     }
     this->Places[v] = vertexCount;
     const Vec3 d = this->Points[v] - origin;
-    size = std::max(size, GetMaximum(std::abs(d.X), std::abs(d.Y), std::abs(d.Z)));
+    size = std::max(size, GetLargest(std::abs(d.X), std::abs(d.Y), std::abs(d.Z)));
     worker.Vertices[vertexCount] = { v, d, SquaredNorm(d) };
     return vertexCount++;
   };
@@ -607,16 +558,22 @@ Id Builder::TakePlace(Worker& worker)
   return place;
 }
 
-void Builder::AddRoom(std::size_t room, Worker& worker)
+/** False if facet ids leave no room at all. */
+bool Builder::AddRoom(std::size_t room, Worker& worker)
 {
   const std::size_t old = this->Output.Tetrahedra.size();
-  const std::size_t size = old + room;
+  const std::size_t size = std::min(old + room, MaximumTetrahedra);
+  if (size == old)
+  {
+    return false;
+  }
   this->Output.Tetrahedra.resize(size);
   this->Output.Neighbors.resize(size);
   this->Spheres.resize(size);
   this->Marks.resize(size);
   worker.Rooms.emplace_back(static_cast<Id>(old), static_cast<Id>(size));
-  worker.NumberOfPlaces += room;
+  worker.NumberOfPlaces += size - old;
+  return true;
 }
 
 /** Gives all places of a worker to another one, as far as that one wants more. */
@@ -715,6 +672,11 @@ bool Builder::Work(Worker& worker, const std::function<bool(std::size_t)>& mayCo
     if (!isDone)
     {
       worker.Postponed.push_back(vertex);
+      // Alone a thread can only run out of room.
+      if (!IsShared)
+      {
+        return false;
+      }
     }
   }
   return true;
@@ -861,7 +823,13 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
   }
   Worker& worker = this->Workers[0];
   worker.Todo.swap(left);
+  worker.Postponed.clear();
   const bool isDone = this->Work<false>(worker, report);
+  if (!worker.Postponed.empty())
+  {
+    return Status::InvalidInput("The points need more than " + std::to_string(MaximumTetrahedra) +
+      " tetrahedra, which 32-bit facet ids cannot number.");
+  }
   return isDone ? Status() : Status::Aborted();
 }
 

@@ -60,7 +60,7 @@ struct DelaunayTetrahedralization
 /**
  * Points are distinct, finite, and follow a Hilbert curve (SortAlongHilbertCurve()); numbers are
  * distinct and decide the order of pulling. InvalidInput if there are fewer than four points, or all
- * of them lie on a line or in a plane; Aborted leaves nothing.
+ * of them lie on a line or in a plane, and for more than 2^29 tetrahedra; Aborted leaves nothing.
  */
 Status BuildDelaunayTetrahedralization(const std::vector<Vec3>& points,
   const std::vector<Id>& numbers, int numberOfThreads, const ExecutionContext& context,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Predicates.h"
 
+#include "Determinants.h"
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <algorithm>
@@ -20,17 +22,12 @@ namespace
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 // Unit roundoff, and forward error bounds of the determinants below in units of their permanents
-// (Shewchuk 1997, "A" stage of orient2d, orient3d and insphere).
+// (Shewchuk 1997, "A" stage of orient2d).
 constexpr double Epsilon = std::numeric_limits<double>::epsilon() / 2.0;
 constexpr double Orientation2Bound = (3.0 + 16.0 * Epsilon) * Epsilon;
-constexpr double OrientationBound = (7.0 + 56.0 * Epsilon) * Epsilon;
-constexpr double InSphereBound = (16.0 + 224.0 * Epsilon) * Epsilon;
 // Three differences, three products, two sums: each term is off by less than four roundings, the
 // sums by two more.
 constexpr double DotBound = 8.0 * Epsilon;
-// The bounds above hold as long as nothing underflows: values near the smallest doubles are left to
-// the exact kernel.
-constexpr double Underflow = 1e-280;
 
 Kernel::Point_3 ToPoint3(const Vec3& p)
 {
@@ -311,52 +308,6 @@ bool InSphereByIntegers(
 }
 #endif
 
-/**
- * The in-sphere determinant in the widest floating-point type, which resolves most of what rounded
- * coordinates make nearly cospherical; useless, but right, where that is double.
- */
-bool InSphereByExtendedPrecision(
-  const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e, int& sign)
-{
-  using Real = long double;
-  Real p[4][3];
-  Real squares[4];
-  Real size[3] = { 0, 0, 0 };
-  Real largest = 0;
-  const Vec3* const points[4] = { &a, &b, &c, &d };
-  for (int i = 0; i < 4; ++i)
-  {
-    squares[i] = 0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      p[i][axis] = Real((*points[i])[axis]) - Real(e[axis]);
-      squares[i] += p[i][axis] * p[i][axis];
-      size[axis] = std::max(size[axis], std::abs(p[i][axis]));
-    }
-    largest = std::max(largest, squares[i]);
-  }
-  const auto minor = [&p](int i, int j) { return p[i][0] * p[j][1] - p[j][0] * p[i][1]; };
-  const Real pq = minor(0, 1);
-  const Real pr = minor(0, 2);
-  const Real ps = minor(0, 3);
-  const Real qr = minor(1, 2);
-  const Real qs = minor(1, 3);
-  const Real rs = minor(2, 3);
-  const Real determinant = squares[0] * (rs * p[1][2] - qs * p[2][2] + qr * p[3][2]) -
-    squares[1] * (rs * p[0][2] - ps * p[2][2] + pr * p[3][2]) +
-    squares[2] * (qs * p[0][2] - ps * p[1][2] + pq * p[3][2]) -
-    squares[3] * (qr * p[0][2] - pr * p[1][2] + pq * p[2][2]);
-  // 24 products, with the bound of InSphere() in units of their sum.
-  const Real bound =
-    24 * 17 * (std::numeric_limits<Real>::epsilon() / 2) * size[0] * size[1] * size[2] * largest;
-  if (bound > Real(Underflow) && std::abs(determinant) > bound)
-  {
-    sign = determinant > 0 ? 1 : -1;
-    return true;
-  }
-  return false;
-}
-
 /** True if all points are corners of one box with axis-parallel edges, which lie on a sphere. */
 bool AreCornersOfBox(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e)
 {
@@ -379,7 +330,7 @@ bool AreCornersOfBox(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d,
 /** Sign of value if its error bound allows to tell it. */
 bool IsCertain(double value, double bound, int& sign)
 {
-  if (bound > Underflow && (value > bound || -value > bound))
+  if (bound > SmallestCertainBound && (value > bound || -value > bound))
   {
     sign = value > 0.0 ? 1 : -1;
     return true;
@@ -390,25 +341,8 @@ bool IsCertain(double value, double bound, int& sign)
 
 int Orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
-  const Vec3 p = b - a;
-  const Vec3 q = c - a;
-  const Vec3 r = d - a;
-  const double qyrz = q.Y * r.Z;
-  const double qzry = q.Z * r.Y;
-  const double qzrx = q.Z * r.X;
-  const double qxrz = q.X * r.Z;
-  const double qxry = q.X * r.Y;
-  const double qyrx = q.Y * r.X;
-  const double determinant = p.X * (qyrz - qzry) + p.Y * (qzrx - qxrz) + p.Z * (qxry - qyrx);
-  const double permanent = std::abs(p.X) * (std::abs(qyrz) + std::abs(qzry)) +
-    std::abs(p.Y) * (std::abs(qzrx) + std::abs(qxrz)) +
-    std::abs(p.Z) * (std::abs(qxry) + std::abs(qyrx));
-  int sign = 0;
-  if (IsCertain(determinant, OrientationBound * permanent, sign))
-  {
-    return sign;
-  }
-  return ExactOrientation(a, b, c, d);
+  const auto determinant = GetOrientationDeterminant<double>(a, b, c, d);
+  return determinant.IsCertain() ? determinant.GetSign() : ExactOrientation(a, b, c, d);
 }
 
 int ExactOrientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
@@ -430,62 +364,8 @@ int ExactOrientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 
 int InSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e)
 {
-  const Vec3 p = a - e;
-  const Vec3 q = b - e;
-  const Vec3 r = c - e;
-  const Vec3 s = d - e;
-
-  const double pxqy = p.X * q.Y;
-  const double qxpy = q.X * p.Y;
-  const double qxry = q.X * r.Y;
-  const double rxqy = r.X * q.Y;
-  const double rxsy = r.X * s.Y;
-  const double sxry = s.X * r.Y;
-  const double sxpy = s.X * p.Y;
-  const double pxsy = p.X * s.Y;
-  const double pxry = p.X * r.Y;
-  const double rxpy = r.X * p.Y;
-  const double qxsy = q.X * s.Y;
-  const double sxqy = s.X * q.Y;
-
-  const double pq = pxqy - qxpy;
-  const double qr = qxry - rxqy;
-  const double rs = rxsy - sxry;
-  const double sp = sxpy - pxsy;
-  const double pr = pxry - rxpy;
-  const double qs = qxsy - sxqy;
-
-  const double pqr = p.Z * qr - q.Z * pr + r.Z * pq;
-  const double qrs = q.Z * rs - r.Z * qs + s.Z * qr;
-  const double rsp = r.Z * sp + s.Z * pr + p.Z * rs;
-  const double spq = s.Z * pq + p.Z * qs + q.Z * sp;
-
-  const double pp = SquaredNorm(p);
-  const double qq = SquaredNorm(q);
-  const double rr = SquaredNorm(r);
-  const double ss = SquaredNorm(s);
-
-  const double determinant = (rr * spq - ss * pqr) + (pp * qrs - qq * rsp);
-
-  const double pz = std::abs(p.Z);
-  const double qz = std::abs(q.Z);
-  const double rz = std::abs(r.Z);
-  const double sz = std::abs(s.Z);
-  const double aqr = std::abs(qxry) + std::abs(rxqy);
-  const double ars = std::abs(rxsy) + std::abs(sxry);
-  const double asp = std::abs(sxpy) + std::abs(pxsy);
-  const double apq = std::abs(pxqy) + std::abs(qxpy);
-  const double apr = std::abs(pxry) + std::abs(rxpy);
-  const double aqs = std::abs(qxsy) + std::abs(sxqy);
-  const double permanent = (ars * qz + aqs * rz + aqr * sz) * pp +
-    (asp * rz + apr * sz + ars * pz) * qq + (apq * sz + aqs * pz + asp * qz) * rr +
-    (aqr * pz + apr * qz + apq * rz) * ss;
-  int sign = 0;
-  if (IsCertain(determinant, InSphereBound * permanent, sign))
-  {
-    return sign;
-  }
-  return ExactInSphere(a, b, c, d, e);
+  const auto determinant = GetInSphereDeterminant<double>(a, b, c, d, e);
+  return determinant.IsCertain() ? determinant.GetSign() : ExactInSphere(a, b, c, d, e);
 }
 
 int ExactInSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e)
@@ -494,12 +374,15 @@ int ExactInSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, co
   {
     return 0;
   }
-  int sign = 0;
-  if (InSphereByExtendedPrecision(a, b, c, d, e, sign))
+  // The widest floating-point type resolves most of what rounded coordinates make nearly
+  // cospherical; it is useless, but right, where it is double.
+  const auto determinant = GetInSphereDeterminant<long double>(a, b, c, d, e);
+  if (determinant.IsCertain())
   {
-    return sign;
+    return determinant.GetSign();
   }
 #ifdef CDM_HAS_WIDE_INTEGERS
+  int sign = 0;
   if (InSphereByIntegers(a, b, c, d, e, sign))
   {
     return sign;

@@ -24,8 +24,7 @@ public:
   {
     for (int i = 0; i < 8; ++i)
     {
-      this->Points.push_back(
-        { (i & 1) * size.X, ((i >> 1) & 1) * size.Y, (i >> 2) * size.Z });
+      this->Points.push_back({ (i & 1) * size.X, ((i >> 1) & 1) * size.Y, (i >> 2) * size.Z });
     }
     // Outlines counter-clockwise seen from outside: the front looks out of the cell behind it.
     for (const std::vector<Id>& outline : std::vector<std::vector<Id>>{ { 0, 2, 3, 1 },
@@ -48,7 +47,8 @@ public:
       }
     }
     std::map<EdgeIds, Id> cuts;
-    const auto getCut = [&](Id a, Id b) {
+    const auto getCut = [&](Id a, Id b)
+    {
       const EdgeIds edge{ std::min(a, b), std::max(a, b) };
       const auto [place, isNew] = cuts.emplace(edge, static_cast<Id>(this->Points.size()));
       if (isNew)
@@ -63,7 +63,8 @@ public:
     // For each cell the edges of its cut, and its number above the plane.
     std::map<Id, std::map<Id, Id>> nextInCut;
     std::map<Id, Id> above;
-    const auto getAbove = [&](Id cell) {
+    const auto getAbove = [&](Id cell)
+    {
       return cell == OutsideRegion
         ? cell
         : above.emplace(cell, this->NumberOfCells + static_cast<Id>(above.size())).first->second;
@@ -104,9 +105,8 @@ public:
       {
         if (!parts[side].Outline.empty())
         {
-          const auto getLabel = [&](Id cell) {
-            return side == 1 && isCut(cell) ? getAbove(cell) : cell;
-          };
+          const auto getLabel = [&](Id cell)
+          { return side == 1 && isCut(cell) ? getAbove(cell) : cell; };
           parts[side].Labels = { getLabel(face.Labels.Front), getLabel(face.Labels.Back) };
           faces.push_back(parts[side]);
         }
@@ -148,8 +148,7 @@ public:
     soup.Points = this->Points;
     for (const Face& face : this->Faces)
     {
-      soup.Connectivity.insert(
-        soup.Connectivity.end(), face.Outline.begin(), face.Outline.end());
+      soup.Connectivity.insert(soup.Connectivity.end(), face.Outline.begin(), face.Outline.end());
       soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
       soup.Labels.push_back(face.Labels);
     }
@@ -189,6 +188,21 @@ inline void Rotate(std::vector<Vec3>& points, const Vec3& axis, double angle)
     p = c * p + s * Cross(axis, p) + ((1.0 - c) * Dot(axis, p)) * axis;
   }
 }
+
+/** A box cut by planes near its center, turned about a random axis by an angle in radians. */
+inline PolygonSoup MakeTurnedComplex(
+  std::mt19937_64& generator, const Vec3& size, int cuts, double angle)
+{
+  CellComplex complex(size);
+  for (int cut = 0; cut < cuts; ++cut)
+  {
+    const Vec3 normal = MakeRandomDirection(generator);
+    complex.Cut(normal, Dot(normal, 0.5 * size) + 0.1 * (cut - 0.5 * (cuts - 1)), 0.02);
+  }
+  PolygonSoup soup = complex.GetSoup();
+  Rotate(soup.Points, MakeRandomDirection(generator), angle);
+  return soup;
 }
+} // namespace cdm
 
 #endif

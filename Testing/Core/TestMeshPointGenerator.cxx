@@ -185,15 +185,8 @@ TEST(MeshPointGenerator, PointsLieStrictlyInsideAndClearOfTheBoundary)
   {
     SCOPED_TRACE(seed);
     std::mt19937_64 generator(seed);
-    CellComplex complex({ 1.0, 1.0, 1.0 });
-    for (int cut = 0; cut < 3; ++cut)
-    {
-      const Vec3 normal = MakeRandomDirection(generator);
-      complex.Cut(normal, Dot(normal, { 0.5, 0.5, 0.5 }) + 0.1 * (cut - 1), 0.02);
-    }
-    PolygonSoup soup = complex.GetSoup();
-    Rotate(soup.Points, MakeRandomDirection(generator), 0.4);
-    const TriangleMesh surface = Triangulate(soup);
+    const TriangleMesh surface =
+      Triangulate(MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, 3, 0.4));
     // The cells are convex: a point is inside of one strictly if it lies on the inner side of all of
     // its triangles, exactly.
     const auto isInside = [&surface](const Vec3& p, Id region)

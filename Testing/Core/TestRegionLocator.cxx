@@ -73,14 +73,7 @@ TEST(RegionLocator, AgreesWithTheMeshOfRandomComplexes)
   {
     SCOPED_TRACE(seed);
     std::mt19937_64 generator(seed);
-    CellComplex complex({ 1.0, 1.2, 0.8 });
-    for (int cut = 0; cut < 4; ++cut)
-    {
-      const Vec3 normal = MakeRandomDirection(generator);
-      complex.Cut(normal, Dot(normal, { 0.5, 0.6, 0.4 }) + 0.1 * (cut - 1.5), 0.02);
-    }
-    PolygonSoup soup = complex.GetSoup();
-    Rotate(soup.Points, MakeRandomDirection(generator), 0.7);
+    PolygonSoup soup = MakeTurnedComplex(generator, { 1.0, 1.2, 0.8 }, 4, 0.7);
     ExpectSameRegionsAsMesh(Triangulate(soup));
     // Without labels the enclosed segments are numbered as the mesh does it.
     soup.Labels.clear();

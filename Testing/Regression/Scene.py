@@ -12,7 +12,9 @@ import ImageComparison
 import numpy
 import vtkmodules.vtkInteractionStyle  # noqa: F401 (registers the factory)
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 (registers the factory)
-from conforming_delaunay import vtkTechnologyStructureSource
+from conforming_delaunay import (
+    vtkAdvancingFrontTetrahedralizer, vtkBoundaryTriangulator, vtkDelaunaySurfaceRefiner,
+    vtkTechnologyStructureSource)
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR, vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_TETRA, vtkCellArray, vtkImageData, vtkPolyData
@@ -73,6 +75,20 @@ def MakeMeshPoints(boxes=MOS_BOXES, spacing=0.06):
             inside = (places < counts - 0.25).all(axis=1)
             points.append(low + (high - low) / counts * places[inside])
     return MakeSurface(numpy.concatenate(points), [])
+
+
+def MakeMosTetrahedralizer(device):
+    """The stages up to the tetrahedra, with mesh points: the refiner, and the last of them."""
+    triangulator = vtkBoundaryTriangulator()
+    triangulator.SetInputConnection(device.GetOutputPort())
+    refiner = vtkDelaunaySurfaceRefiner()
+    refiner.SetInputConnection(triangulator.GetOutputPort())
+    refiner.SetInputData(1, MakeMeshPoints())
+    refiner.SetMaximumEdgeLength(0.06)
+    tetrahedralizer = vtkAdvancingFrontTetrahedralizer()
+    tetrahedralizer.SetInputConnection(0, refiner.GetOutputPort(0))
+    tetrahedralizer.SetInputConnection(1, refiner.GetOutputPort(2))
+    return refiner, tetrahedralizer
 
 
 def GetPoints(data):

@@ -7,19 +7,9 @@ Mesh points on a body-centred lattice in bulk and gate make tetrahedra of good s
 import numpy
 
 import Scene
-from conforming_delaunay import (
-    vtkAdvancingFrontTetrahedralizer, vtkBoundaryTriangulator, vtkDelaunaySurfaceRefiner)
 
 device = Scene.MakeMosTransistor()
-triangulator = vtkBoundaryTriangulator()
-triangulator.SetInputConnection(device.GetOutputPort())
-refiner = vtkDelaunaySurfaceRefiner()
-refiner.SetInputConnection(triangulator.GetOutputPort())
-refiner.SetInputData(1, Scene.MakeMeshPoints())
-refiner.SetMaximumEdgeLength(0.06)
-tetrahedralizer = vtkAdvancingFrontTetrahedralizer()
-tetrahedralizer.SetInputConnection(0, refiner.GetOutputPort(0))
-tetrahedralizer.SetInputConnection(1, refiner.GetOutputPort(2))
+refiner, tetrahedralizer = Scene.MakeMosTetrahedralizer(device)
 tetrahedralizer.Update()
 mesh = Scene.Copy(tetrahedralizer.GetOutput(0))
 

@@ -8,20 +8,10 @@ tetrahedra on purpose; a red tetrahedron elsewhere is a sliver.
 import numpy
 
 import Scene
-from conforming_delaunay import (
-    vtkAdvancingFrontTetrahedralizer, vtkBoundaryTriangulator, vtkDelaunaySurfaceRefiner,
-    vtkSliverRemover)
+from conforming_delaunay import vtkSliverRemover
 
 device = Scene.MakeMosTransistor()
-triangulator = vtkBoundaryTriangulator()
-triangulator.SetInputConnection(device.GetOutputPort())
-refiner = vtkDelaunaySurfaceRefiner()
-refiner.SetInputConnection(triangulator.GetOutputPort())
-refiner.SetInputData(1, Scene.MakeMeshPoints())
-refiner.SetMaximumEdgeLength(0.06)
-tetrahedralizer = vtkAdvancingFrontTetrahedralizer()
-tetrahedralizer.SetInputConnection(0, refiner.GetOutputPort(0))
-tetrahedralizer.SetInputConnection(1, refiner.GetOutputPort(2))
+_, tetrahedralizer = Scene.MakeMosTetrahedralizer(device)
 remover = vtkSliverRemover()
 remover.SetInputConnection(tetrahedralizer.GetOutputPort())
 remover.Update()
