@@ -256,6 +256,7 @@ private:
   void CollectAxes();
   void CollectFacetGeometry();
   void Saturate();
+  Status SplitRequested();
   Status Refine();
   void Process(Id t);
   bool IsGood(Id t);
@@ -658,6 +659,54 @@ void SurfaceRefiner::Saturate()
   {
     this->Enqueue(t);
   }
+}
+
+Status SurfaceRefiner::SplitRequested()
+{
+  std::map<EdgeIds, Id> segments;
+  const auto makeKey = [](const EdgeIds& edge)
+  { return EdgeIds{ std::min(edge[0], edge[1]), std::max(edge[0], edge[1]) }; };
+  if (!this->Input.EdgesToSplit.empty())
+  {
+    for (Id s = 0; s < this->Surface->GetNumberOfSegments(); ++s)
+    {
+      segments.emplace(makeKey(this->Surface->GetSegment(s).Points), s);
+    }
+  }
+  for (const EdgeIds& edge : this->Input.EdgesToSplit)
+  {
+    const auto segment = segments.find(makeKey(edge));
+    if (segment != segments.end() &&
+      makeKey(this->Surface->GetSegment(segment->second).Points) == segment->first)
+    {
+      this->SplitSegment(segment->second, NoId);
+      const Status status = this->Refine();
+      if (!status.IsOk())
+      {
+        return status;
+      }
+    }
+  }
+  for (Id t : this->Input.TrianglesToSplit)
+  {
+    const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+    const TriangleIds& given = this->Input.Surface->Triangles[t];
+    if (std::is_permutation(ids.begin(), ids.end(), given.begin()))
+    {
+      const Vec3 center =
+        GetCircumcenter(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]);
+      if (!this->ResolveInFacet(t, NoId, center, false))
+      {
+        this->SplitLongestEdge(t);
+      }
+      const Status status = this->Refine();
+      if (!status.IsOk())
+      {
+        return status;
+      }
+    }
+  }
+  return Status();
 }
 
 bool SurfaceRefiner::IsCocircularFacet(Id t) const
@@ -1180,6 +1229,13 @@ bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMir
         position = SnapToCoordinates(position, this->Points[disturbing], this->Diagonal);
         position = this->MatchAcross(current, disturbing, position, radius);
       }
+      else
+      {
+        // It may have been made before on the other side of a layer.
+        NearestPointVisitor visitor(position, NoId);
+        this->Octree.Visit(visitor);
+        position = SnapToCoordinates(position, this->Points[visitor.Nearest], this->Diagonal);
+      }
       place = surface.Locate(current, position);
       if (place.second)
       {
@@ -1535,6 +1591,8 @@ Status SurfaceRefiner::Run()
   this->FlipBudget = 100000 + 50 * this->Surface->GetNumberOfTriangles();
   this->Saturate();
   status = this->Refine();
+  // One by one, so that points which match those are made before the next one.
+  status = status.IsOk() ? this->SplitRequested() : status;
   return status.IsOk() ? this->Finish() : status;
 }
 } // namespace

@@ -80,6 +80,12 @@ struct DelaunaySurfaceRefinerInput
    * long as that in one direction and shorter in another would need points to match on all sides.
    */
   SizingField Sizing;
+  /**
+   * Triangles and structural edges to be split once each, if the criterion and the flips have not
+   * changed them before: what a stage after this one wants finer.
+   */
+  std::vector<Id> TrianglesToSplit;
+  std::vector<EdgeIds> EdgesToSplit;
 };
 
 struct DelaunaySurfaceRefinerReport

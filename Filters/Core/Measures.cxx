@@ -55,8 +55,32 @@ std::array<double, 6> GetDihedralAngles(const Vec3& a, const Vec3& b, const Vec3
 
 double GetSmallestDihedralAngle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
-  const std::array<double, 6> angles = GetDihedralAngles(a, b, c, d);
-  return *std::min_element(angles.begin(), angles.end());
+  const Vec3 ab = b - a;
+  const Vec3 ac = c - a;
+  const Vec3 ad = d - a;
+  const Vec3 bc = c - b;
+  const Vec3 bd = d - b;
+  const Vec3 normalA = Cross(bc, bd);
+  const Vec3 normalB = Cross(ad, ac);
+  const Vec3 normalC = Cross(ab, ad);
+  const Vec3 normalD = Cross(ac, ab);
+  const double sixVolumes = std::abs(Dot(normalD, ad));
+  if (sixVolumes == 0.0)
+  {
+    const std::array<double, 6> angles = GetDihedralAngles(a, b, c, d);
+    return *std::min_element(angles.begin(), angles.end());
+  }
+  // The smallest angle has the largest cotangent: one arc tangent is enough.
+  const double lengths[6] = { Norm(ab), Norm(ac), Norm(ad), Norm(bc), Norm(bd), Norm(d - c) };
+  const double products[6] = { Dot(normalC, normalD), Dot(normalB, normalD), Dot(normalB, normalC),
+    Dot(normalA, normalD), Dot(normalA, normalC), Dot(normalA, normalB) };
+  int smallest = 0;
+  for (int i = 1; i < 6; ++i)
+  {
+    smallest =
+      products[i] * lengths[smallest] < products[smallest] * lengths[i] ? i : smallest;
+  }
+  return std::atan2(sixVolumes * lengths[smallest], 0.0 - products[smallest]) * DegreesPerRadian;
 }
 
 double GetSmallestHeight(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)

@@ -596,6 +596,31 @@ std::string Count(Id count, const char* singular, const char* plural)
 {
   return std::to_string(count) + " " + (count == 1 ? singular : plural);
 }
+bool HasRightNeighbors(const TetMesh& mesh, Id tetrahedron)
+{
+  const Id numberOfFacets = static_cast<Id>(4 * mesh.Tetrahedra.size());
+  for (int facet = 0; facet < 4; ++facet)
+  {
+    const Id neighbor = mesh.Neighbors[tetrahedron][facet];
+    if (neighbor == NoId)
+    {
+      continue;
+    }
+    if (neighbor < 0 || neighbor >= numberOfFacets ||
+      mesh.Neighbors[neighbor / 4][neighbor % 4] != 4 * tetrahedron + facet)
+    {
+      return false;
+    }
+    const TriangleIds own = GetFacet(mesh.Tetrahedra[tetrahedron], facet);
+    const TriangleIds other = GetFacet(mesh.Tetrahedra[neighbor / 4], neighbor % 4);
+    if (!std::is_permutation(own.begin(), own.end(), other.begin()))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 } // namespace
 
 double RegionVolume::GetRelativeError() const
@@ -746,5 +771,38 @@ Status BuildNeighbors(TetMesh& mesh)
       overfull);
   }
   return {};
+}
+
+Status CheckMeshInvariants(const TetMesh& mesh)
+{
+  if (mesh.Regions.size() != mesh.Tetrahedra.size() ||
+    mesh.Neighbors.size() != mesh.Tetrahedra.size())
+  {
+    return Status::InvalidInput("The mesh needs one region and four neighbors for each "
+                                "tetrahedron.");
+  }
+  std::vector<Id> wrong;
+  for (Id tetrahedron = 0; tetrahedron < static_cast<Id>(mesh.Tetrahedra.size()); ++tetrahedron)
+  {
+    const TetrahedronIds& ids = mesh.Tetrahedra[tetrahedron];
+    const bool isInRange = std::all_of(ids.begin(), ids.end(),
+      [&](Id point)
+      {
+        return point >= 0 && point < static_cast<Id>(mesh.Points.size()) &&
+          IsFinite(mesh.Points[point]);
+      });
+    if (!isInRange ||
+      Orientation(
+        mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]], mesh.Points[ids[3]]) <= 0 ||
+      !HasRightNeighbors(mesh, tetrahedron))
+    {
+      wrong.push_back(tetrahedron);
+    }
+  }
+  return wrong.empty() ? Status{}
+                       : Status::InvalidInput(std::to_string(wrong.size()) +
+                             " tetrahedra are inverted, flat, or have wrong points or neighbors: "
+                             "only valid meshes can be changed.",
+                           wrong);
 }
 } // namespace cdm

@@ -103,6 +103,12 @@ Status CheckMeshInput(const TetMesh& mesh, const TriangleMesh* boundary);
 Status CheckTetMesh(const TetMesh& mesh, const TriangleMesh* boundary,
   const ExecutionContext& context, MeshCheckReport& report);
 
+/**
+ * The invariants of TetMesh.h, one tetrahedron by itself: InvalidInput names those that are inverted,
+ * flat, or have wrong points or neighbors. What stages ask for that change a mesh.
+ */
+Status CheckMeshInvariants(const TetMesh& mesh);
+
 /** Neighbors of tetrahedra from their vertices alone; for meshes that come from outside. */
 Status BuildNeighbors(TetMesh& mesh);
 } // namespace cdm

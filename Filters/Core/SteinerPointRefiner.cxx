@@ -1,0 +1,553 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SteinerPointRefiner.h"
+
+#include "AdvancingFrontTetrahedralizer.h"
+#include "Measures.h"
+#include "MeshChecks.h"
+#include "VolumeRefinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+
+/** Rounds without end would be an error of the rules; so many have never been seen. */
+constexpr Id MaximumRounds = 200;
+/** Rounds that split the boundary for slivers. */
+constexpr int MaximumSliverRounds = 12;
+/** Edges of the boundary for a largest volume, in edges of the regular tetrahedron of that volume. */
+constexpr double BoundaryEdgeRatio = 1.15;
+/** Degrees: dihedral angles of the input below this count as sharp. */
+constexpr double SharpAngle = 60.0;
+/** Plane angles of the input count as sharp if their sine is below this: a triangle with such
+ * an angle has a ratio of circumradius to shortest edge above 1.4. */
+constexpr double SharpSine = 0.36;
+
+class Refiner
+{
+public:
+  Refiner(const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options,
+    const ExecutionContext& context, SteinerPointRefinerOutput& output)
+    : Input(input), Options(options), Context(context), Output(output),
+      Limits{ options.RadiusEdgeRatio, options.MaximumVolume, options.MaximumEdgeLength,
+        input.Sizing },
+      MaximumNewPoints(
+        options.MaximumNewPoints > 0 ? options.MaximumNewPoints : std::numeric_limits<Id>::max() / 8)
+  {
+  }
+
+  Status Run();
+
+private:
+  Status CheckInput() const;
+  void ExtractSurface();
+  ExecutionContext GetRoundContext() const;
+  Status Translate(Status status, const std::vector<Id>& sources) const;
+  Status StartRound();
+  Status RefineRound(bool isShapeTested);
+  void CollectSurfaceSizes();
+  void MeasureSizes();
+  void CollectReport();
+  bool HasRequests() const
+  {
+    return !this->Round->GetRequestedTriangles().empty() ||
+      !this->Round->GetRequestedEdges().empty();
+  }
+  std::vector<char> FindSharpPoints() const;
+  void FindFaults();
+  void MakeOutput();
+
+  const SteinerPointRefinerInput& Input;
+  const SteinerPointRefinerOptions& Options;
+  const ExecutionContext& Context;
+  SteinerPointRefinerOutput& Output;
+  const TetrahedronLimits Limits;
+  const Id MaximumNewPoints;
+
+  /** SourceCells, in the first round only: tetrahedron of the input. */
+  TriangleMesh Surface;
+  std::vector<StructuralEdge> Edges;
+  /** Input point of each of the surface's first points. */
+  std::vector<Id> SurfaceSources;
+  /** See InteriorPoint::Size; empty while only sizes are refined. */
+  std::vector<double> SurfaceSizes;
+  std::vector<InteriorPoint> Interior;
+  SliverMemory Memory;
+  std::unique_ptr<VolumeRefinement> Round;
+  /** Whether the last round has split nothing of what was requested. */
+  bool IsStuck = false;
+};
+
+Status Refiner::CheckInput() const
+{
+  const TetMesh& mesh = *this->Input.Mesh;
+  Status status = CheckMeshInvariants(mesh);
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  std::vector<Id> outside;
+  for (Id t = 0; t < static_cast<Id>(mesh.Regions.size()); ++t)
+  {
+    if (mesh.Regions[t] < 0)
+    {
+      outside.push_back(t);
+    }
+  }
+  if (!outside.empty())
+  {
+    return Status::InvalidInput(std::to_string(outside.size()) +
+        " tetrahedra have a negative region id, which stands for the outside; number the regions "
+        "from 0 on.",
+      std::move(outside));
+  }
+  std::vector<Id> wrong;
+  for (Id p = 0; p < static_cast<Id>(this->Input.NewPoints.size()); ++p)
+  {
+    if (!IsFinite(this->Input.NewPoints[p]))
+    {
+      wrong.push_back(p);
+    }
+  }
+  return wrong.empty() ? Status()
+                       : Status::InvalidInput(std::to_string(wrong.size()) +
+                             " points to be inserted have coordinates that are not finite.",
+                           {}, std::move(wrong));
+}
+
+void Refiner::ExtractSurface()
+{
+  const TetMesh& mesh = *this->Input.Mesh;
+  constexpr Id Unused = -2;
+  std::vector<Id> newIds(mesh.Points.size(), Unused);
+  for (const TetrahedronIds& ids : mesh.Tetrahedra)
+  {
+    for (Id id : ids)
+    {
+      newIds[id] = NoId;
+    }
+  }
+  for (Id t = 0; t < static_cast<Id>(mesh.Tetrahedra.size()); ++t)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      const Id neighbor = mesh.Neighbors[t][i];
+      const Id region = neighbor == NoId ? OutsideRegion : mesh.Regions[neighbor / 4];
+      if (region == mesh.Regions[t] || (neighbor != NoId && neighbor / 4 < t))
+      {
+        continue;
+      }
+      this->Surface.Triangles.push_back(GetFacet(mesh.Tetrahedra[t], i));
+      this->Surface.SourceCells.push_back(t);
+      this->Surface.Labels.push_back({ region, mesh.Regions[t] });
+      for (Id id : this->Surface.Triangles.back())
+      {
+        newIds[id] = 0;
+      }
+    }
+  }
+  for (Id p = 0; p < static_cast<Id>(newIds.size()); ++p)
+  {
+    if (newIds[p] == 0)
+    {
+      newIds[p] = static_cast<Id>(this->SurfaceSources.size());
+      this->SurfaceSources.push_back(p);
+      this->Surface.Points.push_back(mesh.Points[p]);
+    }
+    else if (newIds[p] == NoId)
+    {
+      if (this->Input.IsRemoved.empty() || !this->Input.IsRemoved[p])
+      {
+        const bool isFree = !this->Input.IsFree.empty() && this->Input.IsFree[p];
+        this->Interior.push_back({ mesh.Points[p], 0.0, isFree, p, this->Memory.MakeName() });
+      }
+      else
+      {
+        ++this->Output.Report.RemovedPoints;
+      }
+    }
+  }
+  for (TriangleIds& ids : this->Surface.Triangles)
+  {
+    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]] };
+  }
+  for (const Vec3& position : this->Input.NewPoints)
+  {
+    this->Interior.push_back({ position, 0.0, false, NoId, this->Memory.MakeName() });
+  }
+}
+
+/** Rounds get smaller: each takes a part of what is left. */
+ExecutionContext Refiner::GetRoundContext() const
+{
+  const double done = 1.0 - std::pow(0.8, static_cast<double>(this->Output.Report.Rounds));
+  const double next = 1.0 - std::pow(0.8, static_cast<double>(this->Output.Report.Rounds + 1));
+  return this->Context.Part(done, next);
+}
+
+/** What a stage before says of triangles, in tetrahedra of the input. */
+Status Refiner::Translate(Status status, const std::vector<Id>& sources) const
+{
+  std::vector<Id> cells;
+  for (Id triangle : status.Cells)
+  {
+    const Id source = sources.empty() ? triangle : sources[triangle];
+    if (!this->Surface.SourceCells.empty() && source != NoId)
+    {
+      cells.push_back(this->Surface.SourceCells[source]);
+    }
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  if (!status.IsAborted())
+  {
+    status.Message = "The boundary of the mesh: " + status.Message;
+  }
+  status.Cells = std::move(cells);
+  status.Points.clear();
+  return status;
+}
+
+/** Refine the boundary, splitting what was requested, and tetrahedralize. */
+Status Refiner::StartRound()
+{
+  const ExecutionContext context = this->GetRoundContext();
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &this->Surface;
+  input.Sizing = this->Input.Sizing;
+  if (this->Round)
+  {
+    this->Interior = this->Round->GetInterior();
+    input.TrianglesToSplit = this->Round->GetRequestedTriangles();
+    input.EdgesToSplit = this->Round->GetRequestedEdges();
+  }
+  std::vector<Vec3> points;
+  for (const InteriorPoint& point : this->Interior)
+  {
+    points.push_back(point.Position);
+  }
+  input.MeshPoints = &points;
+  DelaunaySurfaceRefinerOptions options;
+  options.Criterion = std::max(this->Options.Criterion, SurfaceCriterion::SmallestSphere);
+  options.StructuralEdges = this->Options.StructuralEdges;
+  options.MaximumEdgeLength = this->Options.MaximumEdgeLength;
+  options.MeshPointClearanceRatio = 0.0;
+  if (this->Options.MaximumVolume > 0.0)
+  {
+    const double edge = BoundaryEdgeRatio * std::cbrt(6.0 * std::sqrt(2.0) * this->Options.MaximumVolume);
+    options.MaximumEdgeLength =
+      options.MaximumEdgeLength > 0.0 ? std::min(options.MaximumEdgeLength, edge) : edge;
+  }
+  DelaunaySurfaceRefinerOutput refined;
+  Status status = RefineDelaunaySurface(input, options, context.Part(0.0, 0.3), refined);
+  if (!status.IsOk())
+  {
+    return this->Translate(std::move(status), {});
+  }
+  std::vector<InteriorPoint> kept;
+  for (Id p : refined.KeptMeshPoints)
+  {
+    kept.push_back(this->Interior[p]);
+  }
+
+  points.clear();
+  for (const InteriorPoint& point : kept)
+  {
+    points.push_back(point.Position);
+  }
+  AdvancingFrontTetrahedralizerInput boundary;
+  boundary.Surface = &refined.Surface;
+  boundary.MeshPoints = &points;
+  AdvancingFrontTetrahedralizerOptions threads;
+  threads.NumberOfThreads = this->Options.NumberOfThreads;
+  AdvancingFrontTetrahedralizerOutput made;
+  status = TetrahedralizeByAdvancingFront(boundary, threads, context.Part(0.3, 0.4), made);
+  if (!status.IsOk())
+  {
+    return this->Translate(std::move(status), refined.Surface.SourceCells);
+  }
+
+  // From here on the round counts.
+  ++this->Output.Report.Rounds;
+  this->CollectReport();
+  this->IsStuck = refined.NewPoints.empty();
+  const Id oldPoints = static_cast<Id>(this->Surface.Points.size());
+  this->Output.Report.BoundaryPoints += static_cast<Id>(refined.NewPoints.size());
+  this->Output.Report.UnresolvedTriangles = static_cast<Id>(refined.UnresolvedTriangles.size());
+  this->Interior.clear();
+  for (Id p : made.MeshPointSources)
+  {
+    this->Interior.push_back(kept[p]);
+  }
+  this->Round.reset();
+  this->Surface = std::move(made.Boundary);
+  this->Surface.Points = std::move(refined.Surface.Points);
+  this->Surface.SourceCells.clear();
+  this->Edges = std::move(refined.StructuralEdges);
+  if (!this->SurfaceSizes.empty())
+  {
+    this->SurfaceSizes.resize(this->Surface.Points.size(), -1.0);
+    this->CollectSurfaceSizes();
+  }
+  this->Round = std::make_unique<VolumeRefinement>(std::move(made.Mesh), this->Surface, this->Edges,
+    this->SurfaceSizes, this->Interior, this->Limits,
+    this->MaximumNewPoints - this->Output.Report.BoundaryPoints - this->Output.Report.InteriorPoints,
+    this->Memory);
+  this->Round->NoteNewPoints(oldPoints);
+  return status;
+}
+
+/** Sizes of new points of the surface, where it is negative, from those around them. */
+void Refiner::CollectSurfaceSizes()
+{
+  bool isDone = false;
+  while (!isDone)
+  {
+    isDone = true;
+    std::vector<double> sizes = this->SurfaceSizes;
+    for (const TriangleIds& ids : this->Surface.Triangles)
+    {
+      for (int i = 0; i < 3; ++i)
+      {
+        const Id p = ids[i];
+        for (Id q : { ids[(i + 1) % 3], ids[(i + 2) % 3] })
+        {
+          if (this->SurfaceSizes[p] >= 0.0 || this->SurfaceSizes[q] < 0.0)
+          {
+            continue;
+          }
+          const double size =
+            this->SurfaceSizes[q] + Distance(this->Surface.Points[p], this->Surface.Points[q]);
+          sizes[p] = sizes[p] < 0.0 ? size : std::min(sizes[p], size);
+          isDone = false;
+        }
+      }
+    }
+    this->SurfaceSizes = std::move(sizes);
+  }
+}
+
+/** The shortest edge at each point of the mesh. */
+void Refiner::MeasureSizes()
+{
+  const TetMesh& mesh = this->Round->GetMesh();
+  std::vector<double> sizes(mesh.Points.size(), Infinity);
+  for (const TetrahedronIds& ids : mesh.Tetrahedra)
+  {
+    if (ids[0] == NoId)
+    {
+      continue;
+    }
+    for (const auto& edge : TetrahedronEdges)
+    {
+      const double length =
+        Distance(mesh.Points[ids[edge[0]]], mesh.Points[ids[edge[1]]]);
+      sizes[ids[edge[0]]] = std::min(sizes[ids[edge[0]]], length);
+      sizes[ids[edge[1]]] = std::min(sizes[ids[edge[1]]], length);
+    }
+  }
+  this->SurfaceSizes.assign(sizes.begin(),
+    sizes.begin() + static_cast<std::ptrdiff_t>(this->Surface.Points.size()));
+  this->Round->SetSizes(sizes);
+}
+
+Status Refiner::RefineRound(bool isShapeTested)
+{
+  return this->Round->RefineByLimits(isShapeTested, this->GetRoundContext());
+}
+
+void Refiner::CollectReport()
+{
+  if (this->Round)
+  {
+    const VolumeRefinementReport& report = this->Round->GetReport();
+    this->Output.Report.InteriorPoints += report.InsertedPoints;
+    this->Output.Report.MovedPoints += report.MovedPoints;
+    this->Output.Report.RemovedPoints += report.RemovedPoints;
+  }
+}
+
+/** Points of the surface on edges or at corners with a sharp angle. */
+std::vector<char> Refiner::FindSharpPoints() const
+{
+  std::vector<char> isSharp(this->Surface.Points.size(), 0);
+  std::vector<std::vector<Id>> ends(this->Surface.Points.size());
+  for (const StructuralEdge& edge : this->Edges)
+  {
+    for (int i = 0; i < 2; ++i)
+    {
+      if (edge.DihedralAngle >= 0.0 && edge.DihedralAngle < SharpAngle)
+      {
+        isSharp[edge.Points[i]] = 1;
+      }
+      ends[edge.Points[i]].push_back(edge.Points[1 - i]);
+    }
+  }
+  for (Id p = 0; p < static_cast<Id>(ends.size()); ++p)
+  {
+    for (std::size_t i = 0; i < ends[p].size() && !isSharp[p]; ++i)
+    {
+      const Vec3 u = this->Surface.Points[ends[p][i]] - this->Surface.Points[p];
+      for (std::size_t j = i + 1; j < ends[p].size(); ++j)
+      {
+        const Vec3 v = this->Surface.Points[ends[p][j]] - this->Surface.Points[p];
+        if (Dot(u, v) > 0.0 && Norm(Cross(u, v)) < SharpSine * Norm(u) * Norm(v))
+        {
+          isSharp[p] = 1;
+        }
+      }
+    }
+  }
+  return isSharp;
+}
+
+void Refiner::FindFaults()
+{
+  const TetMesh& mesh = this->Output.Mesh;
+  const std::vector<char> isSharp = this->FindSharpPoints();
+  SteinerPointRefinerReport& report = this->Output.Report;
+  for (const TetrahedronIds& ids : mesh.Tetrahedra)
+  {
+    const std::array<Vec3, 4> v{ mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]],
+      mesh.Points[ids[3]] };
+    Vec3 target;
+    double severity = 0.0;
+    const TetrahedronFault fault = this->Limits.Find(v, true, target, severity);
+    SteinerFault found = fault == TetrahedronFault::Size ? SteinerFault::Size
+      : fault == TetrahedronFault::Shape                 ? SteinerFault::Shape
+      : GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]) < this->Options.DihedralAngleTarget
+      ? SteinerFault::Sliver
+      : SteinerFault::None;
+    if (found == SteinerFault::Shape || found == SteinerFault::Sliver)
+    {
+      const bool isInevitable = this->Round->IsAcrossLayer(ids) ||
+        std::any_of(ids.begin(), ids.end(),
+          [&](Id id) { return id < static_cast<Id>(isSharp.size()) && isSharp[id]; });
+      found = isInevitable ? SteinerFault::Inevitable : found;
+    }
+    report.TooLarge += found == SteinerFault::Size;
+    report.BadlyShaped += found == SteinerFault::Shape;
+    report.Slivers += found == SteinerFault::Sliver;
+    report.Inevitable += found == SteinerFault::Inevitable;
+    this->Output.Faults.push_back(found);
+  }
+}
+
+/** The mesh of the round, which has the surface's points first, with the kept points first. */
+void Refiner::MakeOutput()
+{
+  this->FindFaults();
+  std::vector<Id> sources = this->SurfaceSources;
+  sources.resize(this->Surface.Points.size(), NoId);
+  for (const InteriorPoint& point : this->Interior)
+  {
+    sources.push_back(point.Source);
+  }
+  std::vector<Id> order(sources.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+    [&](Id a, Id b)
+    {
+      constexpr Id last = std::numeric_limits<Id>::max();
+      return (sources[a] == NoId ? last : sources[a]) < (sources[b] == NoId ? last : sources[b]);
+    });
+  std::vector<Id> newIds(sources.size());
+  std::vector<Vec3> points;
+  for (Id p : order)
+  {
+    newIds[p] = static_cast<Id>(points.size());
+    points.push_back(this->Output.Mesh.Points[p]);
+    this->Output.PointSources.push_back(sources[p]);
+  }
+  this->Output.Mesh.Points = std::move(points);
+  for (TetrahedronIds& ids : this->Output.Mesh.Tetrahedra)
+  {
+    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]], newIds[ids[3]] };
+  }
+}
+
+Status Refiner::Run()
+{
+  Status status = this->CheckInput();
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  this->ExtractSurface();
+  status = this->StartRound();
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  this->Round->RemoveClosePoints(this->Options.MinimumEdgeLength, this->Input.Sizing);
+
+  bool areSizesDone = false;
+  int sliverRounds = 0;
+  bool isDone = false;
+  while (status.IsOk() && !isDone)
+  {
+    if (!areSizesDone)
+    {
+      status = this->RefineRound(false);
+      areSizesDone = status.IsOk() && (this->IsStuck || !this->HasRequests());
+      if (areSizesDone)
+      {
+        this->MeasureSizes();
+        this->IsStuck = false;
+      }
+    }
+    if (areSizesDone && status.IsOk())
+    {
+      status = this->RefineRound(true);
+      if (status.IsOk() && (this->IsStuck || !this->HasRequests()))
+      {
+        const Id inserted = this->Round->GetReport().InsertedPoints;
+        if (this->Options.DihedralAngleTarget > 0.0)
+        {
+          ++sliverRounds;
+          status = this->Round->PerturbSlivers(this->Options.DihedralAngleTarget,
+            sliverRounds < MaximumSliverRounds, this->GetRoundContext());
+          status = status.IsOk() ? this->RefineRound(true) : status;
+        }
+        isDone = this->IsStuck || sliverRounds >= MaximumSliverRounds ||
+          (!this->HasRequests() && this->Round->GetReport().InsertedPoints == inserted);
+      }
+    }
+    if (status.IsOk())
+    {
+      isDone = isDone || this->Output.Report.Rounds >= MaximumRounds;
+      status = this->StartRound();
+    }
+  }
+  if (status.IsOk())
+  {
+    // The last round has only numbered the points anew.
+    this->Output.Mesh = this->Round->GetMesh();
+    this->MakeOutput();
+  }
+  return status;
+}
+} // namespace
+
+Status RefineBySteinerPoints(const SteinerPointRefinerInput& input,
+  const SteinerPointRefinerOptions& options, const ExecutionContext& context,
+  SteinerPointRefinerOutput& output)
+{
+  output = SteinerPointRefinerOutput();
+  const Status status = Refiner(input, options, context, output).Run();
+  if (!status.IsOk())
+  {
+    output = SteinerPointRefinerOutput();
+  }
+  return status;
+}
+} // namespace cdm

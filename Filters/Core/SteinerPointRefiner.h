@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SteinerPointRefiner.h
+ * @brief Stage 5: new points, inside and on the boundary, until sizes and shapes are as wanted.
+ *
+ * Method (thesis 5.6 and 6.5), in rounds:
+ *  1. the outer and interface facets of the mesh are a surface, the other points mesh points; given
+ *     points are added, others taken out;
+ *  2. the surface is refined (DelaunaySurfaceRefiner.h) until its smallest spheres are empty and it
+ *     is as fine as the sizing asks for, and split where the round before requested it; then it is
+ *     tetrahedralized with the mesh points (AdvancingFrontTetrahedralizer.h);
+ *  3. for this boundary the inside is refined (VolumeRefinement.h): Steiner points in tetrahedra that
+ *     are too large, then also in badly shaped ones, where each comes no closer to others than a
+ *     quarter of the shortest edge that was there before; what disturbs the boundary is requested to
+ *     be split instead;
+ *  4. if nothing is requested any more: points of slivers are moved, taken out or added.
+ * It ends when a round requests nothing, or nothing that can be done.
+ *
+ * Guarantees: the mesh is Delaunay by the pulling rule and conforms to the same surface; facets on
+ * it fulfil criterion 3.1 at least. Points of the surface, and those inside that are not free, keep
+ * their coordinates. Deterministic, whatever the number of threads. Tetrahedra across thin layers,
+ * and those at sharp angles that would be refined for ever, stay as they are: Faults tells which
+ * tetrahedra miss what was asked for, the report counts them.
+ * Failure: InvalidInput names tetrahedra without a region, inverted or flat ones, points that are
+ * not finite. The output is then empty, as after an abort.
+ * Cost: about 15 microseconds for a tetrahedron of the result; 250 bytes at the peak.
+ */
+#ifndef cdmSteinerPointRefiner_h
+#define cdmSteinerPointRefiner_h
+
+#include "DelaunaySurfaceRefiner.h"
+#include "ExecutionContext.h"
+#include "Status.h"
+#include "TetMesh.h"
+#include "TetrahedronLimits.h"
+
+namespace cdm
+{
+struct SteinerPointRefinerOptions
+{
+  /** Circumradius to shortest edge. 0 (off) or at least 1. */
+  double RadiusEdgeRatio = 1.4;
+  /** Tetrahedra with a smaller dihedral angle are slivers. Degrees, 0 (off) to 30. */
+  double DihedralAngleTarget = 15.0;
+  /** Cubic model units; 0: off. */
+  double MaximumVolume = 0.0;
+  /** Model units; 0: off. */
+  double MaximumEdgeLength = 0.0;
+  /** Free points closer to another one are taken out. Model units; 0: off. */
+  double MinimumEdgeLength = 0.0;
+  /** Delaunay counts as SmallestSphere. */
+  SurfaceCriterion Criterion = SurfaceCriterion::SmallestSphere;
+  /** What counts as flat, see StructuralEdges.h. */
+  StructuralEdgeOptions StructuralEdges;
+  /** The refinement stops when it has made so many points. 0: no limit. */
+  Id MaximumNewPoints = 0;
+  /** Threads to use, at least 1; the result does not depend on it. */
+  int NumberOfThreads = 1;
+};
+
+struct SteinerPointRefinerInput
+{
+  const TetMesh* Mesh = nullptr;
+  /** Edges longer than the sizing are too long. May be empty. */
+  SizingField Sizing;
+  /** Empty, or one for each point of the mesh: whether it may be moved and removed if inside. */
+  std::vector<char> IsFree;
+  /** Empty, or one for each point of the mesh: whether it is to be taken out if inside. */
+  std::vector<char> IsRemoved;
+  /** Points to be put in; those outside of all regions or on the boundary are left out. */
+  std::vector<Vec3> NewPoints;
+};
+
+/** What is wrong with a tetrahedron. */
+enum class SteinerFault : unsigned char
+{
+  None = 0,
+  /** Too large. */
+  Size = 1,
+  /** Its ratio of circumradius to shortest edge. */
+  Shape = 2,
+  /** Its smallest dihedral angle. */
+  Sliver = 3,
+  /** Shape or angle at a sharp input angle or in a thin layer, where nothing is to be had. */
+  Inevitable = 4
+};
+
+struct SteinerPointRefinerReport
+{
+  /** Points made on the boundary, and inside. */
+  Id BoundaryPoints = 0;
+  Id InteriorPoints = 0;
+  Id MovedPoints = 0;
+  Id RemovedPoints = 0;
+  Id Rounds = 0;
+  /** Tetrahedra by their SteinerFault. */
+  Id TooLarge = 0;
+  Id BadlyShaped = 0;
+  Id Slivers = 0;
+  Id Inevitable = 0;
+  /** Triangles of the boundary that break the criterion; see DelaunaySurfaceRefiner.h. */
+  Id UnresolvedTriangles = 0;
+};
+
+struct SteinerPointRefinerOutput
+{
+  /** Points: those of the input that are kept, in their order, then new and moved ones. */
+  TetMesh Mesh;
+  /** Input point of each point; NoId for new and moved ones. */
+  std::vector<Id> PointSources;
+  /** One for each tetrahedron. */
+  std::vector<SteinerFault> Faults;
+  SteinerPointRefinerReport Report;
+};
+
+Status RefineBySteinerPoints(const SteinerPointRefinerInput& input,
+  const SteinerPointRefinerOptions& options, const ExecutionContext& context,
+  SteinerPointRefinerOutput& output);
+} // namespace cdm
+
+#endif

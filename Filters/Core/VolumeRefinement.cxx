@@ -1,0 +1,774 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VolumeRefinement.h"
+
+#include "Measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t ReportInterval = 256;
+
+/** What is left of a point's size between it and a new one. */
+constexpr double SizeRatio = 0.25;
+/** Degrees that a change has to gain. */
+constexpr double SmallestGain = 0.05;
+/** Points are moved where angles are below this multiple of the target: it leaves some room. */
+constexpr double MoveRatio = 1.1;
+/** Cosine of the angle between the normals of a layer's sides and an edge across. */
+constexpr double AcrossCosine = 0.85;
+/** Length of an edge across a thin layer, in lengths of the longest edge of its tetrahedron. */
+constexpr double ThinRatio = 0.75;
+/** Free points closer to others than this part of the sizing are removed. */
+constexpr double CloseRatio = 0.3;
+/** First step of the search for a better place: in distances to the nearest neighbor ... */
+constexpr double FirstMove = 0.3;
+/** ... for a move, and in radii of the sphere that it destroys for a new point; ... */
+constexpr double FirstInsertion = 0.3;
+/** ... and how often the step is halved. */
+constexpr int NumberOfSteps = 5;
+/** Passes over the slivers that are left. */
+constexpr int MaximumPasses = 20;
+} // namespace
+
+void SliverMemory::SetChanged(const TetrahedronIds& names)
+{
+  ++this->Time;
+  for (Id name : names)
+  {
+    this->Changes[name] = this->Time;
+  }
+}
+
+void SliverMemory::SetHopeless(const TetrahedronIds& names, bool hasTriedInsertion)
+{
+  this->Failures[names] = { this->Time, hasTriedInsertion };
+}
+
+bool SliverMemory::IsHopeless(const TetrahedronIds& names, bool mayInsert) const
+{
+  const auto failure = this->Failures.find(names);
+  return failure != this->Failures.end() && (failure->second.HasTriedInsertion || !mayInsert) &&
+    std::none_of(names.begin(), names.end(),
+      [&](Id name)
+      {
+        const auto change = this->Changes.find(name);
+        return change != this->Changes.end() && change->second > failure->second.Time;
+      });
+}
+
+VolumeRefinement::VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
+  const std::vector<StructuralEdge>& edges, const std::vector<double>& surfaceSizes,
+  const std::vector<InteriorPoint>& interior, const TetrahedronLimits& limits, Id maximumNewPoints,
+  SliverMemory& memory)
+  : Mesh(std::move(mesh)), Surface(surface), Edges(edges), Limits(limits),
+    NumberOfSurfacePoints(static_cast<Id>(surface.Points.size())),
+    MaximumNewPoints(maximumNewPoints), Memory(memory), Spheres(surface, edges),
+    IncidenceBegin(surface.Points.size() + 1, 0), Incidence(3 * surface.Triangles.size()),
+    IsTriangleRequested(surface.Triangles.size(), 0), IsEdgeRequested(edges.size(), 0)
+{
+  for (std::size_t p = 0; p < surface.Points.size(); ++p)
+  {
+    this->Points.push_back(
+      { surface.Points[p], surfaceSizes.empty() ? 0.0 : surfaceSizes[p], false, NoId,
+        static_cast<Id>(p) });
+  }
+  this->Points.insert(this->Points.end(), interior.begin(), interior.end());
+  for (const TriangleIds& ids : surface.Triangles)
+  {
+    for (Id id : ids)
+    {
+      ++this->IncidenceBegin[id + 1];
+    }
+  }
+  for (std::size_t p = 1; p < this->IncidenceBegin.size(); ++p)
+  {
+    this->IncidenceBegin[p] += this->IncidenceBegin[p - 1];
+  }
+  std::vector<Id> next(this->IncidenceBegin.begin(), this->IncidenceBegin.end() - 1);
+  for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()); ++t)
+  {
+    for (Id id : surface.Triangles[t])
+    {
+      this->Incidence[next[id]++] = t;
+    }
+  }
+}
+
+std::vector<InteriorPoint> VolumeRefinement::GetInterior() const
+{
+  std::vector<InteriorPoint> interior;
+  for (Id p = this->NumberOfSurfacePoints; p < this->Mesh.GetNumberOfPoints(); ++p)
+  {
+    if (this->Mesh.GetTetrahedronAt(p) != NoId)
+    {
+      interior.push_back(this->Points[p]);
+    }
+  }
+  return interior;
+}
+
+bool VolumeRefinement::IsAcrossLayer(const TetrahedronIds& ids) const
+{
+  if (*std::max_element(ids.begin(), ids.end()) >= this->NumberOfSurfacePoints)
+  {
+    return false;
+  }
+  const std::array<Vec3, 4> vertices = this->GetVertices(ids);
+  double longest = 0.0;
+  for (const auto& edge : TetrahedronEdges)
+  {
+    longest = std::max(longest, Distance(vertices[edge[0]], vertices[edge[1]]));
+  }
+  // Whether a triangle at the point lies across the direction.
+  const auto isAcross = [&](Id point, const Vec3& direction)
+  {
+    for (Id i = this->IncidenceBegin[point]; i < this->IncidenceBegin[point + 1]; ++i)
+    {
+      const TriangleIds& triangle = this->Surface.Triangles[this->Incidence[i]];
+      const Vec3& a = this->Surface.Points[triangle[0]];
+      const Vec3 normal =
+        Cross(this->Surface.Points[triangle[1]] - a, this->Surface.Points[triangle[2]] - a);
+      if (std::abs(Dot(normal, direction)) >= AcrossCosine * Norm(normal) * Norm(direction))
+      {
+        return true;
+      }
+    }
+    return false;
+  };
+  return std::any_of(std::begin(TetrahedronEdges), std::end(TetrahedronEdges),
+    [&](const int(&edge)[2])
+    {
+      const Vec3 direction = vertices[edge[1]] - vertices[edge[0]];
+      return Norm(direction) <= ThinRatio * longest && isAcross(ids[edge[0]], direction) &&
+        isAcross(ids[edge[1]], direction);
+    });
+}
+
+bool VolumeRefinement::IsFree(Id point) const
+{
+  return point >= this->NumberOfSurfacePoints && this->Points[point].IsFree &&
+    this->Mesh.GetTetrahedronAt(point) != NoId;
+}
+
+bool VolumeRefinement::IsFull() const
+{
+  return this->Report.InsertedPoints >= this->MaximumNewPoints;
+}
+
+std::array<Vec3, 4> VolumeRefinement::GetVertices(const TetrahedronIds& ids) const
+{
+  return { this->Mesh.GetPoint(ids[0]), this->Mesh.GetPoint(ids[1]), this->Mesh.GetPoint(ids[2]),
+    this->Mesh.GetPoint(ids[3]) };
+}
+
+double VolumeRefinement::GetAngle(Id tetrahedron) const
+{
+  const std::array<Vec3, 4> v = this->GetVertices(this->GetMesh().Tetrahedra[tetrahedron]);
+  return GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]);
+}
+
+/** Smallest angle that the hole's cone would have; gives up below what is required. */
+double VolumeRefinement::RateHole(const Vec3& position, double required) const
+{
+  double smallest = 180.0;
+  for (const TriangleIds& facet : this->Hole.Facets)
+  {
+    smallest = std::min(smallest,
+      GetSmallestDihedralAngle(this->Mesh.GetPoint(facet[0]), this->Mesh.GetPoint(facet[1]),
+        this->Mesh.GetPoint(facet[2]), position));
+    if (smallest < required)
+    {
+      break;
+    }
+  }
+  return smallest;
+}
+
+/** Whether no tetrahedron of the hole's cone would break a limit. */
+bool VolumeRefinement::KeepsLimits(const Vec3& position) const
+{
+  return std::all_of(this->Hole.Facets.begin(), this->Hole.Facets.end(),
+    [&](const TriangleIds& facet)
+    {
+      return this->Limits.IsKept({ this->Mesh.GetPoint(facet[0]), this->Mesh.GetPoint(facet[1]),
+        this->Mesh.GetPoint(facet[2]), position });
+    });
+}
+
+/** Whether the point keeps the distances that the sizes of its neighbors ask for. */
+bool VolumeRefinement::IsClear(const Vec3& position) const
+{
+  for (const TriangleIds& facet : this->Hole.Facets)
+  {
+    for (Id id : facet)
+    {
+      if (Distance(position, this->Mesh.GetPoint(id)) < SizeRatio * this->Points[id].Size)
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool VolumeRefinement::DisturbsBoundary(const Vec3& position)
+{
+  // What would be disturbed is part of the hole.
+  const bool isNear = std::any_of(this->Hole.Facets.begin(), this->Hole.Facets.end(),
+    [&](const TriangleIds& facet)
+    { return *std::min_element(facet.begin(), facet.end()) < this->NumberOfSurfacePoints; });
+  if (!isNear)
+  {
+    return false;
+  }
+  this->Spheres.Find(position, this->Disturbed);
+  return !this->Disturbed.IsEmpty();
+}
+
+/** Sorted. */
+TetrahedronIds VolumeRefinement::GetNames(const TetrahedronIds& ids) const
+{
+  TetrahedronIds names{ this->Points[ids[0]].Name, this->Points[ids[1]].Name,
+    this->Points[ids[2]].Name, this->Points[ids[3]].Name };
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/** To what the last change of the mesh has made. */
+void VolumeRefinement::NoteChanges()
+{
+  for (Id t : this->Mesh.GetChanged())
+  {
+    this->Memory.SetChanged(this->GetNames(this->GetMesh().Tetrahedra[t]));
+  }
+}
+
+void VolumeRefinement::NoteNewPoints(Id first)
+{
+  for (const TetrahedronIds& ids : this->GetMesh().Tetrahedra)
+  {
+    if (std::any_of(ids.begin(), ids.end(),
+          [&](Id id) { return id >= first && id < this->NumberOfSurfacePoints; }))
+    {
+      this->Memory.SetChanged(this->GetNames(ids));
+    }
+  }
+}
+
+/** Into the hole. */
+void VolumeRefinement::AddPoint(const Vec3& position)
+{
+  double size = Infinity;
+  for (const TriangleIds& facet : this->Hole.Facets)
+  {
+    for (Id id : facet)
+    {
+      size =
+        std::min(size, this->Points[id].Size + Distance(position, this->Mesh.GetPoint(id)));
+    }
+  }
+  this->Mesh.Insert(position, this->Hole);
+  this->Points.push_back({ position, size, true, NoId, this->Memory.MakeName() });
+  this->NoteChanges();
+  ++this->Report.InsertedPoints;
+}
+
+/** To split an edge of the boundary, if the sizes of its ends allow it. */
+bool VolumeRefinement::RequestEdge(Id edge, bool isSizeKept)
+{
+  const EdgeIds& ends = this->Edges[edge].Points;
+  const double half = 0.5 * Distance(this->Surface.Points[ends[0]], this->Surface.Points[ends[1]]);
+  if (isSizeKept &&
+    half < SizeRatio * std::max(this->Points[ends[0]].Size, this->Points[ends[1]].Size))
+  {
+    return false;
+  }
+  if (!this->IsEdgeRequested[edge])
+  {
+    this->IsEdgeRequested[edge] = 1;
+    this->RequestedEdges.push_back(ends);
+  }
+  return true;
+}
+
+/**
+ * Where two triangles of the boundary that lie almost in a plane have a common circumcircle, almost,
+ * they share a flat tetrahedron. No point inside destroys it; a point on their edge does.
+ */
+bool VolumeRefinement::RequestEdge(const TetrahedronIds& ids)
+{
+  for (const auto& positions : TetrahedronEdges)
+  {
+    EdgeIds ends{ ids[positions[0]], ids[positions[1]] };
+    if (ends[0] > ends[1])
+    {
+      std::swap(ends[0], ends[1]);
+    }
+    const auto edge = std::lower_bound(this->Edges.begin(), this->Edges.end(), ends,
+      [](const StructuralEdge& a, const EdgeIds& b) { return a.Points < b; });
+    if (edge == this->Edges.end() || edge->Points != ends)
+    {
+      continue;
+    }
+    int count = 0;
+    for (Id i = this->IncidenceBegin[ends[0]]; i < this->IncidenceBegin[ends[0] + 1]; ++i)
+    {
+      const TriangleIds& triangle = this->Surface.Triangles[this->Incidence[i]];
+      count += std::all_of(triangle.begin(), triangle.end(), [&](Id id)
+        { return std::find(ids.begin(), ids.end(), id) != ids.end(); }) &&
+        std::find(triangle.begin(), triangle.end(), ends[1]) != triangle.end();
+    }
+    if (count == 2 && this->RequestEdge(static_cast<Id>(edge - this->Edges.begin()), true))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/** To split what the position disturbs most; edges before triangles. */
+bool VolumeRefinement::Request(const Vec3& position, bool isSizeKept)
+{
+  this->Spheres.Find(position, this->Disturbed);
+  const auto isAllowed = [&](double distance, const auto& ids)
+  {
+    return !isSizeKept ||
+      std::all_of(ids.begin(), ids.end(),
+        [&](Id id) { return distance >= SizeRatio * this->Points[id].Size; });
+  };
+  double deepest = Infinity;
+  Id best = NoId;
+  for (Id e : this->Disturbed.Edges)
+  {
+    if (this->IsEdgeRequested[e])
+    {
+      return true;
+    }
+    const EdgeIds& ends = this->Edges[e].Points;
+    const Vec3& a = this->Surface.Points[ends[0]];
+    const Vec3& b = this->Surface.Points[ends[1]];
+    const double radius = 0.5 * Distance(a, b);
+    const double depth = Distance(position, 0.5 * (a + b)) / radius;
+    if (depth < deepest && isAllowed(radius, ends))
+    {
+      deepest = depth;
+      best = e;
+    }
+  }
+  if (!this->Disturbed.Edges.empty())
+  {
+    if (best != NoId)
+    {
+      this->IsEdgeRequested[best] = 1;
+      this->RequestedEdges.push_back(this->Edges[best].Points);
+    }
+    return best != NoId;
+  }
+  for (Id t : this->Disturbed.Triangles)
+  {
+    if (this->IsTriangleRequested[t])
+    {
+      return true;
+    }
+    const TriangleIds& ids = this->Surface.Triangles[t];
+    const Vec3& a = this->Surface.Points[ids[0]];
+    const Vec3 offset =
+      GetCircumcenterOffset(a, this->Surface.Points[ids[1]], this->Surface.Points[ids[2]]);
+    const double depth = Distance(position, a + offset) / Norm(offset);
+    if (depth < deepest && isAllowed(Norm(offset), ids))
+    {
+      deepest = depth;
+      best = t;
+    }
+  }
+  if (best != NoId)
+  {
+    this->IsTriangleRequested[best] = 1;
+    this->RequestedTriangles.push_back(best);
+  }
+  return best != NoId;
+}
+
+void VolumeRefinement::SetSizes(const std::vector<double>& sizes)
+{
+  for (std::size_t p = 0; p < sizes.size(); ++p)
+  {
+    this->Points[p].Size = sizes[p];
+  }
+}
+
+void VolumeRefinement::RemoveClosePoints(double smallest, const SizingField& sizing)
+{
+  std::vector<Id> star;
+  for (Id p = this->NumberOfSurfacePoints; p < this->Mesh.GetNumberOfPoints(); ++p)
+  {
+    if (!this->IsFree(p) || !this->Mesh.FindStar(p, star))
+    {
+      continue;
+    }
+    const Vec3& position = this->Mesh.GetPoint(p);
+    const double limit = std::max(
+      smallest, sizing ? CloseRatio * sizing(position).GetSmallest() : 0.0);
+    const bool isClose = std::any_of(star.begin(), star.end(),
+      [&](Id t)
+      {
+        const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
+        return std::any_of(ids.begin(), ids.end(), [&](Id id)
+          { return id != p && Distance(position, this->Mesh.GetPoint(id)) < limit; });
+      });
+    if (isClose && this->Mesh.Remove(p))
+    {
+      ++this->Report.RemovedPoints;
+    }
+  }
+}
+
+Status VolumeRefinement::RefineByLimits(bool isShapeTested, const ExecutionContext& context)
+{
+  std::priority_queue<Task> tasks;
+  const auto schedule = [&](Id t)
+  {
+    const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
+    Vec3 target;
+    double severity = 0.0;
+    const TetrahedronFault fault =
+      this->Limits.Find(this->GetVertices(ids), isShapeTested, target, severity);
+    if (fault == TetrahedronFault::Size ||
+      (fault == TetrahedronFault::Shape && !this->IsAcrossLayer(ids)))
+    {
+      tasks.push({ fault, severity, t, this->Mesh.GetStamp(t) });
+    }
+  };
+  for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
+  {
+    if (!this->Mesh.IsDead(t))
+    {
+      schedule(t);
+    }
+  }
+  for (std::size_t done = 0; !tasks.empty() && !this->IsFull(); ++done)
+  {
+    if (done % ReportInterval == 0 &&
+      !context.Continue(static_cast<double>(done) / static_cast<double>(done + tasks.size()),
+        "Refining tetrahedra"))
+    {
+      return Status::Aborted();
+    }
+    const Task task = tasks.top();
+    tasks.pop();
+    if (task.Stamp != this->Mesh.GetStamp(task.Tetrahedron))
+    {
+      continue;
+    }
+    Vec3 target;
+    double severity = 0.0;
+    this->Limits.Find(this->GetVertices(this->GetMesh().Tetrahedra[task.Tetrahedron]),
+      isShapeTested, target, severity);
+    if (!IsFinite(target))
+    {
+      continue;
+    }
+    const bool isSizeKept = task.Fault == TetrahedronFault::Shape;
+    this->Spheres.Find(target, this->Disturbed);
+    if (!this->Disturbed.IsEmpty())
+    {
+      this->Request(target, isSizeKept);
+    }
+    else if (this->Mesh.FindHole(
+               target, this->Mesh.GetNumberOfPoints(), task.Tetrahedron, this->Hole) &&
+      (!isSizeKept || this->IsClear(target)))
+    {
+      this->AddPoint(target);
+      for (Id t : this->Mesh.GetChanged())
+      {
+        schedule(t);
+      }
+    }
+  }
+  return Status();
+}
+
+/**
+ * Pattern search: the 26 directions of a cube around the best place so far, in steps that become
+ * shorter where none helps.
+ * @param rate the angle at a position, if it is larger than required; otherwise less than that
+ */
+template <typename Rate>
+void VolumeRefinement::Search(
+  const Vec3& start, double step, double target, Rate&& rate, Place& best)
+{
+  for (int i = 0; i < NumberOfSteps && best.Angle < target; ++i)
+  {
+    const Vec3 base = best.IsFound ? best.Position : start;
+    bool isBetter = false;
+    for (int direction = 0; direction < 27; ++direction)
+    {
+      const Vec3 offset{ direction % 3 - 1.0, direction / 3 % 3 - 1.0, direction / 9 - 1.0 };
+      if (direction == 13)
+      {
+        continue;
+      }
+      const Vec3 position = base + (step / Norm(offset)) * offset;
+      const double angle = rate(position, best.Angle);
+      if (angle > best.Angle)
+      {
+        best = { position, angle, true };
+        isBetter = true;
+      }
+    }
+    step *= isBetter ? 1.0 : 0.5;
+  }
+}
+
+bool VolumeRefinement::Move(Id point, double target)
+{
+  std::vector<Id> star;
+  if (!this->Mesh.FindStar(point, star))
+  {
+    return false;
+  }
+  const Vec3 old = this->Mesh.GetPoint(point);
+  bool isKept = true;
+  double smallest = 180.0;
+  double nearest = Infinity;
+  Vec3 sum;
+  double count = 0.0;
+  for (Id t : star)
+  {
+    const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
+    isKept = isKept && this->Limits.IsKept(this->GetVertices(ids));
+    smallest = std::min(smallest, this->GetAngle(t));
+    for (Id id : ids)
+    {
+      if (id != point)
+      {
+        nearest = std::min(nearest, Distance(old, this->Mesh.GetPoint(id)));
+        sum = sum + this->Mesh.GetPoint(id);
+        count += 1.0;
+      }
+    }
+  }
+  if (!this->Mesh.Remove(point))
+  {
+    return false;
+  }
+  const std::vector<Id> filled = this->Mesh.GetChanged();
+  std::vector<double> angles;
+  bool isKeptWithout = true;
+  for (Id t : filled)
+  {
+    angles.push_back(this->GetAngle(t));
+    isKeptWithout =
+      isKeptWithout && this->Limits.IsKept(this->GetVertices(this->GetMesh().Tetrahedra[t]));
+  }
+  const auto rate = [&](const Vec3& position, double required)
+  {
+    const Id first = this->Mesh.Locate(position, filled.front());
+    if (first == NoId || !this->Mesh.FindHole(position, point, first, this->Hole))
+    {
+      return 0.0;
+    }
+    // What stays of the tetrahedra that fill the place of the point counts as well.
+    for (std::size_t i = 0; i < filled.size(); ++i)
+    {
+      if (angles[i] <= required &&
+        std::find(this->Hole.Tetrahedra.begin(), this->Hole.Tetrahedra.end(), filled[i]) ==
+          this->Hole.Tetrahedra.end())
+      {
+        return 0.0;
+      }
+    }
+    const double angle = this->RateHole(position, required);
+    return angle > required && this->IsClear(position) &&
+        (!isKept || this->KeepsLimits(position)) && !this->DisturbsBoundary(position)
+      ? angle
+      : 0.0;
+  };
+  Place best{ old, smallest + SmallestGain, false };
+  // Lloyd's place first, or half the way there.
+  const Vec3 mean = (1.0 / count) * sum;
+  for (const Vec3& position : { mean, 0.5 * (old + mean) })
+  {
+    const double angle = rate(position, best.Angle);
+    if (angle > best.Angle)
+    {
+      best = { position, angle, true };
+    }
+  }
+  this->Search(old, FirstMove * nearest, target, rate, best);
+
+  if ((isKeptWithout || !isKept) &&
+    *std::min_element(angles.begin(), angles.end()) > best.Angle)
+  {
+    ++this->Report.RemovedPoints;
+    this->NoteChanges();
+    return true;
+  }
+  const Id first = this->Mesh.Locate(best.Position, filled.front());
+  this->Mesh.FindHole(best.Position, point, first, this->Hole);
+  this->Mesh.Restore(point, best.Position, this->Hole);
+  if (best.IsFound)
+  {
+    this->Points[point].Position = best.Position;
+    this->Points[point].Source = NoId;
+    ++this->Report.MovedPoints;
+    this->NoteChanges();
+  }
+  return best.IsFound;
+}
+
+bool VolumeRefinement::InsertBest(Id tetrahedron, double target)
+{
+  const std::array<Vec3, 4> vertices =
+    this->GetVertices(this->GetMesh().Tetrahedra[tetrahedron]);
+  const Vec3 center = GetCircumcenter(vertices[0], vertices[1], vertices[2], vertices[3]);
+  if (!IsFinite(center) || this->IsFull())
+  {
+    return false;
+  }
+  const Id number = this->Mesh.GetNumberOfPoints();
+  const auto rate = [&](const Vec3& position, double required)
+  {
+    if (!this->Mesh.FindHole(position, number, tetrahedron, this->Hole))
+    {
+      return 0.0;
+    }
+    const double angle = this->RateHole(position, required);
+    return angle > required && this->IsClear(position) && this->KeepsLimits(position) &&
+        !this->DisturbsBoundary(position)
+      ? angle
+      : 0.0;
+  };
+  Place best{ center, this->GetAngle(tetrahedron) + SmallestGain, false };
+  const double angle = rate(center, best.Angle);
+  if (angle > best.Angle)
+  {
+    best = { center, angle, true };
+  }
+  this->Search(center, FirstInsertion * Distance(center, vertices[0]), target, rate, best);
+  if (!best.IsFound || !this->Mesh.FindHole(best.Position, number, tetrahedron, this->Hole))
+  {
+    return false;
+  }
+  this->AddPoint(best.Position);
+  return true;
+}
+
+/**
+ * False if nothing helps.
+ * @param left the tetrahedron, which may have got another place
+ */
+bool VolumeRefinement::Mend(const TetrahedronIds& ids, Id tetrahedron, Id stamp, double target,
+  bool mayInsert, Id& left)
+{
+  left = tetrahedron;
+  Id tried = NoId;
+  for (Id id : ids)
+  {
+    if (!this->IsFree(id))
+    {
+      continue;
+    }
+    tried = id;
+    if (this->Move(id, target))
+    {
+      return true;
+    }
+  }
+  if (this->Mesh.GetStamp(tetrahedron) != stamp)
+  {
+    // A point that was taken out and put back has the same tetrahedra in other places.
+    std::vector<Id> star;
+    this->Mesh.FindStar(tried, star);
+    const auto same = std::find_if(star.begin(), star.end(),
+      [&](Id t)
+      {
+        const TetrahedronIds& others = this->GetMesh().Tetrahedra[t];
+        return std::is_permutation(ids.begin(), ids.end(), others.begin());
+      });
+    left = same == star.end() ? NoId : *same;
+  }
+  return left == NoId || (mayInsert && this->InsertBest(left, target));
+}
+
+Status VolumeRefinement::PerturbSlivers(
+  double target, bool mayRequest, const ExecutionContext& context)
+{
+  struct Sliver
+  {
+    double Angle;
+    Id Tetrahedron;
+    Id Stamp;
+  };
+  // First moves, then new points as well; when neither helps any more, requests.
+  bool mayInsert = false;
+  bool isLast = false;
+  for (int pass = 0; pass < MaximumPasses; ++pass)
+  {
+    std::vector<Sliver> slivers;
+    for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
+    {
+      const double angle = this->Mesh.IsDead(t) ? 180.0 : this->GetAngle(t);
+      if (angle < MoveRatio * target && !this->IsAcrossLayer(this->GetMesh().Tetrahedra[t]))
+      {
+        slivers.push_back({ angle, t, this->Mesh.GetStamp(t) });
+      }
+    }
+    std::sort(slivers.begin(), slivers.end(),
+      [](const Sliver& a, const Sliver& b)
+      { return a.Angle != b.Angle ? a.Angle < b.Angle : a.Tetrahedron < b.Tetrahedron; });
+    bool isMended = false;
+    for (std::size_t i = 0; i < slivers.size(); ++i)
+    {
+      if (i % (ReportInterval / 16) == 0 &&
+        !context.Continue((pass + static_cast<double>(i) / slivers.size()) / MaximumPasses,
+          "Moving points of slivers"))
+      {
+        return Status::Aborted();
+      }
+      const Sliver& sliver = slivers[i];
+      if (this->Mesh.GetStamp(sliver.Tetrahedron) != sliver.Stamp)
+      {
+        continue;
+      }
+      const TetrahedronIds ids = this->GetMesh().Tetrahedra[sliver.Tetrahedron];
+      const TetrahedronIds names = this->GetNames(ids);
+      Id left = NoId;
+      const bool isBad = sliver.Angle < target;
+      const bool isHopeless = this->Memory.IsHopeless(names, isBad && mayInsert);
+      if (!isHopeless &&
+        this->Mend(
+          ids, sliver.Tetrahedron, sliver.Stamp, MoveRatio * target, isBad && mayInsert, left))
+      {
+        isMended = isMended || isBad;
+        continue;
+      }
+      this->Memory.SetHopeless(names, isBad && mayInsert);
+      if (isBad && isLast && mayRequest && !this->RequestEdge(ids))
+      {
+        const std::array<Vec3, 4> v = this->GetVertices(ids);
+        const Vec3 center = GetCircumcenter(v[0], v[1], v[2], v[3]);
+        if (IsFinite(center))
+        {
+          this->Request(center, true);
+        }
+      }
+    }
+    if (isLast || slivers.empty())
+    {
+      break;
+    }
+    isLast = mayInsert && !isMended;
+    mayInsert = true;
+  }
+  return Status();
+}
+} // namespace cdm

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file VolumeRefinement.h
+ * @brief Steiner points inside of the regions, for a boundary that stays as it is.
+ *
+ * Method:
+ *  - tetrahedra that break a limit, the largest first, then the worst shaped, get a point at the
+ *    circumcenter or off-center (TetrahedronLimits.h); if it disturbs triangles or structural edges
+ *    of the boundary (BoundarySpheres.h), that which it disturbs most is requested to be split
+ *    instead;
+ *  - tetrahedra with a small dihedral angle, worst first: a free point of it is taken out of the mesh
+ *    and put in again at the best of some hundred places around, or left out if that is better. A
+ *    place is rated by the smallest dihedral angle of all tetrahedra that it would make, before
+ *    anything is changed. If no point's move helps, a new point is tried in the same way, at last
+ *    the boundary that is in the way is requested to be split. Each change makes the smallest angle
+ *    of what it replaces larger, and breaks no limit that was kept.
+ *
+ * Sharp input angles would be refined for ever. Each point has a size, the shortest edge at it before
+ * any shape was refined; no point comes closer to it than a quarter of that, but for size limits.
+ * Tetrahedra across a thin layer, from one side to the other, are flat on purpose: only size counts.
+ *
+ * References: J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998,
+ * doi:10.1145/276884.276894 (what is split instead, and why it ends); J. Tournois, R. Srinivasan,
+ * P. Alliez, "Perturbing slivers in 3D Delaunay meshes", 2009, doi:10.1007/978-3-642-04319-2_10
+ * (moved points).
+ */
+#ifndef cdmVolumeRefinement_h
+#define cdmVolumeRefinement_h
+
+#include "BoundarySpheres.h"
+#include "DynamicTetrahedralization.h"
+#include "ExecutionContext.h"
+#include "Status.h"
+#include "TetrahedronLimits.h"
+
+#include <map>
+#include <unordered_map>
+#include <vector>
+
+namespace cdm
+{
+/** A point inside of a region. */
+struct InteriorPoint
+{
+  Vec3 Position;
+  /** No other point comes closer than a quarter of this; 0: no bound. */
+  double Size = 0.0;
+  /** Whether it may be moved and removed. */
+  bool IsFree = false;
+  /** Where it comes from, to the caller; NoId for new and moved points. */
+  Id Source = NoId;
+  /** See SliverMemory. */
+  Id Name = NoId;
+};
+
+/** What has been tried in vain, so that it is not tried again before something has changed there. */
+class SliverMemory
+{
+public:
+  /** A name for a point inside of a region, for good. */
+  Id MakeName() { return this->NextName++; }
+  /** Names of new points are larger than ids of points of the surface, which are their names. */
+  static constexpr Id FirstName = 1 << 29;
+
+  /** That the points of a tetrahedron have got other neighbors. */
+  void SetChanged(const TetrahedronIds& names);
+  /** That nothing helps the tetrahedron, or nothing but a new point. */
+  void SetHopeless(const TetrahedronIds& names, bool hasTriedInsertion);
+  bool IsHopeless(const TetrahedronIds& names, bool mayInsert) const;
+
+private:
+  struct Failure
+  {
+    std::int64_t Time = 0;
+    bool HasTriedInsertion = false;
+  };
+  Id NextName = FirstName;
+  std::int64_t Time = 0;
+  std::unordered_map<Id, std::int64_t> Changes;
+  std::map<TetrahedronIds, Failure> Failures;
+};
+
+struct VolumeRefinementReport
+{
+  Id InsertedPoints = 0;
+  Id MovedPoints = 0;
+  Id RemovedPoints = 0;
+};
+
+class VolumeRefinement
+{
+public:
+  /**
+   * The mesh has the points of the surface, then the interior points; the surface's triangles are
+   * its outer and interface facets, with empty smallest spheres.
+   * @param surfaceSizes as InteriorPoint::Size, one for each point of the surface, or empty
+   * @param memory is kept from one boundary to the next, which has more points
+   */
+  VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
+    const std::vector<StructuralEdge>& edges, const std::vector<double>& surfaceSizes,
+    const std::vector<InteriorPoint>& interior, const TetrahedronLimits& limits,
+    Id maximumNewPoints, SliverMemory& memory);
+
+  /** That the points of the surface from this one on have not been there before. */
+  void NoteNewPoints(Id first);
+  /** As InteriorPoint::Size, one for each point of the mesh. */
+  void SetSizes(const std::vector<double>& sizes);
+  /** Free points closer to another one than this, or than 0.3 of the sizing, which may be empty. */
+  void RemoveClosePoints(double smallest, const SizingField& sizing);
+  /** Until no tetrahedron breaks a limit, but for those that need the boundary split. */
+  Status RefineByLimits(bool isShapeTested, const ExecutionContext& context);
+  /** Until no move and no point inside makes angles below the target (degrees) larger. */
+  Status PerturbSlivers(double target, bool mayRequest, const ExecutionContext& context);
+
+  /** What is to be split in the boundary. */
+  const std::vector<Id>& GetRequestedTriangles() const { return this->RequestedTriangles; }
+  const std::vector<EdgeIds>& GetRequestedEdges() const { return this->RequestedEdges; }
+
+  /** The points that are in the mesh now. */
+  std::vector<InteriorPoint> GetInterior() const;
+  const TetMesh& GetMesh() const { return this->Mesh.GetMesh(); }
+  const VolumeRefinementReport& GetReport() const { return this->Report; }
+
+  /** Whether a tetrahedron reaches from one side of a thin layer to the other. */
+  bool IsAcrossLayer(const TetrahedronIds& ids) const;
+
+private:
+  struct Task
+  {
+    TetrahedronFault Fault;
+    double Severity;
+    Id Tetrahedron;
+    Id Stamp;
+
+    /** Large ones first, then the most severe fault, then the smallest id. */
+    friend bool operator<(const Task& a, const Task& b)
+    {
+      return a.Fault != b.Fault ? a.Fault > b.Fault
+        : a.Severity != b.Severity ? a.Severity < b.Severity
+                                   : a.Tetrahedron > b.Tetrahedron;
+    }
+  };
+  /** The best place found for a point. */
+  struct Place
+  {
+    Vec3 Position;
+    double Angle = 0.0;
+    bool IsFound = false;
+  };
+
+  bool IsFree(Id point) const;
+  bool IsFull() const;
+  std::array<Vec3, 4> GetVertices(const TetrahedronIds& ids) const;
+  double GetAngle(Id tetrahedron) const;
+  double RateHole(const Vec3& position, double required) const;
+  bool KeepsLimits(const Vec3& position) const;
+  bool IsClear(const Vec3& position) const;
+  bool DisturbsBoundary(const Vec3& position);
+  void AddPoint(const Vec3& position);
+  bool Request(const Vec3& position, bool isSizeKept);
+  template <typename Rate>
+  void Search(const Vec3& start, double step, double target, Rate&& rate, Place& best);
+  bool Move(Id point, double target);
+  bool InsertBest(Id tetrahedron, double target);
+  TetrahedronIds GetNames(const TetrahedronIds& ids) const;
+  void NoteChanges();
+  bool RequestEdge(const TetrahedronIds& ids);
+  bool RequestEdge(Id edge, bool isSizeKept);
+  bool Mend(const TetrahedronIds& ids, Id tetrahedron, Id stamp, double target, bool mayInsert,
+    Id& left);
+
+  DynamicTetrahedralization Mesh;
+  const TriangleMesh& Surface;
+  const std::vector<StructuralEdge>& Edges;
+  const TetrahedronLimits& Limits;
+  const Id NumberOfSurfacePoints;
+  const Id MaximumNewPoints;
+  SliverMemory& Memory;
+  BoundarySpheres Spheres;
+  /** One for each point of the mesh. */
+  std::vector<InteriorPoint> Points;
+  VolumeRefinementReport Report;
+
+  /** Triangles at each point of the surface. */
+  std::vector<Id> IncidenceBegin;
+  std::vector<Id> Incidence;
+
+  std::vector<Id> RequestedTriangles;
+  std::vector<EdgeIds> RequestedEdges;
+  std::vector<char> IsTriangleRequested;
+  std::vector<char> IsEdgeRequested;
+  /** Work space. */
+  DynamicTetrahedralization::Hole Hole;
+  BoundarySpheres::Disturbed Disturbed;
+};
+} // namespace cdm
+
+#endif

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "AdvancingFrontTetrahedralizer.h"
+#include "BoundarySpheres.h"
+#include "BoundaryTriangulator.h"
+#include "DelaunaySurfaceRefiner.h"
+#include "DynamicTetrahedralization.h"
+#include "Measures.h"
+#include "MeshChecks.h"
+#include "RandomComplexes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+using namespace cdm;
+
+namespace
+{
+/** A surface with empty smallest spheres and its structural edges. */
+DelaunaySurfaceRefinerOutput MakeSurface(const PolygonSoup& soup, double edge)
+{
+  BoundaryTriangulatorOutput boundary;
+  EXPECT_TRUE(TriangulateBoundary(soup, {}, {}, boundary).IsOk());
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &boundary.Surface;
+  DelaunaySurfaceRefinerOptions options;
+  options.Criterion = SurfaceCriterion::SmallestSphere;
+  options.MaximumEdgeLength = edge;
+  DelaunaySurfaceRefinerOutput output;
+  EXPECT_TRUE(RefineDelaunaySurface(input, options, {}, output).IsOk());
+  return output;
+}
+
+/** The surface of the unit cube as size^2 squares on each side: all of its cells are cospherical. */
+PolygonSoup MakeGridSurface(int size)
+{
+  PolygonSoup soup;
+  const int side = size + 1;
+  for (int i = 0; i < side * side * side; ++i)
+  {
+    soup.Points.push_back({ double(i % side) / size, double(i / side % side) / size,
+      double(i / side / side) / size });
+  }
+  const int steps[3] = { 1, side, side * side };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int end = 0; end < 2; ++end)
+    {
+      for (int cell = 0; cell < size * size; ++cell)
+      {
+        const int u = steps[(axis + 1) % 3];
+        const int v = steps[(axis + 2) % 3];
+        const Id corner =
+          static_cast<Id>(end * size * steps[axis] + cell % size * u + cell / size * v);
+        for (int step : { 0, u, u + v, v })
+        {
+          soup.Connectivity.push_back(corner + step);
+        }
+        soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+        soup.Labels.push_back(
+          end == 1 ? RegionPair{ OutsideRegion, 0 } : RegionPair{ 0, OutsideRegion });
+      }
+    }
+  }
+  return soup;
+}
+
+TetMesh Tetrahedralize(const TriangleMesh& surface, const std::vector<Vec3>& points)
+{
+  AdvancingFrontTetrahedralizerInput input;
+  input.Surface = &surface;
+  input.MeshPoints = &points;
+  AdvancingFrontTetrahedralizerOutput output;
+  const Status status = TetrahedralizeByAdvancingFront(input, {}, {}, output);
+  EXPECT_TRUE(status.IsOk()) << status.Message;
+  EXPECT_EQ(output.MeshPointSources.size(), points.size());
+  return output.Mesh;
+}
+
+std::vector<std::pair<TetrahedronIds, Id>> GetCells(const TetMesh& mesh, const std::vector<Id>& ids)
+{
+  std::vector<std::pair<TetrahedronIds, Id>> cells;
+  for (std::size_t t = 0; t < mesh.Tetrahedra.size(); ++t)
+  {
+    if (mesh.Tetrahedra[t][0] == NoId)
+    {
+      continue;
+    }
+    TetrahedronIds cell = mesh.Tetrahedra[t];
+    for (Id& id : cell)
+    {
+      id = ids[id];
+    }
+    std::sort(cell.begin(), cell.end());
+    cells.emplace_back(cell, mesh.Regions[t]);
+  }
+  std::sort(cells.begin(), cells.end());
+  return cells;
+}
+
+/** Whether the mesh is the one that stage 3 makes of its points, and its neighbors are right. */
+void ExpectMeshOfStage3(const DynamicTetrahedralization& dynamic, const TriangleMesh& surface)
+{
+  TetMesh mesh = dynamic.GetMesh();
+  std::vector<Vec3> points;
+  std::vector<Id> ids(mesh.Points.size(), NoId);
+  for (Id p = 0; p < dynamic.GetNumberOfPoints(); ++p)
+  {
+    const bool isOnSurface = p < static_cast<Id>(surface.Points.size());
+    if (isOnSurface || dynamic.GetTetrahedronAt(p) != NoId)
+    {
+      ids[p] = isOnSurface ? p : static_cast<Id>(surface.Points.size() + points.size());
+      if (!isOnSurface)
+      {
+        points.push_back(mesh.Points[p]);
+      }
+    }
+  }
+  const TetMesh expected = Tetrahedralize(surface, points);
+  std::vector<Id> same(expected.Points.size());
+  for (std::size_t i = 0; i < same.size(); ++i)
+  {
+    same[i] = static_cast<Id>(i);
+  }
+  EXPECT_EQ(GetCells(mesh, ids), GetCells(expected, same));
+
+  for (Id t = 0; t < dynamic.GetNumberOfTetrahedra(); ++t)
+  {
+    if (dynamic.IsDead(t))
+    {
+      continue;
+    }
+    for (int i = 0; i < 4; ++i)
+    {
+      const Id neighbor = mesh.Neighbors[t][i];
+      ASSERT_TRUE(neighbor == NoId || mesh.Neighbors[neighbor / 4][neighbor % 4] == 4 * t + i);
+    }
+    for (Id id : mesh.Tetrahedra[t])
+    {
+      EXPECT_FALSE(dynamic.IsDead(dynamic.GetTetrahedronAt(id)));
+    }
+  }
+}
+
+/** Whether the point can be inserted: found from any tetrahedron in conflict. */
+bool FindHole(DynamicTetrahedralization& mesh, const BoundarySpheres& spheres,
+  const Vec3& position, Id number, DynamicTetrahedralization::Hole& hole)
+{
+  BoundarySpheres::Disturbed disturbed;
+  spheres.Find(position, disturbed);
+  for (Id t = 0; t < mesh.GetNumberOfTetrahedra() && disturbed.IsEmpty(); ++t)
+  {
+    if (!mesh.IsDead(t) && mesh.Locate(position, t) == t)
+    {
+      return mesh.FindHole(position, number, t, hole);
+    }
+  }
+  return false;
+}
+
+/** Inserts, removes and moves points at random; getPosition() proposes places. */
+template <typename GetPosition>
+void Exercise(const DelaunaySurfaceRefinerOutput& refined, int steps, std::mt19937_64& generator,
+  GetPosition&& getPosition)
+{
+  const TriangleMesh& surface = refined.Surface;
+  DynamicTetrahedralization mesh(Tetrahedralize(surface, {}));
+  const BoundarySpheres spheres(surface, refined.StructuralEdges);
+  DynamicTetrahedralization::Hole hole;
+  std::vector<Id> inside;
+  int changes[3] = { 0, 0, 0 };
+  for (int step = 0; step < steps; ++step)
+  {
+    const Vec3 position = getPosition();
+    const std::size_t chosen = inside.empty() ? 0 : generator() % inside.size();
+    const int action = inside.size() < 5 ? 0 : static_cast<int>(generator() % 4);
+    if (action < 2)
+    {
+      if (FindHole(mesh, spheres, position, mesh.GetNumberOfPoints(), hole))
+      {
+        inside.push_back(mesh.Insert(position, hole));
+        ++changes[0];
+      }
+    }
+    else
+    {
+      const Id point = inside[chosen];
+      const Vec3 old = mesh.GetPoint(point);
+      ASSERT_TRUE(mesh.Remove(point));
+      EXPECT_EQ(mesh.GetTetrahedronAt(point), NoId);
+      if (action == 3)
+      {
+        const bool isMoved = FindHole(mesh, spheres, position, point, hole);
+        ASSERT_TRUE(isMoved || FindHole(mesh, spheres, old, point, hole));
+        mesh.Restore(point, isMoved ? position : old, hole);
+        ++changes[2];
+      }
+      else
+      {
+        inside.erase(inside.begin() + static_cast<std::ptrdiff_t>(chosen));
+        ++changes[1];
+      }
+    }
+    if (step % 10 == 9 || step + 1 == steps)
+    {
+      ExpectMeshOfStage3(mesh, surface);
+    }
+  }
+  EXPECT_GT(changes[0], steps / 10);
+  EXPECT_GT(changes[1], 0);
+  EXPECT_GT(changes[2], 0);
+}
+} // namespace
+
+TEST(DynamicTetrahedralization, IsTheMeshOfStage3InRandomComplexes)
+{
+  for (unsigned int seed = 1; seed <= 4; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 generator(seed);
+    const PolygonSoup soup = MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, 2, 0.4 * seed);
+    const DelaunaySurfaceRefinerOutput refined = MakeSurface(soup, 0.2);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    Exercise(refined, 150, generator,
+      [&]
+      {
+        const std::vector<Vec3>& points = refined.Surface.Points;
+        const double weight = uniform(generator);
+        return weight * points[generator() % points.size()] +
+          (1.0 - weight) * points[generator() % points.size()];
+      });
+  }
+}
+
+TEST(DynamicTetrahedralization, IsTheMeshOfStage3OnGridsWhereAllCellsAreCospherical)
+{
+  for (unsigned int seed = 1; seed <= 3; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 generator(seed);
+    const DelaunaySurfaceRefinerOutput refined = MakeSurface(MakeGridSurface(4), 0.0);
+    // Corners of the grid's cells and of cells half as large: copies are refused.
+    Exercise(refined, 200, generator,
+      [&]
+      {
+        return Vec3{ double(1 + generator() % 7) / 8.0, double(1 + generator() % 7) / 8.0,
+          double(1 + generator() % 7) / 8.0 };
+      });
+  }
+}
+
+TEST(DynamicTetrahedralization, TakesNothingOnOrBeyondABoundary)
+{
+  const DelaunaySurfaceRefinerOutput refined = MakeSurface(MakeGridSurface(2), 0.0);
+  DynamicTetrahedralization mesh(Tetrahedralize(refined.Surface, {}));
+  const Id points = mesh.GetNumberOfPoints();
+  const Id tetrahedra = mesh.GetNumberOfTetrahedra();
+  for (Id p = 0; p < points; ++p)
+  {
+    EXPECT_FALSE(mesh.Remove(p));
+  }
+  DynamicTetrahedralization::Hole hole;
+  for (const Vec3& position :
+    { Vec3{ 0.3, 0.4, 0.0 }, Vec3{ 0.3, 0.4, -0.1 }, Vec3{ 0.5, 0.5, 0.0 }, Vec3{ 2.0, 2.0, 2.0 } })
+  {
+    for (Id t = 0; t < tetrahedra; ++t)
+    {
+      EXPECT_FALSE(mesh.FindHole(position, points, t, hole));
+      const Id found = mesh.Locate(position, t);
+      EXPECT_EQ(found == NoId, position.Z < 0.0 || position.Z > 1.0);
+    }
+  }
+  // The center is a point of the grid that is not in the mesh.
+  const Id first = mesh.Locate({ 0.5, 0.5, 0.5 }, 0);
+  ASSERT_NE(first, NoId);
+  ASSERT_TRUE(mesh.FindHole({ 0.5, 0.5, 0.5 }, points, first, hole));
+  const Id center = mesh.Insert({ 0.5, 0.5, 0.5 }, hole);
+  std::vector<Id> star;
+  EXPECT_TRUE(mesh.FindStar(center, star));
+  EXPECT_EQ(star.size(), hole.Facets.size());
+  ExpectMeshOfStage3(mesh, refined.Surface);
+  EXPECT_TRUE(mesh.Remove(center));
+  ExpectMeshOfStage3(mesh, refined.Surface);
+}
