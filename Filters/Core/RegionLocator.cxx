@@ -267,6 +267,21 @@ bool RegionLocator::MayTouch(const Vec3& low, const Vec3& high) const
   return isTouched;
 }
 
+double RegionLocator::GetDistance(const Vec3& point, double limit) const
+{
+  const Vec3 reach{ limit, limit, limit };
+  double distance = limit;
+  this->Tree->VisitOverlaps({ point - reach, point + reach },
+    [&](Id t)
+    {
+      const TriangleIds& ids = this->Surface.Triangles[t];
+      distance = std::min(distance,
+        GetDistanceToTriangle(point, this->Surface.Points[ids[0]], this->Surface.Points[ids[1]],
+          this->Surface.Points[ids[2]]));
+    });
+  return distance;
+}
+
 namespace
 {
 template <typename Filter>

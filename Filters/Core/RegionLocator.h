@@ -53,6 +53,9 @@ public:
   /** Whether a triangle's box meets the closed box. */
   bool MayTouch(const Vec3& low, const Vec3& high) const;
 
+  /** Distance of the point from the nearest triangle, or the limit if that is smaller. */
+  double GetDistance(const Vec3& point, double limit) const;
+
   /** Whether the triangles are at least as far from the point as so many spacings. */
   bool IsClear(const Vec3& point, const LocalSpacing& spacing, double distance) const;
   /** The same for the triangles between two regions only, given in either order. */

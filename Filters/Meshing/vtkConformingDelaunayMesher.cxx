@@ -8,6 +8,7 @@
 #include "vtkDelaunaySurfaceRefiner.h"
 #include "vtkSliverRemover.h"
 
+#include "Core/MeshBoundary.h"
 #include "Core/MeshChecks.h"
 
 #include <vtkCellData.h>
@@ -130,24 +131,11 @@ cdm::EdgeIds GetEdge(const cdm::TriangleIds& triangle, int i)
  */
 cdm::TriangleMesh UpdateBoundary(const cdm::TetMesh& mesh, const cdm::TriangleMesh& before)
 {
-  struct Interface
+  const cdm::TriangleMesh facets = cdm::ExtractBoundary(mesh);
+  std::map<SortedTriangle, std::size_t> interfaces;
+  for (std::size_t i = 0; i < facets.Triangles.size(); ++i)
   {
-    cdm::TriangleIds Ids;
-    cdm::RegionPair Labels;
-  };
-  std::map<SortedTriangle, Interface> interfaces;
-  for (std::size_t t = 0; t < mesh.Tetrahedra.size(); ++t)
-  {
-    for (int facet = 0; facet < 4; ++facet)
-    {
-      const cdm::Id neighbor = mesh.Neighbors[t][facet];
-      const cdm::Id front = neighbor == cdm::NoId ? cdm::OutsideRegion : mesh.Regions[neighbor / 4];
-      const cdm::TriangleIds ids = cdm::GetFacet(mesh.Tetrahedra[t], facet);
-      if (neighbor == cdm::NoId || (front != mesh.Regions[t] && neighbor / 4 > cdm::Id(t)))
-      {
-        interfaces[Sort(ids)] = { ids, { front, mesh.Regions[t] } };
-      }
-    }
+    interfaces[Sort(facets.Triangles[i])] = i;
   }
 
   cdm::TriangleMesh after;
@@ -176,15 +164,15 @@ cdm::TriangleMesh UpdateBoundary(const cdm::TetMesh& mesh, const cdm::TriangleMe
   }
   for (const auto& item : interfaces)
   {
-    const Interface& added = item.second;
+    const cdm::TriangleIds& added = facets.Triangles[item.second];
     cdm::Id source = cdm::NoId;
     for (int k = 0; k < 3 && source == cdm::NoId; ++k)
     {
-      const auto gone = goneByEdge.find(GetEdge(added.Ids, k));
+      const auto gone = goneByEdge.find(GetEdge(added, k));
       source = gone == goneByEdge.end() ? cdm::NoId : gone->second.front();
     }
-    after.Triangles.push_back(added.Ids);
-    after.Labels.push_back(added.Labels);
+    after.Triangles.push_back(added);
+    after.Labels.push_back(facets.Labels[item.second]);
     after.SourceCells.push_back(source);
   }
   return after;

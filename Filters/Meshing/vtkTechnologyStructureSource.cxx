@@ -203,6 +203,135 @@ std::string MakeMosTransistor(const MosParameters& p, Device& device)
   return {};
 }
 
+struct NmosParameters
+{
+  double GateLength, GateHeight, GateOxideThickness, BulkLength, BulkDepth, DeviceWidth;
+  double ChannelWidth, FieldOxideThickness, CoverOxideThickness;
+};
+
+std::string MakeNmosWithFieldOxide(const NmosParameters& p, Device& device)
+{
+  const double field = 0.5 * p.FieldOxideThickness;
+  const double cover = p.CoverOxideThickness;
+  const double gateTop = p.GateOxideThickness + p.GateHeight;
+  std::string problem = CheckLengths({ { "GateLength", p.GateLength },
+    { "GateHeight", p.GateHeight }, { "GateOxideThickness", p.GateOxideThickness },
+    { "BulkLength", p.BulkLength }, { "BulkDepth", p.BulkDepth }, { "DeviceWidth", p.DeviceWidth },
+    { "ChannelWidth", p.ChannelWidth }, { "FieldOxideThickness", p.FieldOxideThickness },
+    { "CoverOxideThickness", p.CoverOxideThickness } });
+  const std::pair<Parameter, Parameter> orders[] = {
+    { { "GateLength + 2 CoverOxideThickness", p.GateLength + 2.0 * cover },
+      { "BulkLength", p.BulkLength } },
+    { { "2 CoverOxideThickness", 2.0 * cover }, { "ChannelWidth", p.ChannelWidth } },
+    { { "ChannelWidth", p.ChannelWidth }, { "DeviceWidth", p.DeviceWidth } },
+    { { "FieldOxideThickness / 2", field }, { "BulkDepth", p.BulkDepth } },
+    { { "FieldOxideThickness / 2", field }, { "GateOxideThickness + GateHeight", gateTop } }
+  };
+  for (const auto& [small, large] : orders)
+  {
+    problem = problem.empty() ? CheckLess(small, large) : problem;
+  }
+  const double middle = 0.5 * p.DeviceWidth;
+  const double gateEdge = 0.5 * p.GateLength;
+  const double channelEdge = 0.5 * p.ChannelWidth;
+  const double x[6] = { -0.5 * p.BulkLength, -(gateEdge + cover), -gateEdge, gateEdge,
+    gateEdge + cover, 0.5 * p.BulkLength };
+  const double y[6] = { 0.0, middle - channelEdge, middle - (channelEdge - cover),
+    middle + (channelEdge - cover), middle + channelEdge, p.DeviceWidth };
+  std::vector<double> levels{ -field, 0.0, p.GateOxideThickness, gateTop, gateTop + cover, cover,
+    field, field + cover };
+  if (problem.empty())
+  {
+    problem = CheckAscending({ x, x + 6 }, "GateLength, CoverOxideThickness and BulkLength");
+  }
+  if (problem.empty())
+  {
+    problem = CheckAscending({ y, y + 6 }, "ChannelWidth, CoverOxideThickness and DeviceWidth");
+  }
+  if (problem.empty())
+  {
+    problem =
+      CheckAscending({ -p.BulkDepth, levels[0], levels[1], levels[2], levels[3], levels[4] },
+        "BulkDepth, FieldOxideThickness, GateOxideThickness, GateHeight and CoverOxideThickness");
+  }
+  if (problem.empty())
+  {
+    problem =
+      CheckAscending({ levels[6], levels[7] }, "FieldOxideThickness and CoverOxideThickness");
+  }
+  if (!problem.empty())
+  {
+    return problem;
+  }
+
+  enum Region : Id
+  {
+    Bulk,
+    LeftFieldOxide,
+    RightFieldOxide,
+    GateOxide,
+    Gate,
+    CoverOxide
+  };
+  device.RegionNames = { "Bulk", "LeftFieldOxide", "RightFieldOxide", "GateOxide", "Gate",
+    "CoverOxide" };
+  // A grid of 5 x 5 cells: the gate is the middle column, the field oxides are the outer rows, and
+  // the columns and rows between are as wide as the cover oxide on the walls that they lie at.
+  constexpr int side = 5;
+  cdm::LayeredStructure structure(2, -p.BulkDepth);
+  Id grid[side + 1][side + 1];
+  for (int row = 0; row <= side; ++row)
+  {
+    for (int column = 0; column <= side; ++column)
+    {
+      grid[row][column] = structure.AddVertex(x[column], y[row]);
+    }
+  }
+  for (int row = 0; row < side; ++row)
+  {
+    for (int column = 0; column < side; ++column)
+    {
+      structure.AddCell({ grid[row][column], grid[row][column + 1], grid[row + 1][column + 1],
+        grid[row + 1][column] });
+    }
+  }
+  const auto getRegion = [=](int row, int column, double z) -> Id
+  {
+    const bool isField = row == 0 || row == side - 1;
+    const bool isAtGate = column > 0 && column < side - 1;
+    const bool isAtField = isField || row == 1 || row == side - 2;
+    if (isField && z > -field && z < field)
+    {
+      return row == 0 ? LeftFieldOxide : RightFieldOxide;
+    }
+    if (z < 0.0)
+    {
+      return Bulk;
+    }
+    if (column == side / 2 && z < gateTop)
+    {
+      return z < p.GateOxideThickness && !isField ? GateOxide : Gate;
+    }
+    const double covered = isAtGate ? gateTop : isAtField ? field : 0.0;
+    return z < covered + cover ? CoverOxide : cdm::OutsideRegion;
+  };
+  std::sort(levels.begin(), levels.end());
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  double bottom = -p.BulkDepth;
+  for (const double top : levels)
+  {
+    std::vector<Id> regions;
+    for (int cell = 0; cell < side * side; ++cell)
+    {
+      regions.push_back(getRegion(cell / side, cell % side, bottom + 0.5 * (top - bottom)));
+    }
+    structure.AddLayer(top, std::move(regions));
+    bottom = top;
+  }
+  device.Boundary = structure.MakeBoundary(device.FacetIds);
+  return {};
+}
+
 struct ViaParameters
 {
   double ViaDiameter, ViaHeight, BottomLineWidth, BottomLineThickness;
@@ -401,6 +530,14 @@ int vtkTechnologyStructureSource::RequestData(
         this->BulkLength, this->BulkDepth, this->DeviceWidth, this->SpacerSegments },
       device);
   }
+  else if (this->Structure == NMOS_WITH_FIELD_OXIDE)
+  {
+    problem = MakeNmosWithFieldOxide(
+      { this->GateLength, this->GateHeight, this->GateOxideThickness, this->BulkLength,
+        this->BulkDepth, this->DeviceWidth, this->ChannelWidth, this->FieldOxideThickness,
+        this->CoverOxideThickness },
+      device);
+  }
   else
   {
     problem = MakeViaPlug(
@@ -423,7 +560,8 @@ int vtkTechnologyStructureSource::RequestData(
 
 const char* vtkTechnologyStructureSource::GetStructureAsString()
 {
-  return this->Structure == MOS_TRANSISTOR ? "MosTransistor" : "ViaPlug";
+  static const char* const names[] = { "MosTransistor", "ViaPlug", "NmosWithFieldOxide" };
+  return names[this->Structure];
 }
 
 void vtkTechnologyStructureSource::PrintSelf(ostream& os, vtkIndent indent)
@@ -438,6 +576,9 @@ void vtkTechnologyStructureSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "BulkLength: " << this->BulkLength << endl;
   os << indent << "BulkDepth: " << this->BulkDepth << endl;
   os << indent << "DeviceWidth: " << this->DeviceWidth << endl;
+  os << indent << "ChannelWidth: " << this->ChannelWidth << endl;
+  os << indent << "FieldOxideThickness: " << this->FieldOxideThickness << endl;
+  os << indent << "CoverOxideThickness: " << this->CoverOxideThickness << endl;
   os << indent << "ViaDiameter: " << this->ViaDiameter << endl;
   os << indent << "ViaHeight: " << this->ViaHeight << endl;
   os << indent << "NumberOfSegments: " << this->NumberOfSegments << endl;

@@ -12,6 +12,11 @@
  *    metal line along y, in a box of insulator. The plug stands on z = 0, its axis is the z axis;
  *    its outline is a regular polygon with its corners on the circle. Regions: Insulator,
  *    BottomLine, Plug, TopLine.
+ *  - NMOS with field oxide (thesis Fig. 7.22): two regions of field oxide, half of them below the
+ *    silicon surface at z = 0, leave a channel of ChannelWidth in the middle of the device; the gate
+ *    crosses it along y, from 0 to DeviceWidth, on the gate oxide between them; an oxide of the same
+ *    thickness everywhere covers the device. Regions: Bulk, LeftFieldOxide, RightFieldOxide (at the
+ *    low and at the high y), GateOxide, Gate, CoverOxide.
  *
  * Method:
  *  1. check the parameters;
@@ -58,32 +63,37 @@ public:
   enum Structures
   {
     MOS_TRANSISTOR = 0,
-    VIA_PLUG = 1
+    VIA_PLUG = 1,
+    NMOS_WITH_FIELD_OXIDE = 2
   };
 
   ///@{
   /** The device to make. Default MOS_TRANSISTOR. */
-  vtkSetClampMacro(Structure, int, MOS_TRANSISTOR, VIA_PLUG);
+  vtkSetClampMacro(Structure, int, MOS_TRANSISTOR, NMOS_WITH_FIELD_OXIDE);
   vtkGetMacro(Structure, int);
   void SetStructureToMosTransistor() { this->SetStructure(MOS_TRANSISTOR); }
   void SetStructureToViaPlug() { this->SetStructure(VIA_PLUG); }
+  void SetStructureToNmosWithFieldOxide() { this->SetStructure(NMOS_WITH_FIELD_OXIDE); }
   const char* GetStructureAsString();
   ///@}
 
   ///@{
-  /** MOS transistor: length of the gate along x. Micrometres; default 0.18; range above 0. */
+  /** Transistors: length of the gate along x. Micrometres; default 0.18; range above 0. */
   vtkSetMacro(GateLength, double);
   vtkGetMacro(GateLength, double);
   ///@}
 
   ///@{
-  /** MOS transistor: height of gate and spacers. Micrometres; default 0.2; range above 0. */
+  /**
+   * Transistors: height of gate and spacers above the gate oxide. Micrometres; default 0.2; range
+   * above 0; with field oxide the gate has to rise above that.
+   */
   vtkSetMacro(GateHeight, double);
   vtkGetMacro(GateHeight, double);
   ///@}
 
   ///@{
-  /** MOS transistor: thickness of the gate oxide. Micrometres; default 0.005; range above 0. */
+  /** Transistors: thickness of the gate oxide. Micrometres; default 0.005; range above 0. */
   vtkSetMacro(GateOxideThickness, double);
   vtkGetMacro(GateOxideThickness, double);
   ///@}
@@ -102,23 +112,56 @@ public:
 
   ///@{
   /**
-   * MOS transistor: length of the silicon along x. Micrometres; default 0.8; range above
-   * GateLength + 2 SpacerWidth.
+   * Transistors: length of the silicon along x. Micrometres; default 0.8; range above GateLength + 2
+   * SpacerWidth, or above GateLength + 2 CoverOxideThickness.
    */
   vtkSetMacro(BulkLength, double);
   vtkGetMacro(BulkLength, double);
   ///@}
 
   ///@{
-  /** MOS transistor: depth of the silicon. Micrometres; default 0.5; range above 0. */
+  /**
+   * Transistors: depth of the silicon. Micrometres; default 0.5; range above 0, and above half of
+   * FieldOxideThickness.
+   */
   vtkSetMacro(BulkDepth, double);
   vtkGetMacro(BulkDepth, double);
   ///@}
 
   ///@{
-  /** MOS transistor: extent of the device along y. Micrometres; default 0.3; range above 0. */
+  /**
+   * Transistors: extent of the device along y. Micrometres; default 0.3; range above 0, and above
+   * ChannelWidth.
+   */
   vtkSetMacro(DeviceWidth, double);
   vtkGetMacro(DeviceWidth, double);
+  ///@}
+
+  ///@{
+  /**
+   * NMOS with field oxide: width of the channel along y, from one field oxide to the other.
+   * Micrometres; default 0.18; range above 2 CoverOxideThickness.
+   */
+  vtkSetMacro(ChannelWidth, double);
+  vtkGetMacro(ChannelWidth, double);
+  ///@}
+
+  ///@{
+  /**
+   * NMOS with field oxide: thickness of the field oxide, half of it above the silicon surface.
+   * Micrometres; default 0.16; range above 0.
+   */
+  vtkSetMacro(FieldOxideThickness, double);
+  vtkGetMacro(FieldOxideThickness, double);
+  ///@}
+
+  ///@{
+  /**
+   * NMOS with field oxide: thickness of the oxide that covers all. Micrometres; default 0.03; range
+   * above 0.
+   */
+  vtkSetMacro(CoverOxideThickness, double);
+  vtkGetMacro(CoverOxideThickness, double);
   ///@}
 
   ///@{
@@ -209,6 +252,9 @@ protected:
   double BulkLength = 0.8;
   double BulkDepth = 0.5;
   double DeviceWidth = 0.3;
+  double ChannelWidth = 0.18;
+  double FieldOxideThickness = 0.16;
+  double CoverOxideThickness = 0.03;
 
   double ViaDiameter = 0.3;
   double ViaHeight = 0.6;

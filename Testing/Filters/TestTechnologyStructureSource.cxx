@@ -487,6 +487,83 @@ std::vector<ExpectedRegion> Apply(const Via& via, vtkTechnologyStructureSource* 
     { "TopLine", via.TopLineThickness * via.BoxSize * via.TopLineWidth, 2 } };
 }
 
+struct Nmos
+{
+  double GateLength = 0.18;
+  double GateHeight = 0.2;
+  double GateOxideThickness = 0.005;
+  double BulkLength = 0.8;
+  double BulkDepth = 0.5;
+  double DeviceWidth = 0.3;
+  double ChannelWidth = 0.18;
+  double FieldOxideThickness = 0.16;
+  double CoverOxideThickness = 0.03;
+};
+
+std::vector<ExpectedRegion> Apply(const Nmos& nmos, vtkTechnologyStructureSource* source)
+{
+  source->SetStructureToNmosWithFieldOxide();
+  source->SetGateLength(nmos.GateLength);
+  source->SetGateHeight(nmos.GateHeight);
+  source->SetGateOxideThickness(nmos.GateOxideThickness);
+  source->SetBulkLength(nmos.BulkLength);
+  source->SetBulkDepth(nmos.BulkDepth);
+  source->SetDeviceWidth(nmos.DeviceWidth);
+  source->SetChannelWidth(nmos.ChannelWidth);
+  source->SetFieldOxideThickness(nmos.FieldOxideThickness);
+  source->SetCoverOxideThickness(nmos.CoverOxideThickness);
+  const double width = nmos.DeviceWidth - nmos.ChannelWidth;
+  const double field = 0.5 * nmos.FieldOxideThickness;
+  const double cover = nmos.CoverOxideThickness;
+  const double gateTop = nmos.GateOxideThickness + nmos.GateHeight;
+  // The cover on the gate, on its two flanks, and on the field oxide and the silicon beside them.
+  const double onGate = nmos.GateLength * nmos.DeviceWidth * cover;
+  const double onFlanks =
+    2.0 * cover * (nmos.ChannelWidth * (gateTop + cover) + width * (gateTop + cover - field));
+  const double beside = (nmos.BulkLength - nmos.GateLength - 2.0 * cover) *
+    (width * cover + 2.0 * cover * (field + cover) + (nmos.ChannelWidth - 2.0 * cover) * cover);
+  const double oxide = nmos.GateLength * nmos.ChannelWidth * nmos.GateOxideThickness;
+  return {
+    { "Bulk",
+      nmos.BulkLength * (nmos.ChannelWidth * nmos.BulkDepth + width * (nmos.BulkDepth - field)),
+      2 },
+    { "LeftFieldOxide", nmos.BulkLength * 0.5 * width * nmos.FieldOxideThickness, 2 },
+    { "RightFieldOxide", nmos.BulkLength * 0.5 * width * nmos.FieldOxideThickness, 2 },
+    { "GateOxide", oxide, 2 },
+    { "Gate", nmos.GateLength * (nmos.ChannelWidth * nmos.GateHeight + width * (gateTop - field)),
+      2 },
+    { "CoverOxide", onGate + onFlanks + beside, 2 },
+  };
+}
+TEST(TechnologyStructureSource, NmosWithFieldOxideSweep)
+{
+  std::vector<Nmos> devices(9);
+  devices[1].GateOxideThickness = 0.0005;
+  devices[2].GateOxideThickness = 0.05;  // thicker than the cover
+  devices[3].CoverOxideThickness = 0.08; // as thick as the field oxide is high
+  devices[4].FieldOxideThickness = 0.36; // the gate's top is in the field oxide's cover
+  devices[5].DeviceWidth = 0.60;
+  devices[6].GateLength = 0.03;
+  devices[7].CoverOxideThickness = 0.001;
+  devices[8].BulkDepth = 5.0;
+  for (const Nmos& nmos : devices)
+  {
+    SCOPED_TRACE(nmos.GateOxideThickness);
+    SCOPED_TRACE(nmos.CoverOxideThickness);
+    SCOPED_TRACE(nmos.FieldOxideThickness);
+    vtkNew<vtkTechnologyStructureSource> source;
+    const std::vector<ExpectedRegion> regions = Apply(nmos, source);
+    CheckBoundary(GetBoundary(source), regions);
+  }
+}
+
+TEST(TechnologyStructureSource, NmosWithFieldOxideRotated)
+{
+  vtkNew<vtkTechnologyStructureSource> source;
+  const std::vector<ExpectedRegion> regions = Apply(Nmos{}, source);
+  CheckRotations(source, GetBoundary(source), regions);
+}
+
 TEST(TechnologyStructureSource, DefaultIsTheMosTransistor)
 {
   vtkNew<vtkTechnologyStructureSource> untouched;
@@ -673,6 +750,27 @@ TEST(TechnologyStructureSource, ErrorsNameTheParameters)
     },
     { "RotationAxis" });
   ExpectError([](Source* s) { s->SetRotationAngle(std::nan("")); }, { "RotationAngle" });
+  ExpectError(
+    [](Source* s)
+    {
+      s->SetStructureToNmosWithFieldOxide();
+      s->SetDeviceWidth(0.18);
+    },
+    { "ChannelWidth = 0.18", "DeviceWidth = 0.18" });
+  ExpectError(
+    [](Source* s)
+    {
+      s->SetStructureToNmosWithFieldOxide();
+      s->SetFieldOxideThickness(0.5);
+    },
+    { "FieldOxideThickness / 2 = 0.25", "GateOxideThickness + GateHeight = 0.205" });
+  ExpectError(
+    [](Source* s)
+    {
+      s->SetStructureToNmosWithFieldOxide();
+      s->SetCoverOxideThickness(0.09);
+    },
+    { "2 CoverOxideThickness", "ChannelWidth = 0.18" });
 }
 
 TEST(TechnologyStructureSource, ParametersOfTheOtherStructureDoNotMatter)

@@ -51,6 +51,13 @@ better = SliverRemover(Input=front)
 better.UpdatePipeline()
 assert abs(Volume(better) - 6.0) < 6e-12, "volume %.17g" % Volume(better)
 
+moving = Calculator(Input=better, ResultArrayName="Displacement",
+                    Function="0.1*coordsX*iHat")
+moved = MovingBoundaryRemesher(Input=moving, Displacement=["POINTS", "Displacement"])
+moved.UpdatePipeline()
+assert abs(Volume(moved) - 6.6) < 6e-12, "volume %.17g" % Volume(moved)
+assert Count(moved, 1) > 12
+
 criteria = DelaunayMeshCriteria(Input=better)
 criteria.UpdatePipeline()
 assert Count(criteria) == Count(better)

@@ -1,0 +1,713 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MovingBoundaryRemesher.h"
+
+#include "AdvancingFrontTetrahedralizer.h"
+#include "BoundaryDisplacement.h"
+#include "BoundaryTriangulator.h"
+#include "Box.h"
+#include "Measures.h"
+#include "MeshBoundary.h"
+#include "MeshChecks.h"
+#include "Predicates.h"
+#include "RegionLocator.h"
+#include "SimplexIncidence.h"
+#include "TriangleIntersection.h"
+#include "VolumeSums.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <string>
+
+namespace cdm
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+constexpr double FullSolidAngle = 12.566370614359172;
+/** A step is halved at most so often before it counts as one that changes the topology. */
+constexpr int MaximumNumberOfHalvings = 5;
+
+/** What becomes of the boundary if it moves. */
+enum class Passage
+{
+  Free,
+  /** Triangles fold over their neighbors, or over others in their plane. */
+  Folded,
+  /** Parts of it meet. */
+  Collided,
+  Aborted
+};
+
+/** Signed solid angle of a triangle seen from a point: positive from behind. */
+double GetSolidAngle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  const Vec3 u = a - p;
+  const Vec3 v = b - p;
+  const Vec3 w = c - p;
+  const double lu = Norm(u);
+  const double lv = Norm(v);
+  const double lw = Norm(w);
+  return 2.0 *
+    std::atan2(
+      Dot(u, Cross(v, w)), lu * lv * lw + Dot(u, v) * lw + Dot(v, w) * lu + Dot(w, u) * lv);
+}
+
+bool HaveCommonPoint(const TriangleIds& s, const TriangleIds& t)
+{
+  return std::any_of(
+    s.begin(), s.end(), [&t](Id id) { return std::find(t.begin(), t.end(), id) != t.end(); });
+}
+
+/** Whether each region's labels enclose a positive volume. */
+bool HaveRegionsVolume(const TriangleMesh& surface)
+{
+  std::map<Id, CompensatedSum> volumes;
+  const Vec3& origin = surface.Points.front();
+  for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
+  {
+    const TriangleIds& ids = surface.Triangles[t];
+    const long double volume =
+      GetSixVolumes(origin, surface.Points[ids[0]], surface.Points[ids[1]], surface.Points[ids[2]]);
+    volumes[surface.Labels[t].Back].Add(volume);
+    volumes[surface.Labels[t].Front].Add(-volume);
+  }
+  return std::all_of(volumes.begin(), volumes.end(),
+    [](const auto& item) { return item.first == OutsideRegion || item.second.Get() > 0.0; });
+}
+
+bool HaveEqualPoints(const std::vector<Vec3>& points)
+{
+  std::vector<Vec3> sorted = points;
+  std::sort(sorted.begin(), sorted.end());
+  return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+}
+
+Passage CheckPassage(const TriangleMesh& surface, const ExecutionContext& context)
+{
+  const std::vector<Vec3>& points = surface.Points;
+  const bool hasFlat = std::any_of(surface.Triangles.begin(), surface.Triangles.end(),
+    [&points](const TriangleIds& ids)
+    { return AreCollinear(points[ids[0]], points[ids[1]], points[ids[2]]); });
+  if (hasFlat || !HaveRegionsVolume(surface))
+  {
+    return Passage::Folded;
+  }
+  if (HaveEqualPoints(points))
+  {
+    return Passage::Collided;
+  }
+  std::vector<TrianglePair> pairs;
+  if (!FindIntersectingPairs(points, surface.Triangles, {}, context, pairs))
+  {
+    return Passage::Aborted;
+  }
+  const bool isFolded = std::all_of(pairs.begin(), pairs.end(),
+    [&](const TrianglePair& pair)
+    {
+      const TriangleIds& s = surface.Triangles[pair[0]];
+      const TriangleIds& t = surface.Triangles[pair[1]];
+      return HaveCommonPoint(s, t) || AreCoplanar(points, s, t);
+    });
+  return pairs.empty() ? Passage::Free : isFolded ? Passage::Folded : Passage::Collided;
+}
+
+class Remeshing
+{
+public:
+  Remeshing(const MovingBoundaryInput& input, const MovingBoundaryOptions& options,
+    MovingBoundaryOutput& output)
+    : Input(input), Options(options), Output(output), Given(*input.Displacements)
+  {
+  }
+
+  Status Run(const ExecutionContext& context);
+
+private:
+  /** A surface, with the origins of its points. */
+  struct Surface
+  {
+    TriangleMesh Mesh;
+    std::vector<Id> Origins;
+  };
+  /** Points inside, with their origins. */
+  struct Interior
+  {
+    std::vector<Vec3> Points;
+    std::vector<Id> Origins;
+  };
+
+  Status Start();
+  Status Advance(const ExecutionContext& context);
+  Status TakeStep(double& begin, double end, double smallest, const ExecutionContext& context);
+  std::vector<Vec3> MovePoints(double begin, double end) const;
+  Surface MakeSurface(const std::vector<Vec3>& moved) const;
+  Status KeepInterior(
+    const std::vector<Vec3>& moved, const TriangleMesh& surface, Interior& interior) const;
+  std::vector<double> FindDistances(const RegionLocator& boundary) const;
+  void FindBoundary();
+  Status ChangeTopology(
+    const Surface& surface, const std::vector<Vec3>& moved, const ExecutionContext& context);
+  Status CutSurface(const Surface& surface, const ExecutionContext& context, Surface& cut);
+  Status Remesh(
+    const Surface& surface, const std::vector<Vec3>& moved, const ExecutionContext& context);
+  Status AssignRegions(const TriangleMesh& moved);
+  void AddNewPoints(const std::vector<PointParents>& points, std::vector<Id>& origins);
+  Status Describe(Status status, const Surface& surface) const;
+  void FindTetrahedronSources();
+  Id GetNumberOfInputPoints() const { return static_cast<Id>(this->Input.Mesh->Points.size()); }
+
+  const MovingBoundaryInput& Input;
+  const MovingBoundaryOptions& Options;
+  MovingBoundaryOutput& Output;
+  /** Displacement of each point that there ever was, by origin. */
+  std::vector<Vec3> Given;
+  double FollowDistance = 0.0;
+  /** Outer and interface facets of the mesh as it is, on its points, and which these are. */
+  TriangleMesh Boundary;
+  std::vector<char> IsOnBoundary;
+};
+
+Status Remeshing::Run(const ExecutionContext& context)
+{
+  Status status = this->Start();
+  if (status.IsOk())
+  {
+    status = this->Advance(context);
+  }
+  if (status.IsOk())
+  {
+    this->FindTetrahedronSources();
+    const Id numberOfPoints = this->GetNumberOfInputPoints();
+    const Id kept = static_cast<Id>(std::count_if(this->Output.Origins.begin(),
+      this->Output.Origins.end(), [=](Id origin) { return origin < numberOfPoints; }));
+    this->Output.Report.RemovedPoints = numberOfPoints - kept;
+    this->Output.Report.NewPoints = static_cast<Id>(this->Output.Origins.size()) - kept;
+  }
+  return status;
+}
+
+Status Remeshing::Start()
+{
+  const TetMesh& mesh = *this->Input.Mesh;
+  Status status = CheckMeshInput(mesh, nullptr);
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  std::vector<Id> wrong;
+  for (std::size_t i = 0; i < mesh.Tetrahedra.size(); ++i)
+  {
+    const TetrahedronIds& ids = mesh.Tetrahedra[i];
+    if (Orientation(
+          mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]], mesh.Points[ids[3]]) <= 0)
+    {
+      wrong.push_back(static_cast<Id>(i));
+    }
+  }
+  if (!wrong.empty())
+  {
+    return Status::InvalidInput(
+      "Tetrahedra are inverted or flat: move the boundary of a valid mesh.", std::move(wrong));
+  }
+  this->Output.Mesh = mesh;
+  this->Output.Origins.resize(mesh.Points.size());
+  std::iota(this->Output.Origins.begin(), this->Output.Origins.end(), 0);
+  this->FindBoundary();
+  double largest = 0.0;
+  for (std::size_t i = 0; i < mesh.Points.size(); ++i)
+  {
+    if (!IsFinite(this->Given[i]))
+    {
+      wrong.push_back(static_cast<Id>(i));
+    }
+    else if (this->IsOnBoundary[i])
+    {
+      largest = std::max(largest, Norm(this->Given[i]));
+    }
+    else
+    {
+      this->Given[i] = {};
+    }
+  }
+  if (!wrong.empty() || !std::isfinite(largest))
+  {
+    return Status::InvalidInput(
+      "Displacements are not finite: correct them.", {}, std::move(wrong));
+  }
+  this->FollowDistance = this->Options.FollowRatio * largest;
+  return {};
+}
+
+Status Remeshing::Advance(const ExecutionContext& context)
+{
+  double begin = 0.0;
+  for (int step = 1; step <= this->Options.NumberOfSteps; ++step)
+  {
+    const double end = static_cast<double>(step) / this->Options.NumberOfSteps;
+    const double smallest = std::ldexp(end - begin, -MaximumNumberOfHalvings);
+    while (begin < end)
+    {
+      const Status status = this->TakeStep(begin, end, smallest, context);
+      if (!status.IsOk())
+      {
+        return status;
+      }
+    }
+  }
+  return {};
+}
+
+/** Moves on from begin, which is set to what was reached: the end, or a place halfway. */
+Status Remeshing::TakeStep(
+  double& begin, double end, double smallest, const ExecutionContext& context)
+{
+  const ExecutionContext waiting = context.Part(begin, begin);
+  std::vector<Vec3> moved;
+  Surface surface;
+  const auto check = [&](double place)
+  {
+    moved = this->MovePoints(begin, place);
+    surface = this->MakeSurface(moved);
+    return CheckPassage(surface.Mesh, waiting);
+  };
+  double place = end;
+  Passage passage = check(place);
+  while (passage == Passage::Folded && 0.5 * (place - begin) >= smallest)
+  {
+    place = begin + 0.5 * (place - begin);
+    passage = check(place);
+  }
+  if (passage == Passage::Folded && place < end)
+  {
+    place = end;
+    passage = check(place);
+  }
+  if (passage == Passage::Aborted)
+  {
+    return Status::Aborted();
+  }
+
+  const ExecutionContext part = context.Part(begin, place);
+  Status status = passage == Passage::Free ? this->Remesh(surface, moved, part)
+                                           : this->ChangeTopology(surface, moved, part);
+  if (passage == Passage::Free && status.Code == StatusCode::InvalidInput)
+  {
+    // Parts of the boundary that have passed each other as a whole do not intersect.
+    status = this->ChangeTopology(surface, moved, context.Part(place, place));
+  }
+  if (status.IsOk())
+  {
+    ++this->Output.Report.Steps;
+    this->FindBoundary();
+    begin = place;
+  }
+  return status;
+}
+
+void Remeshing::FindBoundary()
+{
+  this->Boundary = ExtractBoundary(this->Output.Mesh);
+  this->IsOnBoundary.assign(this->Output.Mesh.Points.size(), 0);
+  for (const TriangleIds& ids : this->Boundary.Triangles)
+  {
+    for (const Id id : ids)
+    {
+      this->IsOnBoundary[id] = 1;
+    }
+  }
+}
+
+Status Remeshing::ChangeTopology(
+  const Surface& surface, const std::vector<Vec3>& moved, const ExecutionContext& context)
+{
+  ++this->Output.Report.TopologyChanges;
+  Surface cut;
+  Status status = this->CutSurface(surface, context.Part(0.0, 0.3), cut);
+  if (status.IsOk())
+  {
+    status = this->Remesh(cut, moved, context.Part(0.3, 1.0));
+  }
+  return status.IsOk() ? this->AssignRegions(surface.Mesh) : status;
+}
+
+std::vector<Vec3> Remeshing::MovePoints(double begin, double end) const
+{
+  const TetMesh& mesh = this->Output.Mesh;
+  BoundaryDisplacementInput input;
+  input.Mesh = &mesh;
+  input.Boundary = &this->Boundary;
+  input.FollowDistance = this->FollowDistance;
+  const Id numberOfInputPoints = this->GetNumberOfInputPoints();
+  for (const Id origin : this->Output.Origins)
+  {
+    input.Given.push_back(this->Given[origin]);
+    input.IsPrescribed.push_back(origin < numberOfInputPoints && this->Given[origin] != Vec3{});
+  }
+  const std::vector<Vec3> displacements = SpreadBoundaryDisplacement(input);
+  std::vector<Vec3> moved = mesh.Points;
+  for (std::size_t i = 0; i < moved.size(); ++i)
+  {
+    const Id origin = this->Output.Origins[i];
+    if (this->IsOnBoundary[i] && input.IsPrescribed[i])
+    {
+      moved[i] = this->Input.Mesh->Points[origin] + end * this->Given[origin];
+    }
+    else if (displacements[i] != Vec3{})
+    {
+      moved[i] = mesh.Points[i] + (end - begin) * displacements[i];
+    }
+  }
+  return moved;
+}
+
+Remeshing::Surface Remeshing::MakeSurface(const std::vector<Vec3>& moved) const
+{
+  Surface surface{ this->Boundary, {} };
+  surface.Mesh.Points = moved;
+  for (const Id id : RemoveUnusedPoints(surface.Mesh))
+  {
+    surface.Origins.push_back(this->Output.Origins[id]);
+  }
+  return surface;
+}
+
+/** Distance of each point inside from the next point of its edges, or the boundary. */
+std::vector<double> Remeshing::FindDistances(const RegionLocator& boundary) const
+{
+  const TetMesh& mesh = this->Output.Mesh;
+  std::vector<double> distances(mesh.Points.size(), Infinity);
+  for (const TetrahedronIds& ids : mesh.Tetrahedra)
+  {
+    for (const int(&edge)[2] : TetrahedronEdges)
+    {
+      const double length = Distance(mesh.Points[ids[edge[0]]], mesh.Points[ids[edge[1]]]);
+      for (const int end : edge)
+      {
+        distances[ids[end]] = std::min(distances[ids[end]], length);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < distances.size(); ++i)
+  {
+    if (!this->IsOnBoundary[i] && distances[i] < Infinity)
+    {
+      distances[i] = boundary.GetDistance(mesh.Points[i], distances[i]);
+    }
+  }
+  return distances;
+}
+
+Status Remeshing::KeepInterior(
+  const std::vector<Vec3>& moved, const TriangleMesh& surface, Interior& interior) const
+{
+  const TetMesh& mesh = this->Output.Mesh;
+  RegionLocator before(this->Boundary);
+  RegionLocator after(surface);
+  for (RegionLocator* locator : { &before, &after })
+  {
+    Status status = locator->Build();
+    if (!status.IsOk())
+    {
+      return status;
+    }
+  }
+  const double clearance = this->Options.PointClearance;
+  const std::vector<double> distances = this->FindDistances(before);
+  std::vector<char> isKept(moved.size(), 0);
+  for (std::size_t i = 0; i < moved.size(); ++i)
+  {
+    const double distance = clearance * distances[i];
+    isKept[i] = !this->IsOnBoundary[i] && distances[i] < Infinity &&
+      after.GetDistance(moved[i], distance) >= distance && after.Locate(moved[i]) != OutsideRegion;
+  }
+  for (const TetrahedronIds& ids : mesh.Tetrahedra)
+  {
+    for (const int(&edge)[2] : TetrahedronEdges)
+    {
+      const Id a = std::min(ids[edge[0]], ids[edge[1]]);
+      const Id b = std::max(ids[edge[0]], ids[edge[1]]);
+      if (isKept[a] && isKept[b] &&
+        Distance(moved[a], moved[b]) < clearance * std::min(distances[a], distances[b]))
+      {
+        isKept[b] = 0;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < moved.size(); ++i)
+  {
+    if (isKept[i])
+    {
+      interior.Points.push_back(moved[i]);
+      interior.Origins.push_back(this->Output.Origins[i]);
+    }
+  }
+  return {};
+}
+
+Status Remeshing::CutSurface(const Surface& surface, const ExecutionContext& context, Surface& cut)
+{
+  PolygonSoup soup;
+  soup.Points = surface.Mesh.Points;
+  for (const TriangleIds& ids : surface.Mesh.Triangles)
+  {
+    soup.Connectivity.insert(soup.Connectivity.end(), ids.begin(), ids.end());
+    soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+  }
+  BoundaryTriangulatorOptions options;
+  options.ResolveSelfIntersections = true;
+  options.Pieces = ResolvedPieces::All;
+  BoundaryTriangulatorOutput pieces;
+  const Status status = TriangulateBoundary(soup, options, context, pieces);
+  if (!status.IsOk())
+  {
+    return this->Describe(status, surface);
+  }
+  for (const Id source : pieces.PointSources)
+  {
+    cut.Origins.push_back(surface.Origins[source]);
+  }
+  // Parents of new points count as those of the soup.
+  std::vector<Id> origins = surface.Origins;
+  this->AddNewPoints(pieces.NewPoints, origins);
+  cut.Origins.insert(cut.Origins.end(), origins.begin() + surface.Origins.size(), origins.end());
+  cut.Mesh = std::move(pieces.Surface);
+  return {};
+}
+
+/** Gives new points an origin and appends it. Their parents are places in origins. */
+void Remeshing::AddNewPoints(const std::vector<PointParents>& points, std::vector<Id>& origins)
+{
+  for (const PointParents& point : points)
+  {
+    PointParents parents;
+    Vec3 given;
+    for (std::size_t i = 0; i < parents.Ids.size() && point.Ids[i] != NoId; ++i)
+    {
+      parents.Ids[i] = origins[point.Ids[i]];
+      parents.Weights[i] = point.Weights[i];
+      given = given + point.Weights[i] * this->Given[parents.Ids[i]];
+    }
+    origins.push_back(static_cast<Id>(this->Given.size()));
+    this->Given.push_back(given);
+    this->Output.NewPoints.push_back(parents);
+  }
+}
+
+Status Remeshing::Remesh(
+  const Surface& surface, const std::vector<Vec3>& moved, const ExecutionContext& context)
+{
+  Interior interior;
+  Status status = this->KeepInterior(moved, surface.Mesh, interior);
+  if (!status.IsOk())
+  {
+    return this->Describe(status, surface);
+  }
+  DelaunaySurfaceRefinerInput refinerInput;
+  refinerInput.Surface = &surface.Mesh;
+  refinerInput.MeshPoints = &interior.Points;
+  DelaunaySurfaceRefinerOptions options = this->Options.Refinement;
+  options.MeshPointClearanceRatio = 0.0;
+  DelaunaySurfaceRefinerOutput refined;
+  status = RefineDelaunaySurface(refinerInput, options, context.Part(0.0, 0.6), refined);
+  if (!status.IsOk())
+  {
+    return this->Describe(status, surface);
+  }
+  this->Output.Report.UnresolvedTriangles = static_cast<Id>(refined.UnresolvedTriangles.size());
+  std::vector<Id> origins = surface.Origins;
+  this->AddNewPoints(refined.NewPoints, origins);
+  std::vector<Vec3> meshPoints;
+  std::vector<Id> meshPointOrigins;
+  for (const Id id : refined.KeptMeshPoints)
+  {
+    meshPoints.push_back(interior.Points[id]);
+    meshPointOrigins.push_back(interior.Origins[id]);
+  }
+
+  AdvancingFrontTetrahedralizerInput frontInput;
+  frontInput.Surface = &refined.Surface;
+  frontInput.MeshPoints = &meshPoints;
+  AdvancingFrontTetrahedralizerOutput front;
+  status = TetrahedralizeByAdvancingFront(frontInput, {}, context.Part(0.6, 1.0), front);
+  if (!status.IsOk())
+  {
+    return this->Describe(status, { refined.Surface, origins });
+  }
+  for (const Id source : front.MeshPointSources)
+  {
+    origins.push_back(meshPointOrigins[source]);
+  }
+  this->Output.Mesh = std::move(front.Mesh);
+  this->Output.Origins = std::move(origins);
+  return {};
+}
+
+/** What a stage holds against a surface, with the input points of its triangles. */
+Status Remeshing::Describe(Status status, const Surface& surface) const
+{
+  if (status.IsAborted())
+  {
+    return status;
+  }
+  std::vector<Id> points;
+  for (const Id cell : status.Cells)
+  {
+    for (const Id id : surface.Mesh.Triangles[cell])
+    {
+      if (surface.Origins[id] < this->GetNumberOfInputPoints())
+      {
+        points.push_back(surface.Origins[id]);
+      }
+    }
+  }
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  status.Message =
+    "The moved boundary cannot be meshed; move it by less, or in more steps. " + status.Message;
+  status.Cells.clear();
+  status.Points = std::move(points);
+  return status;
+}
+
+Status Remeshing::AssignRegions(const TriangleMesh& moved)
+{
+  TetMesh& mesh = this->Output.Mesh;
+  struct Cell
+  {
+    double Height = 0.0;
+    Vec3 Center;
+  };
+  std::map<Id, Cell> cells;
+  for (std::size_t i = 0; i < mesh.Tetrahedra.size(); ++i)
+  {
+    const TetrahedronIds& ids = mesh.Tetrahedra[i];
+    const Vec3 corners[4] = { mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]],
+      mesh.Points[ids[3]] };
+    const double height = GetSmallestHeight(corners[0], corners[1], corners[2], corners[3]);
+    Cell& cell = cells[mesh.Regions[i]];
+    if (height > cell.Height)
+    {
+      cell = { height, 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]) };
+    }
+  }
+  std::map<Id, Id> regions;
+  for (const auto& [id, cell] : cells)
+  {
+    std::map<Id, double> angles;
+    for (std::size_t t = 0; t < moved.Triangles.size(); ++t)
+    {
+      const TriangleIds& ids = moved.Triangles[t];
+      const double angle = GetSolidAngle(
+        cell.Center, moved.Points[ids[0]], moved.Points[ids[1]], moved.Points[ids[2]]);
+      angles[moved.Labels[t].Back] += angle;
+      angles[moved.Labels[t].Front] -= angle;
+    }
+    long most = 0;
+    regions[id] = OutsideRegion;
+    for (const auto& [region, angle] : angles)
+    {
+      const long windings = std::lround(angle / FullSolidAngle);
+      if (region != OutsideRegion && windings > most)
+      {
+        most = windings;
+        regions[id] = region;
+      }
+    }
+  }
+
+  TetMesh kept;
+  std::vector<Id> newIds(mesh.Points.size(), NoId);
+  for (std::size_t i = 0; i < mesh.Tetrahedra.size(); ++i)
+  {
+    const Id region = regions[mesh.Regions[i]];
+    if (region != OutsideRegion)
+    {
+      kept.Tetrahedra.push_back(mesh.Tetrahedra[i]);
+      kept.Regions.push_back(region);
+      for (const Id id : mesh.Tetrahedra[i])
+      {
+        newIds[id] = id;
+      }
+    }
+  }
+  if (kept.Tetrahedra.empty())
+  {
+    return Status::InvalidInput("Nothing is left inside of the moved boundary: move it by less.");
+  }
+  std::vector<Id> origins;
+  for (Id& id : newIds)
+  {
+    if (id != NoId)
+    {
+      kept.Points.push_back(mesh.Points[id]);
+      origins.push_back(this->Output.Origins[id]);
+      id = static_cast<Id>(origins.size()) - 1;
+    }
+  }
+  for (TetrahedronIds& ids : kept.Tetrahedra)
+  {
+    std::transform(ids.begin(), ids.end(), ids.begin(), [&newIds](Id id) { return newIds[id]; });
+  }
+  mesh = std::move(kept);
+  this->Output.Origins = std::move(origins);
+  return BuildNeighbors(mesh);
+}
+
+void Remeshing::FindTetrahedronSources()
+{
+  const TetMesh& before = *this->Input.Mesh;
+  const TetMesh& after = this->Output.Mesh;
+  const Id numberOfInputPoints = this->GetNumberOfInputPoints();
+  std::vector<std::vector<Id>> tetrahedra(before.Points.size());
+  for (std::size_t i = 0; i < before.Tetrahedra.size(); ++i)
+  {
+    for (const Id id : before.Tetrahedra[i])
+    {
+      tetrahedra[id].push_back(static_cast<Id>(i));
+    }
+  }
+  this->Output.TetrahedronSources.assign(after.Tetrahedra.size(), NoId);
+  for (std::size_t i = 0; i < after.Tetrahedra.size(); ++i)
+  {
+    TetrahedronIds origins;
+    std::transform(after.Tetrahedra[i].begin(), after.Tetrahedra[i].end(), origins.begin(),
+      [this](Id id) { return this->Output.Origins[id]; });
+    std::ptrdiff_t most = 0;
+    for (const Id origin : origins)
+    {
+      if (origin >= numberOfInputPoints)
+      {
+        continue;
+      }
+      for (const Id candidate : tetrahedra[origin])
+      {
+        const TetrahedronIds& ids = before.Tetrahedra[candidate];
+        const std::ptrdiff_t common = std::count_if(ids.begin(), ids.end(),
+          [&origins](Id id)
+          { return std::find(origins.begin(), origins.end(), id) != origins.end(); });
+        if (before.Regions[candidate] == after.Regions[i] && common > most)
+        {
+          most = common;
+          this->Output.TetrahedronSources[i] = candidate;
+        }
+      }
+    }
+  }
+}
+} // namespace
+
+Status RemeshMovingBoundary(const MovingBoundaryInput& input, const MovingBoundaryOptions& options,
+  const ExecutionContext& context, MovingBoundaryOutput& output)
+{
+  output = {};
+  const Status status = Remeshing(input, options, output).Run(context);
+  if (!status.IsOk())
+  {
+    output = {};
+  }
+  return status;
+}
+} // namespace cdm
