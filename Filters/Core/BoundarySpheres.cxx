@@ -28,8 +28,7 @@ BoundarySpheres::BoundarySpheres(
   {
     const Vec3& a = surface.Points[edges[e].Points[0]];
     const Vec3& b = surface.Points[edges[e].Points[1]];
-    this->Balls.Set(
-      count + static_cast<Id>(e), 0.5 * (a + b), 0.5 * Margin * Distance(a, b));
+    this->Balls.Set(count + static_cast<Id>(e), 0.5 * (a + b), 0.5 * Margin * Distance(a, b));
   }
 }
 

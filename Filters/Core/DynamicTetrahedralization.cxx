@@ -111,19 +111,16 @@ Id DynamicTetrahedralization::Locate(const Vec3& position, Id first) const
   }
 }
 
-bool DynamicTetrahedralization::IsInConflict(
-  Id tetrahedron, const Vec3& position, Id number) const
+bool DynamicTetrahedralization::IsInConflict(Id tetrahedron, const Vec3& position, Id number) const
 {
   const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
   const std::array<Vec3, 4> vertices{ this->Mesh.Points[ids[0]], this->Mesh.Points[ids[1]],
     this->Mesh.Points[ids[2]], this->Mesh.Points[ids[3]] };
   const int side = InSphere(vertices[0], vertices[1], vertices[2], vertices[3], position);
-  return side != 0 ? side > 0
-                   : GetPulledPosition(vertices, ids, position, number, Orientation) > 0;
+  return side != 0 ? side > 0 : GetPulledPosition(vertices, ids, position, number, Orientation) > 0;
 }
 
-bool DynamicTetrahedralization::FindHole(
-  const Vec3& position, Id number, Id first, Hole& hole)
+bool DynamicTetrahedralization::FindHole(const Vec3& position, Id number, Id first, Hole& hole)
 {
   hole.Tetrahedra.clear();
   hole.Facets.clear();
@@ -305,8 +302,9 @@ bool DynamicTetrahedralization::Remove(Id point)
 
   // Those of its tetrahedra within the hole: from the hole's facets inwards.
   this->Facets.clear();
-  const auto toGlobal = [&](const TriangleIds& facet)
-  { return TriangleIds{ ids[facet[0]], ids[facet[1]], ids[facet[2]] }; };
+  const auto toGlobal = [&](const TriangleIds& facet) {
+    return TriangleIds{ ids[facet[0]], ids[facet[1]], ids[facet[2]] };
+  };
   for (Id t = 0; t < static_cast<Id>(local.Tetrahedra.size()); ++t)
   {
     const TetrahedronIds& vertices = local.Tetrahedra[t];

@@ -3,6 +3,7 @@
 
 #include "AdvancingFrontTetrahedralizer.h"
 #include "Measures.h"
+#include "MeshBoundary.h"
 #include "MeshChecks.h"
 #include "VolumeRefinement.h"
 
@@ -37,11 +38,11 @@ class Refiner
 public:
   Refiner(const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options,
     const ExecutionContext& context, SteinerPointRefinerOutput& output)
-    : Input(input), Options(options), Context(context), Output(output),
-      Limits{ options.RadiusEdgeRatio, options.MaximumVolume, options.MaximumEdgeLength,
-        input.Sizing },
-      MaximumNewPoints(
-        options.MaximumNewPoints > 0 ? options.MaximumNewPoints : std::numeric_limits<Id>::max() / 8)
+    : Input(input), Options(options), Context(context),
+      Output(output), Limits{ options.RadiusEdgeRatio, options.MaximumVolume,
+        options.MaximumEdgeLength, input.Sizing },
+      MaximumNewPoints(options.MaximumNewPoints > 0 ? options.MaximumNewPoints
+                                                    : std::numeric_limits<Id>::max() / 8)
   {
   }
 
@@ -49,6 +50,7 @@ public:
 
 private:
   Status CheckInput() const;
+  Status CheckBoundary() const;
   void ExtractSurface();
   ExecutionContext GetRoundContext() const;
   Status Translate(Status status, const std::vector<Id>& sources) const;
@@ -73,7 +75,7 @@ private:
   const TetrahedronLimits Limits;
   const Id MaximumNewPoints;
 
-  /** SourceCells, in the first round only: tetrahedron of the input. */
+  /** SourceCells: as those of the output's boundary. */
   TriangleMesh Surface;
   std::vector<StructuralEdge> Edges;
   /** Input point of each of the surface's first points. */
@@ -124,61 +126,117 @@ Status Refiner::CheckInput() const
                            {}, std::move(wrong));
 }
 
-void Refiner::ExtractSurface()
+/** The triangles given have to be all facets between regions, and besides them only facets. */
+Status Refiner::CheckBoundary() const
 {
   const TetMesh& mesh = *this->Input.Mesh;
-  constexpr Id Unused = -2;
-  std::vector<Id> newIds(mesh.Points.size(), Unused);
-  for (const TetrahedronIds& ids : mesh.Tetrahedra)
+  const TriangleMesh& boundary = *this->Input.Boundary;
+  const Status status = CheckMeshInput(mesh, &boundary);
+  if (!status.IsOk())
   {
-    for (Id id : ids)
-    {
-      newIds[id] = NoId;
-    }
+    return status;
   }
+  if (boundary.Labels.empty() || boundary.Points != mesh.Points)
+  {
+    return Status::InvalidInput("The boundary needs the points of the mesh, in the same order, and "
+                                "labels: use the one that belongs to it.");
+  }
+  const auto sort = [](TriangleIds ids)
+  {
+    std::sort(ids.begin(), ids.end());
+    return ids;
+  };
+  std::vector<std::pair<TriangleIds, Id>> facets;
+  for (Id t = 0; t < static_cast<Id>(boundary.Triangles.size()); ++t)
+  {
+    facets.emplace_back(sort(boundary.Triangles[t]), t);
+  }
+  std::sort(facets.begin(), facets.end());
+  const auto find = [&](const TriangleIds& ids)
+  {
+    const auto found =
+      std::lower_bound(facets.begin(), facets.end(), std::pair<TriangleIds, Id>(sort(ids), NoId));
+    return found != facets.end() && found->first == sort(ids) ? found->second : NoId;
+  };
+  std::vector<char> isFacet(boundary.Triangles.size(), 0);
+  std::size_t missing = 0;
   for (Id t = 0; t < static_cast<Id>(mesh.Tetrahedra.size()); ++t)
   {
     for (int i = 0; i < 4; ++i)
     {
       const Id neighbor = mesh.Neighbors[t][i];
-      const Id region = neighbor == NoId ? OutsideRegion : mesh.Regions[neighbor / 4];
-      if (region == mesh.Regions[t] || (neighbor != NoId && neighbor / 4 < t))
+      const Id triangle = find(GetFacet(mesh.Tetrahedra[t], i));
+      if (triangle != NoId)
       {
-        continue;
+        isFacet[triangle] = 1;
       }
-      this->Surface.Triangles.push_back(GetFacet(mesh.Tetrahedra[t], i));
-      this->Surface.SourceCells.push_back(t);
-      this->Surface.Labels.push_back({ region, mesh.Regions[t] });
-      for (Id id : this->Surface.Triangles.back())
+      else if (neighbor == NoId || mesh.Regions[neighbor / 4] != mesh.Regions[t])
       {
-        newIds[id] = 0;
+        ++missing;
       }
     }
   }
-  for (Id p = 0; p < static_cast<Id>(newIds.size()); ++p)
+  if (missing > 0)
   {
-    if (newIds[p] == 0)
+    return Status::InvalidInput(std::to_string(missing) +
+      " facets between regions or at the outside are not among the triangles of the boundary: use "
+      "the one that belongs to the mesh, or none.");
+  }
+  std::vector<Id> cells;
+  for (std::size_t t = 0; t < isFacet.size(); ++t)
+  {
+    if (!isFacet[t])
     {
-      newIds[p] = static_cast<Id>(this->SurfaceSources.size());
-      this->SurfaceSources.push_back(p);
-      this->Surface.Points.push_back(mesh.Points[p]);
-    }
-    else if (newIds[p] == NoId)
-    {
-      if (this->Input.IsRemoved.empty() || !this->Input.IsRemoved[p])
-      {
-        const bool isFree = !this->Input.IsFree.empty() && this->Input.IsFree[p];
-        this->Interior.push_back({ mesh.Points[p], 0.0, isFree, p, this->Memory.MakeName() });
-      }
-      else
-      {
-        ++this->Output.Report.RemovedPoints;
-      }
+      cells.push_back(static_cast<Id>(t));
     }
   }
-  for (TriangleIds& ids : this->Surface.Triangles)
+  return cells.empty()
+    ? Status()
+    : Status::InvalidInput(std::to_string(cells.size()) +
+          " triangles of the boundary are no facets of the mesh: use the one that "
+          "belongs to it, or none.",
+        std::move(cells));
+}
+
+void Refiner::ExtractSurface()
+{
+  const TetMesh& mesh = *this->Input.Mesh;
+  if (this->Input.Boundary == nullptr)
   {
-    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]] };
+    this->Surface = ExtractBoundary(mesh);
+  }
+  else
+  {
+    this->Surface = *this->Input.Boundary;
+    this->Surface.SourceCells.resize(this->Surface.Triangles.size());
+    std::iota(this->Surface.SourceCells.begin(), this->Surface.SourceCells.end(), 0);
+  }
+  this->SurfaceSources = RemoveUnusedPoints(this->Surface);
+  std::vector<char> isInside(mesh.Points.size(), 0);
+  for (const TetrahedronIds& ids : mesh.Tetrahedra)
+  {
+    for (Id id : ids)
+    {
+      isInside[id] = 1;
+    }
+  }
+  for (Id id : this->SurfaceSources)
+  {
+    isInside[id] = 0;
+  }
+  for (Id p = 0; p < static_cast<Id>(mesh.Points.size()); ++p)
+  {
+    if (!isInside[p])
+    {
+      continue;
+    }
+    if (!this->Input.IsRemoved.empty() && this->Input.IsRemoved[p])
+    {
+      ++this->Output.Report.RemovedPoints;
+      continue;
+    }
+    const bool isFree = !this->Input.IsFree.empty() && this->Input.IsFree[p];
+    this->Interior.push_back({ mesh.Points[p], 0.0, isFree, p, this->Memory.MakeName() });
   }
   for (const Vec3& position : this->Input.NewPoints)
   {
@@ -194,17 +252,13 @@ ExecutionContext Refiner::GetRoundContext() const
   return this->Context.Part(done, next);
 }
 
-/** What a stage before says of triangles, in tetrahedra of the input. */
+/** What a stage before says of triangles of the surface, in cells of the input. */
 Status Refiner::Translate(Status status, const std::vector<Id>& sources) const
 {
   std::vector<Id> cells;
   for (Id triangle : status.Cells)
   {
-    const Id source = sources.empty() ? triangle : sources[triangle];
-    if (!this->Surface.SourceCells.empty() && source != NoId)
-    {
-      cells.push_back(this->Surface.SourceCells[source]);
-    }
+    cells.push_back(this->Surface.SourceCells[sources.empty() ? triangle : sources[triangle]]);
   }
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
@@ -243,7 +297,8 @@ Status Refiner::StartRound()
   options.MeshPointClearanceRatio = 0.0;
   if (this->Options.MaximumVolume > 0.0)
   {
-    const double edge = BoundaryEdgeRatio * std::cbrt(6.0 * std::sqrt(2.0) * this->Options.MaximumVolume);
+    const double edge =
+      BoundaryEdgeRatio * std::cbrt(6.0 * std::sqrt(2.0) * this->Options.MaximumVolume);
     options.MaximumEdgeLength =
       options.MaximumEdgeLength > 0.0 ? std::min(options.MaximumEdgeLength, edge) : edge;
   }
@@ -289,9 +344,12 @@ Status Refiner::StartRound()
     this->Interior.push_back(kept[p]);
   }
   this->Round.reset();
+  for (Id& source : made.Boundary.SourceCells)
+  {
+    source = this->Surface.SourceCells[refined.Surface.SourceCells[source]];
+  }
   this->Surface = std::move(made.Boundary);
   this->Surface.Points = std::move(refined.Surface.Points);
-  this->Surface.SourceCells.clear();
   this->Edges = std::move(refined.StructuralEdges);
   if (!this->SurfaceSizes.empty())
   {
@@ -300,7 +358,8 @@ Status Refiner::StartRound()
   }
   this->Round = std::make_unique<VolumeRefinement>(std::move(made.Mesh), this->Surface, this->Edges,
     this->SurfaceSizes, this->Interior, this->Limits,
-    this->MaximumNewPoints - this->Output.Report.BoundaryPoints - this->Output.Report.InteriorPoints,
+    this->MaximumNewPoints - this->Output.Report.BoundaryPoints -
+      this->Output.Report.InteriorPoints,
     this->Memory);
   this->Round->NoteNewPoints(oldPoints);
   return status;
@@ -349,14 +408,13 @@ void Refiner::MeasureSizes()
     }
     for (const auto& edge : TetrahedronEdges)
     {
-      const double length =
-        Distance(mesh.Points[ids[edge[0]]], mesh.Points[ids[edge[1]]]);
+      const double length = Distance(mesh.Points[ids[edge[0]]], mesh.Points[ids[edge[1]]]);
       sizes[ids[edge[0]]] = std::min(sizes[ids[edge[0]]], length);
       sizes[ids[edge[1]]] = std::min(sizes[ids[edge[1]]], length);
     }
   }
-  this->SurfaceSizes.assign(sizes.begin(),
-    sizes.begin() + static_cast<std::ptrdiff_t>(this->Surface.Points.size()));
+  this->SurfaceSizes.assign(
+    sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(this->Surface.Points.size()));
   this->Round->SetSizes(sizes);
 }
 
@@ -469,6 +527,12 @@ void Refiner::MakeOutput()
     this->Output.PointSources.push_back(sources[p]);
   }
   this->Output.Mesh.Points = std::move(points);
+  this->Output.Boundary = std::move(this->Surface);
+  this->Output.Boundary.Points = this->Output.Mesh.Points;
+  for (TriangleIds& ids : this->Output.Boundary.Triangles)
+  {
+    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]] };
+  }
   for (TetrahedronIds& ids : this->Output.Mesh.Tetrahedra)
   {
     ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]], newIds[ids[3]] };
@@ -478,6 +542,11 @@ void Refiner::MakeOutput()
 Status Refiner::Run()
 {
   Status status = this->CheckInput();
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  status = this->Input.Boundary != nullptr ? this->CheckBoundary() : status;
   if (!status.IsOk())
   {
     return status;
@@ -543,7 +612,17 @@ Status RefineBySteinerPoints(const SteinerPointRefinerInput& input,
   SteinerPointRefinerOutput& output)
 {
   output = SteinerPointRefinerOutput();
-  const Status status = Refiner(input, options, context, output).Run();
+  // How many rounds there will be nobody knows: a fraction counts where it is larger than those before.
+  double largest = 0.0;
+  bool isGoingOn = true;
+  const ExecutionContext ascending(
+    [&](double fraction, const char* activity)
+    {
+      largest = std::max(largest, fraction);
+      isGoingOn = context.Continue(largest, activity);
+    },
+    [&] { return !isGoingOn; });
+  const Status status = Refiner(input, options, ascending, output).Run();
   if (!status.IsOk())
   {
     output = SteinerPointRefinerOutput();

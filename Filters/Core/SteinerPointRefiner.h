@@ -4,8 +4,8 @@
  * @brief Stage 5: new points, inside and on the boundary, until sizes and shapes are as wanted.
  *
  * Method (thesis 5.6 and 6.5), in rounds:
- *  1. the outer and interface facets of the mesh are a surface, the other points mesh points; given
- *     points are added, others taken out;
+ *  1. the boundary of the mesh is a surface, the points inside are mesh points; given points are
+ *     added, others taken out;
  *  2. the surface is refined (DelaunaySurfaceRefiner.h) until its smallest spheres are empty and it
  *     is as fine as the sizing asks for, and split where the round before requested it; then it is
  *     tetrahedralized with the mesh points (AdvancingFrontTetrahedralizer.h);
@@ -21,8 +21,9 @@
  * their coordinates. Deterministic, whatever the number of threads. Tetrahedra across thin layers,
  * and those at sharp angles that would be refined for ever, stay as they are: Faults tells which
  * tetrahedra miss what was asked for, the report counts them.
- * Failure: InvalidInput names tetrahedra without a region, inverted or flat ones, points that are
- * not finite. The output is then empty, as after an abort.
+ * Failure: InvalidInput names tetrahedra without a region, inverted or flat ones, triangles that are
+ * no facets or facets that are missing among them, points that are not finite. Cells are tetrahedra
+ * if no boundary is given, otherwise its triangles. The output is then empty, as after an abort.
  * Cost: about 15 microseconds for a tetrahedron of the result; 250 bytes at the peak.
  */
 #ifndef cdmSteinerPointRefiner_h
@@ -61,6 +62,11 @@ struct SteinerPointRefinerOptions
 struct SteinerPointRefinerInput
 {
   const TetMesh* Mesh = nullptr;
+  /**
+   * May be null: the outer and interface facets. Otherwise these, and sheets inside of regions that
+   * are to be kept; on the points of the mesh, with labels.
+   */
+  const TriangleMesh* Boundary = nullptr;
   /** Edges longer than the sizing are too long. May be empty. */
   SizingField Sizing;
   /** Empty, or one for each point of the mesh: whether it may be moved and removed if inside. */
@@ -108,6 +114,11 @@ struct SteinerPointRefinerOutput
   TetMesh Mesh;
   /** Input point of each point; NoId for new and moved ones. */
   std::vector<Id> PointSources;
+  /**
+   * The refined boundary, on the points of the mesh, with labels. SourceCells: triangles of the
+   * boundary given, or the tetrahedra behind them.
+   */
+  TriangleMesh Boundary;
   /** One for each tetrahedron. */
   std::vector<SteinerFault> Faults;
   SteinerPointRefinerReport Report;

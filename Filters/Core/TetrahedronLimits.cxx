@@ -54,8 +54,8 @@ TetrahedronFault TetrahedronLimits::Find(
   }
   severity = radius / shortest;
   target = center;
-  const Vec3 middle =
-    0.5 * (vertices[TetrahedronEdges[shortestEdge][0]] + vertices[TetrahedronEdges[shortestEdge][1]]);
+  const Vec3 middle = 0.5 *
+    (vertices[TetrahedronEdges[shortestEdge][0]] + vertices[TetrahedronEdges[shortestEdge][1]]);
   // The apex of an isosceles triangle over the edge whose circumradius is the ratio times the edge.
   const double height = shortest *
     (this->RadiusEdgeRatio +

@@ -51,8 +51,8 @@ struct TetrahedronLimits
    * @param target if there is a fault: where to put a point
    * @param severity of the fault: the circumradius of a large one, the ratio of a badly shaped one
    */
-  TetrahedronFault Find(const std::array<Vec3, 4>& vertices, bool isShapeTested, Vec3& target,
-    double& severity) const;
+  TetrahedronFault Find(
+    const std::array<Vec3, 4>& vertices, bool isShapeTested, Vec3& target, double& severity) const;
   bool IsKept(const std::array<Vec3, 4>& vertices) const;
 };
 } // namespace cdm

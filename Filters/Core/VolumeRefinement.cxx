@@ -76,9 +76,8 @@ VolumeRefinement::VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
 {
   for (std::size_t p = 0; p < surface.Points.size(); ++p)
   {
-    this->Points.push_back(
-      { surface.Points[p], surfaceSizes.empty() ? 0.0 : surfaceSizes[p], false, NoId,
-        static_cast<Id>(p) });
+    this->Points.push_back({ surface.Points[p], surfaceSizes.empty() ? 0.0 : surfaceSizes[p], false,
+      NoId, static_cast<Id>(p) });
   }
   this->Points.insert(this->Points.end(), interior.begin(), interior.end());
   for (const TriangleIds& ids : surface.Triangles)
@@ -271,8 +270,7 @@ void VolumeRefinement::AddPoint(const Vec3& position)
   {
     for (Id id : facet)
     {
-      size =
-        std::min(size, this->Points[id].Size + Distance(position, this->Mesh.GetPoint(id)));
+      size = std::min(size, this->Points[id].Size + Distance(position, this->Mesh.GetPoint(id)));
     }
   }
   this->Mesh.Insert(position, this->Hole);
@@ -322,8 +320,8 @@ bool VolumeRefinement::RequestEdge(const TetrahedronIds& ids)
     for (Id i = this->IncidenceBegin[ends[0]]; i < this->IncidenceBegin[ends[0] + 1]; ++i)
     {
       const TriangleIds& triangle = this->Surface.Triangles[this->Incidence[i]];
-      count += std::all_of(triangle.begin(), triangle.end(), [&](Id id)
-        { return std::find(ids.begin(), ids.end(), id) != ids.end(); }) &&
+      count += std::all_of(triangle.begin(), triangle.end(),
+                 [&](Id id) { return std::find(ids.begin(), ids.end(), id) != ids.end(); }) &&
         std::find(triangle.begin(), triangle.end(), ends[1]) != triangle.end();
     }
     if (count == 2 && this->RequestEdge(static_cast<Id>(edge - this->Edges.begin()), true))
@@ -415,14 +413,14 @@ void VolumeRefinement::RemoveClosePoints(double smallest, const SizingField& siz
       continue;
     }
     const Vec3& position = this->Mesh.GetPoint(p);
-    const double limit = std::max(
-      smallest, sizing ? CloseRatio * sizing(position).GetSmallest() : 0.0);
+    const double limit =
+      std::max(smallest, sizing ? CloseRatio * sizing(position).GetSmallest() : 0.0);
     const bool isClose = std::any_of(star.begin(), star.end(),
       [&](Id t)
       {
         const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
-        return std::any_of(ids.begin(), ids.end(), [&](Id id)
-          { return id != p && Distance(position, this->Mesh.GetPoint(id)) < limit; });
+        return std::any_of(ids.begin(), ids.end(),
+          [&](Id id) { return id != p && Distance(position, this->Mesh.GetPoint(id)) < limit; });
       });
     if (isClose && this->Mesh.Remove(p))
     {
@@ -605,8 +603,7 @@ bool VolumeRefinement::Move(Id point, double target)
   }
   this->Search(old, FirstMove * nearest, target, rate, best);
 
-  if ((isKeptWithout || !isKept) &&
-    *std::min_element(angles.begin(), angles.end()) > best.Angle)
+  if ((isKeptWithout || !isKept) && *std::min_element(angles.begin(), angles.end()) > best.Angle)
   {
     ++this->Report.RemovedPoints;
     this->NoteChanges();
@@ -627,8 +624,7 @@ bool VolumeRefinement::Move(Id point, double target)
 
 bool VolumeRefinement::InsertBest(Id tetrahedron, double target)
 {
-  const std::array<Vec3, 4> vertices =
-    this->GetVertices(this->GetMesh().Tetrahedra[tetrahedron]);
+  const std::array<Vec3, 4> vertices = this->GetVertices(this->GetMesh().Tetrahedra[tetrahedron]);
   const Vec3 center = GetCircumcenter(vertices[0], vertices[1], vertices[2], vertices[3]);
   if (!IsFinite(center) || this->IsFull())
   {
@@ -666,8 +662,8 @@ bool VolumeRefinement::InsertBest(Id tetrahedron, double target)
  * False if nothing helps.
  * @param left the tetrahedron, which may have got another place
  */
-bool VolumeRefinement::Mend(const TetrahedronIds& ids, Id tetrahedron, Id stamp, double target,
-  bool mayInsert, Id& left)
+bool VolumeRefinement::Mend(
+  const TetrahedronIds& ids, Id tetrahedron, Id stamp, double target, bool mayInsert, Id& left)
 {
   left = tetrahedron;
   Id tried = NoId;

@@ -135,7 +135,7 @@ private:
     /** Large ones first, then the most severe fault, then the smallest id. */
     friend bool operator<(const Task& a, const Task& b)
     {
-      return a.Fault != b.Fault ? a.Fault > b.Fault
+      return a.Fault != b.Fault    ? a.Fault > b.Fault
         : a.Severity != b.Severity ? a.Severity < b.Severity
                                    : a.Tetrahedron > b.Tetrahedron;
     }
@@ -166,8 +166,8 @@ private:
   void NoteChanges();
   bool RequestEdge(const TetrahedronIds& ids);
   bool RequestEdge(Id edge, bool isSizeKept);
-  bool Mend(const TetrahedronIds& ids, Id tetrahedron, Id stamp, double target, bool mayInsert,
-    Id& left);
+  bool Mend(
+    const TetrahedronIds& ids, Id tetrahedron, Id stamp, double target, bool mayInsert, Id& left);
 
   DynamicTetrahedralization Mesh;
   const TriangleMesh& Surface;

@@ -39,8 +39,8 @@ PolygonSoup MakeGridSurface(int size)
   const int side = size + 1;
   for (int i = 0; i < side * side * side; ++i)
   {
-    soup.Points.push_back({ double(i % side) / size, double(i / side % side) / size,
-      double(i / side / side) / size });
+    soup.Points.push_back(
+      { double(i % side) / size, double(i / side % side) / size, double(i / side / side) / size });
   }
   const int steps[3] = { 1, side, side * side };
   for (int axis = 0; axis < 3; ++axis)
@@ -144,8 +144,8 @@ void ExpectMeshOfStage3(const DynamicTetrahedralization& dynamic, const Triangle
 }
 
 /** Whether the point can be inserted: found from any tetrahedron in conflict. */
-bool FindHole(DynamicTetrahedralization& mesh, const BoundarySpheres& spheres,
-  const Vec3& position, Id number, DynamicTetrahedralization::Hole& hole)
+bool FindHole(DynamicTetrahedralization& mesh, const BoundarySpheres& spheres, const Vec3& position,
+  Id number, DynamicTetrahedralization::Hole& hole)
 {
   BoundarySpheres::Disturbed disturbed;
   spheres.Find(position, disturbed);

@@ -1,0 +1,452 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "AdvancingFrontTetrahedralizer.h"
+#include "BoundaryTriangulator.h"
+#include "DelaunaySurfaceRefiner.h"
+#include "Measures.h"
+#include "MeshChecks.h"
+#include "RandomComplexes.h"
+#include "SteinerPointRefiner.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+using namespace cdm;
+
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+
+struct Stage3
+{
+  TriangleMesh Surface;
+  AdvancingFrontTetrahedralizerOutput Output;
+};
+
+/** Stages 0 to 3, with mesh points. */
+Stage3 MakeMesh(const PolygonSoup& soup, const std::vector<Vec3>& points = {})
+{
+  Stage3 stage;
+  BoundaryTriangulatorOutput boundary;
+  EXPECT_TRUE(TriangulateBoundary(soup, {}, {}, boundary).IsOk());
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &boundary.Surface;
+  input.MeshPoints = &points;
+  DelaunaySurfaceRefinerOutput refined;
+  EXPECT_TRUE(RefineDelaunaySurface(input, {}, {}, refined).IsOk());
+  stage.Surface = refined.Surface;
+  AdvancingFrontTetrahedralizerInput front;
+  front.Surface = &stage.Surface;
+  front.MeshPoints = &points;
+  EXPECT_TRUE(TetrahedralizeByAdvancingFront(front, {}, {}, stage.Output).IsOk());
+  return stage;
+}
+
+PolygonSoup MakeBox(const Vec3& size)
+{
+  return CellComplex(size).GetSoup();
+}
+
+/** A box of three layers, the one in the middle as thin as wanted. */
+PolygonSoup MakeLayers(double thickness)
+{
+  CellComplex complex({ 1.0, 1.0, 1.0 });
+  EXPECT_TRUE(complex.Cut({ 0.0, 0.0, 1.0 }, 0.5, 1e-6));
+  EXPECT_TRUE(complex.Cut({ 0.0, 0.0, 1.0 }, 0.5 + thickness, 1e-6));
+  return complex.GetSoup();
+}
+
+/** A prism whose side facets meet at an angle in degrees. */
+PolygonSoup MakeWedge(double angle)
+{
+  PolygonSoup soup;
+  const double x = std::cos(angle * Pi / 180.0);
+  const double y = std::sin(angle * Pi / 180.0);
+  soup.Points = { { 0.0, 0.0, 0.0 }, { 1.0, 0.0, 0.0 }, { x, y, 0.0 }, { 0.0, 0.0, 1.0 },
+    { 1.0, 0.0, 1.0 }, { x, y, 1.0 } };
+  for (const std::vector<Id>& polygon : std::vector<std::vector<Id>>{
+         { 0, 2, 1 }, { 3, 4, 5 }, { 0, 1, 4, 3 }, { 1, 2, 5, 4 }, { 2, 0, 3, 5 } })
+  {
+    soup.Connectivity.insert(soup.Connectivity.end(), polygon.begin(), polygon.end());
+    soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+  }
+  return soup;
+}
+
+/** Criteria of the mesh, its boundary with labels, and what the faults and the report say. */
+void ExpectRight(const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options,
+  const SteinerPointRefinerOutput& output)
+{
+  MeshCheckReport check;
+  ASSERT_TRUE(CheckTetMesh(output.Mesh, &output.Boundary, {}, check).IsOk());
+  EXPECT_TRUE(check.IsValid()) << check.GetSummary();
+  EXPECT_EQ(check.UnusedPoints, 0);
+  EXPECT_EQ(check.SmallestSphereViolations, 0);
+  EXPECT_EQ(output.Report.UnresolvedTriangles, 0);
+  // The same regions as before.
+  MeshCheckReport before;
+  ASSERT_TRUE(CheckTetMesh(*input.Mesh, nullptr, {}, before).IsOk());
+  ASSERT_EQ(before.Regions.size(), check.Regions.size());
+  for (std::size_t i = 0; i < check.Regions.size(); ++i)
+  {
+    EXPECT_EQ(before.Regions[i].Region, check.Regions[i].Region);
+    EXPECT_NEAR(before.Regions[i].Volume, check.Regions[i].Volume, 1e-12);
+  }
+
+  Id counts[5] = { 0, 0, 0, 0, 0 };
+  ASSERT_EQ(output.Faults.size(), output.Mesh.Tetrahedra.size());
+  const std::vector<Vec3>& p = output.Mesh.Points;
+  for (std::size_t t = 0; t < output.Faults.size(); ++t)
+  {
+    const TetrahedronIds& ids = output.Mesh.Tetrahedra[t];
+    const std::array<Vec3, 4> v{ p[ids[0]], p[ids[1]], p[ids[2]], p[ids[3]] };
+    double shortest = std::numeric_limits<double>::infinity();
+    double longest = 0.0;
+    for (const auto& edge : TetrahedronEdges)
+    {
+      shortest = std::min(shortest, Distance(v[edge[0]], v[edge[1]]));
+      longest = std::max(longest, Distance(v[edge[0]], v[edge[1]]));
+    }
+    const double radius = Distance(v[0], GetCircumcenter(v[0], v[1], v[2], v[3]));
+    if (output.Faults[t] == SteinerFault::None)
+    {
+      EXPECT_GE(GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]), options.DihedralAngleTarget);
+      EXPECT_TRUE(options.RadiusEdgeRatio == 0.0 ||
+        radius <= (1.0 + 1e-12) * options.RadiusEdgeRatio * shortest);
+      EXPECT_TRUE(options.MaximumEdgeLength == 0.0 || longest <= options.MaximumEdgeLength);
+      EXPECT_TRUE(options.MaximumVolume == 0.0 ||
+        GetSignedVolume(v[0], v[1], v[2], v[3]) <= options.MaximumVolume);
+    }
+    ++counts[static_cast<int>(output.Faults[t])];
+  }
+  EXPECT_EQ(counts[1], output.Report.TooLarge);
+  EXPECT_EQ(counts[2], output.Report.BadlyShaped);
+  EXPECT_EQ(counts[3], output.Report.Slivers);
+  EXPECT_EQ(counts[4], output.Report.Inevitable);
+
+  // Points that come from the input are where they were, and first.
+  ASSERT_EQ(output.PointSources.size(), p.size());
+  Id last = -1;
+  for (std::size_t i = 0; i < p.size(); ++i)
+  {
+    const Id source = output.PointSources[i];
+    if (source != NoId)
+    {
+      EXPECT_GT(source, last);
+      EXPECT_EQ(p[i], input.Mesh->Points[source]);
+    }
+    last = source == NoId ? std::numeric_limits<Id>::max() - 1 : source;
+  }
+}
+
+SteinerPointRefinerOutput Refine(
+  const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options)
+{
+  SteinerPointRefinerOutput output;
+  const Status status = RefineBySteinerPoints(input, options, {}, output);
+  EXPECT_TRUE(status.IsOk()) << status.Message;
+  ExpectRight(input, options, output);
+  return output;
+}
+
+void ExpectNoFaults(const SteinerPointRefinerReport& report)
+{
+  EXPECT_EQ(report.TooLarge, 0);
+  EXPECT_EQ(report.BadlyShaped, 0);
+  EXPECT_EQ(report.Slivers, 0);
+  EXPECT_EQ(report.Inevitable, 0);
+}
+} // namespace
+
+TEST(SteinerPointRefiner, BoxesGetNoSliversAtAll)
+{
+  for (const Vec3& size :
+    { Vec3{ 1.0, 1.0, 1.0 }, Vec3{ 1.0, 0.7, 0.2 }, Vec3{ 1e-9, 2e-9, 0.5e-9 } })
+  {
+    const Stage3 mesh = MakeMesh(MakeBox(size));
+    SteinerPointRefinerInput input;
+    input.Mesh = &mesh.Output.Mesh;
+    SteinerPointRefinerOptions options;
+    for (double target : { 15.0, 20.0 })
+    {
+      options.DihedralAngleTarget = target;
+      options.MaximumVolume = size.X * size.Y * size.Z / 1000.0;
+      ExpectNoFaults(Refine(input, options).Report);
+    }
+  }
+}
+
+TEST(SteinerPointRefiner, RandomComplexesInAnyPosition)
+{
+  for (unsigned int seed = 1; seed <= 6; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 generator(seed);
+    const Stage3 mesh = MakeMesh(MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, 2, 0.5 * seed));
+    SteinerPointRefinerInput input;
+    input.Mesh = &mesh.Output.Mesh;
+    input.Boundary = &mesh.Output.Boundary;
+    SteinerPointRefinerOptions options;
+    options.MaximumEdgeLength = 0.3;
+    const SteinerPointRefinerOutput output = Refine(input, options);
+    EXPECT_EQ(output.Report.TooLarge, 0);
+    // The triangles given, refined.
+    for (std::size_t t = 0; t < output.Boundary.Triangles.size(); ++t)
+    {
+      const Id source = output.Boundary.SourceCells[t];
+      ASSERT_GE(source, 0);
+      const TriangleIds& ids = mesh.Output.Boundary.Triangles[source];
+      const TriangleIds& now = output.Boundary.Triangles[t];
+      const std::vector<Vec3>& points = output.Mesh.Points;
+      const Vec3 center = (1.0 / 3.0) * (points[now[0]] + points[now[1]] + points[now[2]]);
+      // A flip may have united the triangles of a flat facet, which lie in one plane.
+      const Vec3& a = mesh.Output.Mesh.Points[ids[0]];
+      const Vec3 normal =
+        Cross(mesh.Output.Mesh.Points[ids[1]] - a, mesh.Output.Mesh.Points[ids[2]] - a);
+      EXPECT_NEAR(Dot(normal, center - a) / Norm(normal), 0.0, 1e-12);
+    }
+  }
+}
+
+TEST(SteinerPointRefiner, ThinLayersStayThinAndSharpWedgesEnd)
+{
+  for (double thickness : { 0.02, 0.005, 0.001 })
+  {
+    SCOPED_TRACE("thickness " + std::to_string(thickness));
+    const Stage3 mesh = MakeMesh(MakeLayers(thickness));
+    SteinerPointRefinerInput input;
+    input.Mesh = &mesh.Output.Mesh;
+    SteinerPointRefinerOptions options;
+    options.MaximumEdgeLength = 0.2;
+    const SteinerPointRefinerOutput output = Refine(input, options);
+    EXPECT_EQ(output.Report.TooLarge, 0);
+    EXPECT_EQ(output.Report.BadlyShaped, 0);
+    EXPECT_EQ(output.Report.Slivers, 0);
+    EXPECT_LT(output.Mesh.Points.size(), 2000u);
+  }
+  for (double angle : { 30.0, 5.0, 1.0 })
+  {
+    SCOPED_TRACE("angle " + std::to_string(angle));
+    const Stage3 mesh = MakeMesh(MakeWedge(angle));
+    SteinerPointRefinerInput input;
+    input.Mesh = &mesh.Output.Mesh;
+    const SteinerPointRefinerOutput output = Refine(input, SteinerPointRefinerOptions());
+    EXPECT_EQ(output.Report.Slivers, 0);
+    EXPECT_LT(output.Mesh.Points.size(), 3000u);
+  }
+}
+
+TEST(SteinerPointRefiner, FollowsTheSizing)
+{
+  const Stage3 mesh = MakeMesh(MakeBox({ 1.0, 1.0, 1.0 }));
+  SteinerPointRefinerInput input;
+  input.Mesh = &mesh.Output.Mesh;
+  input.Sizing = [](const Vec3& p) { return LocalSpacing(0.02 + 0.4 * Norm(p)); };
+  const SteinerPointRefinerOutput output = Refine(input, SteinerPointRefinerOptions());
+  ExpectNoFaults(output.Report);
+  for (const TetrahedronIds& ids : output.Mesh.Tetrahedra)
+  {
+    const std::vector<Vec3>& p = output.Mesh.Points;
+    const double size = 0.02 + 0.4 * Norm(0.25 * (p[ids[0]] + p[ids[1]] + p[ids[2]] + p[ids[3]]));
+    for (const auto& edge : TetrahedronEdges)
+    {
+      EXPECT_LE(Distance(p[ids[edge[0]]], p[ids[edge[1]]]), size);
+    }
+  }
+}
+
+TEST(SteinerPointRefiner, GivenPointsStayUnlessTheyAreFree)
+{
+  std::mt19937_64 generator(7);
+  std::uniform_real_distribution<double> uniform(0.2, 0.8);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 100; ++i)
+  {
+    points.push_back({ uniform(generator), uniform(generator), uniform(generator) });
+  }
+  const Stage3 mesh = MakeMesh(MakeBox({ 1.0, 1.0, 1.0 }), points);
+  const std::size_t count = mesh.Output.Mesh.Points.size();
+  SteinerPointRefinerInput input;
+  input.Mesh = &mesh.Output.Mesh;
+  const auto countKept = [](const SteinerPointRefinerOutput& output)
+  {
+    return static_cast<std::size_t>(std::count_if(output.PointSources.begin(),
+      output.PointSources.end(), [](Id source) { return source != NoId; }));
+  };
+  const SteinerPointRefinerOutput fixed = Refine(input, SteinerPointRefinerOptions());
+  EXPECT_EQ(countKept(fixed), count);
+
+  input.IsFree.assign(count, 1);
+  const SteinerPointRefinerOutput moved = Refine(input, SteinerPointRefinerOptions());
+  EXPECT_LT(countKept(moved), count);
+  EXPECT_GT(moved.Report.MovedPoints, 0);
+  EXPECT_EQ(moved.Report.Slivers, 0);
+  EXPECT_LT(moved.Mesh.Points.size(), fixed.Mesh.Points.size());
+
+  // Points put in and taken out, and nothing else: no quality is asked for.
+  input.IsFree.clear();
+  input.IsRemoved.assign(count, 1);
+  input.NewPoints = { { 0.5, 0.5, 0.5 }, { 0.25, 0.5, 0.5 }, { 3.0, 0.0, 0.0 }, { 0.0, 0.5, 0.5 },
+    { 0.5, 0.5, 0.5 } };
+  SteinerPointRefinerOptions none;
+  none.RadiusEdgeRatio = 0.0;
+  none.DihedralAngleTarget = 0.0;
+  const SteinerPointRefinerOutput changed = Refine(input, none);
+  EXPECT_EQ(changed.Report.RemovedPoints, 100);
+  EXPECT_EQ(changed.Report.InteriorPoints, 0);
+  for (std::size_t i = 0; i < 2; ++i)
+  {
+    EXPECT_EQ(
+      std::count(changed.Mesh.Points.begin(), changed.Mesh.Points.end(), input.NewPoints[i]), 1);
+  }
+  EXPECT_EQ(countKept(changed), count - 100);
+
+  // Free points that are close to others go.
+  input = SteinerPointRefinerInput();
+  input.Mesh = &mesh.Output.Mesh;
+  input.IsFree.assign(count, 1);
+  none.MinimumEdgeLength = 0.1;
+  const SteinerPointRefinerOutput coarse = Refine(input, none);
+  EXPECT_GT(coarse.Report.RemovedPoints, 0);
+  for (const TetrahedronIds& ids : coarse.Mesh.Tetrahedra)
+  {
+    for (const auto& edge : TetrahedronEdges)
+    {
+      EXPECT_GE(Distance(coarse.Mesh.Points[ids[edge[0]]], coarse.Mesh.Points[ids[edge[1]]]), 0.1);
+    }
+  }
+}
+
+TEST(SteinerPointRefiner, KeepsSheetsOfTheBoundaryGiven)
+{
+  // A square in the middle of a box, both sides of which are the same region.
+  PolygonSoup soup = MakeBox({ 1.0, 1.0, 1.0 });
+  const Id first = static_cast<Id>(soup.Points.size());
+  for (const Vec3& p : { Vec3{ 0.25, 0.25, 0.5 }, Vec3{ 0.75, 0.25, 0.5 }, Vec3{ 0.75, 0.75, 0.5 },
+         Vec3{ 0.25, 0.75, 0.5 } })
+  {
+    soup.Points.push_back(p);
+    soup.Connectivity.push_back(static_cast<Id>(soup.Points.size()) - 1);
+  }
+  soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+  soup.Labels.push_back({ 0, 0 });
+  const Stage3 mesh = MakeMesh(soup);
+  SteinerPointRefinerInput input;
+  input.Mesh = &mesh.Output.Mesh;
+  input.Boundary = &mesh.Output.Boundary;
+  SteinerPointRefinerOptions options;
+  options.MaximumEdgeLength = 0.2;
+  const SteinerPointRefinerOutput output = Refine(input, options);
+  double area = 0.0;
+  for (std::size_t t = 0; t < output.Boundary.Triangles.size(); ++t)
+  {
+    const TriangleIds& ids = output.Boundary.Triangles[t];
+    if (output.Boundary.Labels[t].Front == output.Boundary.Labels[t].Back)
+    {
+      for (Id id : ids)
+      {
+        EXPECT_EQ(output.Mesh.Points[id].Z, 0.5);
+      }
+      area += GetTriangleArea(
+        output.Mesh.Points[ids[0]], output.Mesh.Points[ids[1]], output.Mesh.Points[ids[2]]);
+    }
+  }
+  EXPECT_NEAR(area, 0.25, 1e-14);
+  EXPECT_EQ(output.PointSources[first], first);
+}
+
+TEST(SteinerPointRefiner, DoesNotDependOnThreads)
+{
+  std::mt19937_64 generator(3);
+  const Stage3 mesh = MakeMesh(MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, 1, 1.0));
+  SteinerPointRefinerInput input;
+  input.Mesh = &mesh.Output.Mesh;
+  SteinerPointRefinerOptions options;
+  options.MaximumEdgeLength = 0.1;
+  const SteinerPointRefinerOutput one = Refine(input, options);
+  options.NumberOfThreads = 3;
+  const SteinerPointRefinerOutput three = Refine(input, options);
+  EXPECT_EQ(one.Mesh.Points, three.Mesh.Points);
+  EXPECT_TRUE(std::equal(one.Mesh.Tetrahedra.begin(), one.Mesh.Tetrahedra.end(),
+    three.Mesh.Tetrahedra.begin(), three.Mesh.Tetrahedra.end()));
+}
+
+TEST(SteinerPointRefiner, StopsAtALimitAndOnRequest)
+{
+  const Stage3 mesh = MakeMesh(MakeBox({ 1.0, 1.0, 1.0 }));
+  SteinerPointRefinerInput input;
+  input.Mesh = &mesh.Output.Mesh;
+  SteinerPointRefinerOptions options;
+  options.MaximumVolume = 1e-5;
+  options.MaximumNewPoints = 500;
+  const SteinerPointRefinerOutput stopped = Refine(input, options);
+  EXPECT_GT(stopped.Report.TooLarge, 0);
+
+  options.MaximumNewPoints = 0;
+  options.MaximumVolume = 1e-4;
+  double last = 0.0;
+  int calls = 0;
+  SteinerPointRefinerOutput output;
+  const ExecutionContext observed(
+    [&](double fraction, const char*)
+    {
+      EXPECT_GE(fraction, last - 1e-12);
+      EXPECT_LE(fraction, 1.0);
+      last = fraction;
+      ++calls;
+    },
+    {});
+  EXPECT_TRUE(RefineBySteinerPoints(input, options, observed, output).IsOk());
+  EXPECT_GT(calls, 10);
+  for (int limit : { 1, 5, calls / 2, calls - 1 })
+  {
+    int count = 0;
+    const ExecutionContext aborted({}, [&] { return ++count >= limit; });
+    EXPECT_TRUE(RefineBySteinerPoints(input, options, aborted, output).IsAborted());
+    EXPECT_TRUE(output.Mesh.Tetrahedra.empty());
+  }
+}
+
+TEST(SteinerPointRefiner, BadInputIsNamed)
+{
+  const Stage3 good = MakeMesh(MakeBox({ 1.0, 1.0, 1.0 }));
+  SteinerPointRefinerInput input;
+  SteinerPointRefinerOutput output;
+  const auto refine = [&]
+  {
+    const Status status = RefineBySteinerPoints(input, {}, {}, output);
+    EXPECT_EQ(status.Code, StatusCode::InvalidInput);
+    EXPECT_TRUE(output.Mesh.Tetrahedra.empty());
+    return status;
+  };
+  TetMesh mesh = good.Output.Mesh;
+  input.Mesh = &mesh;
+  std::swap(mesh.Tetrahedra[2][0], mesh.Tetrahedra[2][1]);
+  const std::vector<Id> cells = refine().Cells;
+  EXPECT_TRUE(std::find(cells.begin(), cells.end(), 2) != cells.end());
+  mesh = good.Output.Mesh;
+  mesh.Regions[1] = OutsideRegion;
+  EXPECT_EQ(refine().Cells, std::vector<Id>{ 1 });
+  mesh = good.Output.Mesh;
+  input.NewPoints = { { 0.5, 0.5, 0.5 }, { 0.5, std::nan(""), 0.5 } };
+  EXPECT_EQ(refine().Points, std::vector<Id>{ 1 });
+
+  input.NewPoints.clear();
+  TriangleMesh boundary = good.Output.Boundary;
+  input.Boundary = &boundary;
+  boundary.Triangles.pop_back();
+  boundary.Labels.pop_back();
+  EXPECT_NE(refine().Message.find("1 facets"), std::string::npos);
+  boundary = good.Output.Boundary;
+  boundary.Points.pop_back();
+  EXPECT_EQ(refine().Code, StatusCode::InvalidInput);
+  boundary = good.Output.Boundary;
+  // Of the box's diagonals only the one from the first point is an edge.
+  boundary.Triangles.push_back({ 1, 6, 0 });
+  boundary.Labels.push_back({ 0, 0 });
+  const Status status = refine();
+  EXPECT_EQ(status.Cells.size(), 1u) << status.Message;
+}
