@@ -84,8 +84,8 @@ struct DelaunaySurfaceRefinerInput
    * Triangles and structural edges to be split once each, if the criterion and the flips have not
    * changed them before: what a stage after this one wants finer.
    */
-  std::vector<Id> TrianglesToSplit;
-  std::vector<EdgeIds> EdgesToSplit;
+  std::vector<Id> TrianglesToSplit = {};
+  std::vector<EdgeIds> EdgesToSplit = {};
 };
 
 struct DelaunaySurfaceRefinerReport

@@ -525,6 +525,8 @@ void Refiner::MakeOutput()
     newIds[p] = static_cast<Id>(points.size());
     points.push_back(this->Output.Mesh.Points[p]);
     this->Output.PointSources.push_back(sources[p]);
+    const Id inside = p - static_cast<Id>(this->Surface.Points.size());
+    this->Output.IsFree.push_back(inside >= 0 && this->Interior[inside].IsFree);
   }
   this->Output.Mesh.Points = std::move(points);
   this->Output.Boundary = std::move(this->Surface);

@@ -114,6 +114,8 @@ struct SteinerPointRefinerOutput
   TetMesh Mesh;
   /** Input point of each point; NoId for new and moved ones. */
   std::vector<Id> PointSources;
+  /** One for each point: whether it is inside and may be moved or removed later on. */
+  std::vector<char> IsFree;
   /**
    * The refined boundary, on the points of the mesh, with labels. SourceCells: triangles of the
    * boundary given, or the tetrahedra behind them.

@@ -1120,6 +1120,47 @@ void InterpolateTuples(vtkDataSetAttributes* from, const std::vector<vtkIdType>&
 }
 
 //--------------------------------------------------------------------------------------------------
+void InterpolateTuplesInCells(
+  vtkUnstructuredGrid* input, const std::vector<cdm::Id>& sources, vtkUnstructuredGrid* output)
+{
+  vtkPointData* from = input->GetPointData();
+  vtkPointData* to = output->GetPointData();
+  to->CopyAllOff(vtkDataSetAttributes::INTERPOLATE);
+  to->CopyAllOn(vtkDataSetAttributes::INTERPOLATE);
+  to->SetCopyGlobalIds(0, vtkDataSetAttributes::INTERPOLATE);
+  to->SetCopyPedigreeIds(0, vtkDataSetAttributes::INTERPOLATE);
+  const auto count = static_cast<vtkIdType>(sources.size());
+  to->InterpolateAllocate(from, count);
+  // A copy of its own: locators build caches in the data set that they search.
+  vtkNew<vtkUnstructuredGrid> cells;
+  cells->ShallowCopy(input);
+  vtkNew<vtkStaticCellLocator> locator;
+  locator->SetDataSet(cells);
+  locator->BuildLocator();
+  vtkNew<vtkGenericCell> cell;
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    if (sources[i] != cdm::NoId)
+    {
+      to->CopyData(from, sources[i], i);
+      continue;
+    }
+    double x[3];
+    double nearest[3];
+    double parametric[3];
+    double weights[4];
+    double distance2 = 0.0;
+    int subId = 0;
+    vtkIdType found = -1;
+    output->GetPoint(i, x);
+    // On the boundary rounding decides whether a position is inside: the nearest cell is right.
+    locator->FindClosestPoint(x, nearest, cell, found, subId, distance2);
+    cell->EvaluatePosition(nearest, nullptr, subId, parametric, distance2, weights);
+    to->InterpolatePoint(from, i, cell->GetPointIds(), weights);
+  }
+}
+
+//--------------------------------------------------------------------------------------------------
 void AppendTuples(vtkDataSetAttributes* first, vtkDataSetAttributes* second,
   const std::vector<cdm::Id>& sources, vtkDataSetAttributes* to)
 {

@@ -165,6 +165,13 @@ void InterpolateTuples(vtkDataSetAttributes* from, const std::vector<vtkIdType>&
   const std::vector<cdm::PointParents>& newPoints, ParentIds parentIds, vtkDataSetAttributes* to);
 
 /**
+ * Point data of a mesh made from another one: of the input point sources[i], or interpolated where
+ * the output's point i lies in the input's cells if there is none. Arrays of ids are left out.
+ */
+void InterpolateTuplesInCells(
+  vtkUnstructuredGrid* input, const std::vector<cdm::Id>& sources, vtkUnstructuredGrid* output);
+
+/**
  * All tuples of first, then the tuples sources[i] of second: the arrays that both have (same name,
  * type and number of components). second may be null if there are no sources.
  */

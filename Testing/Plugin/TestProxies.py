@@ -51,6 +51,11 @@ better = SliverRemover(Input=front)
 better.UpdatePipeline()
 assert abs(Volume(better) - 6.0) < 6e-12, "volume %.17g" % Volume(better)
 
+refined = SteinerPointRefiner(Input=better, MaximumVolume=0.05, DihedralAngleTarget=18)
+refined.UpdatePipeline()
+assert abs(Volume(refined) - 6.0) < 6e-12, "volume %.17g" % Volume(refined)
+assert Count(refined, 0) > 120, "no tetrahedron may be larger than 0.05"
+
 moving = Calculator(Input=better, ResultArrayName="Displacement",
                     Function="0.1*coordsX*iHat")
 moved = MovingBoundaryRemesher(Input=moving, Displacement=["POINTS", "Displacement"])

@@ -15,8 +15,8 @@ expected = {
     "vtkAdvancingFrontTetrahedralizer", "vtkBoundaryTriangulator", "vtkConformingDelaunayMesher",
     "vtkDelaunayMeshCriteria", "vtkDelaunaySurfaceRefiner", "vtkGmshMeshWriter",
     "vtkMeshPointGenerator", "vtkMovingBoundaryRemesher", "vtkSizingFromSolution",
-    "vtkSliverRemover", "vtkStructuralEdgeExtractor", "vtkTechnologyStructureSource",
-    "vtkVoronoiControlVolumes"}
+    "vtkSliverRemover", "vtkSteinerPointRefiner", "vtkStructuralEdgeExtractor",
+    "vtkTechnologyStructureSource", "vtkVoronoiControlVolumes"}
 missing = expected - set(dir(conforming_delaunay))
 assert not missing, missing
 

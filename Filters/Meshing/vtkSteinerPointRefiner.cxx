@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSteinerPointRefiner.h"
+
+#include "vtkCoreBridge.h"
+
+#include "Core/SteinerPointRefiner.h"
+
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkSMPTools.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <algorithm>
+#include <string>
+
+vtkStandardNewMacro(vtkSteinerPointRefiner);
+
+namespace
+{
+constexpr const char* FreePointName = "FreePoint";
+constexpr const char* RemovePointName = "RemovePoint";
+constexpr const char* FaultName = "RefinementFault";
+
+/** Where a point array is not zero; empty without the array. */
+cdm::Status ToFlags(vtkUnstructuredGrid* input, const char* name, std::vector<char>& flags)
+{
+  vtkDataArray* array = input->GetPointData()->GetArray(name);
+  if (!array)
+  {
+    return {};
+  }
+  if (array->GetNumberOfComponents() != 1 ||
+    array->GetNumberOfTuples() != input->GetNumberOfPoints())
+  {
+    return cdm::Status::InvalidInput(std::string("The point array ") + name +
+      " needs one component and one value for each point: correct or remove it.");
+  }
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    flags.push_back(array->GetComponent(i, 0) != 0.0);
+  }
+  return {};
+}
+
+template <typename T>
+void AddFlags(vtkDataSetAttributes* data, const char* name, const std::vector<T>& flags)
+{
+  vtkNew<vtkUnsignedCharArray> array;
+  array->SetName(name);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(flags.size()));
+  for (std::size_t i = 0; i < flags.size(); ++i)
+  {
+    array->SetValue(static_cast<vtkIdType>(i), static_cast<unsigned char>(flags[i]));
+  }
+  data->AddArray(array);
+}
+
+/** "3 are too large", for what there is. */
+std::string ListFaults(const cdm::SteinerPointRefinerReport& report)
+{
+  std::string text;
+  const auto add = [&](cdm::Id count, const char* what)
+  {
+    if (count > 0)
+    {
+      text += (text.empty() ? "" : ", ") + std::to_string(count) + what;
+    }
+  };
+  add(report.TooLarge, " are too large");
+  add(report.BadlyShaped, " have a larger radius-edge ratio");
+  add(report.Slivers, " a smaller dihedral angle");
+  return text;
+}
+} // namespace
+
+//--------------------------------------------------------------------------------------------------
+vtkSteinerPointRefiner::vtkSteinerPointRefiner()
+{
+  this->SetNumberOfInputPorts(4);
+  this->SetNumberOfOutputPorts(2);
+}
+
+//--------------------------------------------------------------------------------------------------
+int vtkSteinerPointRefiner::FillInputPortInformation(int port, vtkInformation* info)
+{
+  static const char* const types[4] = { "vtkUnstructuredGrid", "vtkDataSet", "vtkPolyData",
+    "vtkPointSet" };
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), types[port]);
+  if (port > 0)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+//--------------------------------------------------------------------------------------------------
+int vtkSteinerPointRefiner::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkUnstructuredGrid" : "vtkPolyData");
+  return 1;
+}
+
+//--------------------------------------------------------------------------------------------------
+int vtkSteinerPointRefiner::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkUnstructuredGrid* input = vtkUnstructuredGrid::GetData(inputVector[0]);
+  vtkDataSet* sizingInput = vtkDataSet::GetData(inputVector[1]);
+  vtkPolyData* boundaryInput = vtkPolyData::GetData(inputVector[2]);
+  vtkPointSet* pointInput = vtkPointSet::GetData(inputVector[3]);
+  if (vtkCoreBridge::IsIdleProcess(input, outputVector))
+  {
+    return 1;
+  }
+
+  cdm::TetMesh mesh;
+  cdm::TriangleMesh boundary;
+  cdm::SteinerPointRefinerInput engineInput;
+  engineInput.Mesh = &mesh;
+  cdm::SteinerPointRefinerOutput result;
+  // Errors count cells of the boundary if there is one.
+  vtkDataSet* namedInput = input;
+  const cdm::Status status = vtkCoreBridge::Guard(
+    [&]
+    {
+      cdm::Status step = vtkCoreBridge::ToTetMesh(input, mesh);
+      if (step.IsOk() && sizingInput)
+      {
+        step = vtkCoreBridge::ToSizing(sizingInput, engineInput.Sizing);
+      }
+      if (step.IsOk())
+      {
+        step = ToFlags(input, FreePointName, engineInput.IsFree);
+      }
+      if (step.IsOk())
+      {
+        step = ToFlags(input, RemovePointName, engineInput.IsRemoved);
+      }
+      if (step.IsOk() && pointInput)
+      {
+        step = vtkCoreBridge::ToPoints(pointInput, "points to be put in", engineInput.NewPoints);
+      }
+      if (step.IsOk() && boundaryInput && boundaryInput->GetNumberOfCells() > 0)
+      {
+        namedInput = boundaryInput;
+        step = vtkCoreBridge::ToTriangleMesh(boundaryInput, boundary);
+        engineInput.Boundary = &boundary;
+      }
+      if (!step.IsOk())
+      {
+        return step;
+      }
+      if (this->FreeInteriorPoints)
+      {
+        engineInput.IsFree.assign(mesh.Points.size(), 1);
+      }
+      cdm::SteinerPointRefinerOptions options;
+      options.RadiusEdgeRatio = this->RadiusEdgeRatio;
+      options.DihedralAngleTarget = this->DihedralAngleTarget;
+      options.MaximumVolume = this->MaximumVolume;
+      options.MaximumEdgeLength = this->MaximumEdgeLength;
+      options.MinimumEdgeLength = this->MinimumEdgeLength;
+      options.Criterion = static_cast<cdm::SurfaceCriterion>(this->Criterion);
+      options.StructuralEdges.AccuracyAngle = this->AccuracyAngle;
+      options.StructuralEdges.FlatnessRatio = this->FlatnessRatio;
+      options.MaximumNewPoints = this->MaximumNewPoints;
+      options.NumberOfThreads = vtkSMPTools::GetEstimatedNumberOfThreads();
+      step =
+        cdm::RefineBySteinerPoints(engineInput, options, vtkCoreBridge::MakeContext(this), result);
+      if (boundaryInput)
+      {
+        vtkCoreBridge::OffsetCells(step, vtkCoreBridge::GetFirstPolygon(boundaryInput));
+      }
+      return step;
+    });
+  const cdm::SteinerPointRefinerReport& report = result.Report;
+  this->NumberOfBoundaryPoints = report.BoundaryPoints;
+  this->NumberOfInteriorPoints = report.InteriorPoints;
+  this->NumberOfMovedPoints = report.MovedPoints;
+  this->NumberOfRemovedPoints = report.RemovedPoints;
+  this->NumberOfRounds = report.Rounds;
+  this->NumberOfTooLargeTetrahedra = report.TooLarge;
+  this->NumberOfBadlyShapedTetrahedra = report.BadlyShaped;
+  this->NumberOfSlivers = report.Slivers;
+  this->NumberOfInevitableFaults = report.Inevitable;
+  if (!status.IsOk())
+  {
+    return vtkCoreBridge::ReportFailure(this, outputVector, status, namedInput);
+  }
+
+  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector, 0);
+  vtkCoreBridge::FromTetMesh(result.Mesh, output);
+  vtkCoreBridge::InterpolateTuplesInCells(input, result.PointSources, output);
+  output->GetPointData()->RemoveArray(RemovePointName);
+  AddFlags(output->GetPointData(), FreePointName, result.IsFree);
+  vtkPolyData* boundaryOutput = vtkPolyData::GetData(outputVector, 1);
+  vtkCoreBridge::FromTriangleMesh(result.Boundary, boundaryOutput);
+  boundaryOutput->GetPointData()->PassData(output->GetPointData());
+  if (engineInput.Boundary)
+  {
+    vtkCoreBridge::CopyTriangleTuples(boundaryInput, result.Boundary.SourceCells, boundaryOutput);
+  }
+
+  const std::string faults = ListFaults(report);
+  if (!faults.empty() || report.Inevitable > 0)
+  {
+    AddFlags(output->GetCellData(), FaultName, result.Faults);
+  }
+  if (!faults.empty())
+  {
+    vtkWarningMacro(<< "Of " << result.Mesh.Tetrahedra.size() << " tetrahedra " << faults
+                    << " than asked for: see the cell array " << FaultName
+                    << ". Ask for less, or allow more points.");
+  }
+  if (report.UnresolvedTriangles > 0)
+  {
+    vtkWarningMacro(<< report.UnresolvedTriangles
+                    << " triangles of the boundary do not fulfil the criterion.");
+  }
+  return 1;
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkSteinerPointRefiner::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Criterion: " << this->Criterion << "\n";
+  os << indent << "RadiusEdgeRatio: " << this->RadiusEdgeRatio << "\n";
+  os << indent << "DihedralAngleTarget: " << this->DihedralAngleTarget << "\n";
+  os << indent << "MaximumVolume: " << this->MaximumVolume << "\n";
+  os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
+  os << indent << "MinimumEdgeLength: " << this->MinimumEdgeLength << "\n";
+  os << indent << "FreeInteriorPoints: " << this->FreeInteriorPoints << "\n";
+  os << indent << "AccuracyAngle: " << this->AccuracyAngle << "\n";
+  os << indent << "FlatnessRatio: " << this->FlatnessRatio << "\n";
+  os << indent << "MaximumNewPoints: " << this->MaximumNewPoints << "\n";
+  os << indent << "NumberOfBoundaryPoints: " << this->NumberOfBoundaryPoints << "\n";
+  os << indent << "NumberOfInteriorPoints: " << this->NumberOfInteriorPoints << "\n";
+  os << indent << "NumberOfMovedPoints: " << this->NumberOfMovedPoints << "\n";
+  os << indent << "NumberOfRemovedPoints: " << this->NumberOfRemovedPoints << "\n";
+  os << indent << "NumberOfRounds: " << this->NumberOfRounds << "\n";
+  os << indent << "NumberOfTooLargeTetrahedra: " << this->NumberOfTooLargeTetrahedra << "\n";
+  os << indent << "NumberOfBadlyShapedTetrahedra: " << this->NumberOfBadlyShapedTetrahedra << "\n";
+  os << indent << "NumberOfSlivers: " << this->NumberOfSlivers << "\n";
+  os << indent << "NumberOfInevitableFaults: " << this->NumberOfInevitableFaults << "\n";
+}

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSteinerPointRefiner
+ * @brief   Stage 5: new points until tetrahedra are as small and as well shaped as wanted, without
+ * slivers, and Delaunay.
+ *
+ * Method (Fleischmann 1999, sections 5.6 and 6.5), in rounds:
+ *  1. the boundary of the mesh is refined until its smallest spheres are empty and it is as fine as
+ *     asked for, and tetrahedralized anew with the points inside;
+ *  2. tetrahedra that are too large or badly shaped get a point at their circumcenter or, for shape,
+ *     on the way there; where it disturbs the boundary, the boundary is split instead;
+ *  3. points of slivers are moved, inside of their region, each move with a local update of the
+ *     Delaunay mesh, and only if the smallest dihedral angle around it grows; where that does not
+ *     help points are taken out or added, at last the boundary is split.
+ *
+ * Inputs: port 0: vtkUnstructuredGrid of VTK_TETRA only, as it comes from
+ * vtkAdvancingFrontTetrahedralizer or any other source; cell array RegionId (whole numbers from 0 on)
+ * where there are several regions. Point array FreePoint (optional, one component): points inside
+ * with a value other than 0 may be moved and taken out. Point array RemovePoint (optional, one
+ * component): points inside with a value other than 0 are taken out first. Port 1, optional:
+ * vtkDataSet with the point array Sizing, see vtkDelaunaySurfaceRefiner; edges longer than the sizing
+ * in their direction are too long. Port 2, optional: vtkPolyData, the boundary that belongs to the
+ * mesh (output 1 of vtkAdvancingFrontTetrahedralizer), which hands its cell data on and holds sheets
+ * inside of regions. Port 3, optional: vtkPointSet, points to be put in.
+ *
+ * Outputs: port 0: the tetrahedra, with the cell array RegionId (int). Other cell data are dropped.
+ * Points that stay where they are come first, in their order, with their data; at new and moved ones
+ * point data are interpolated in the input mesh (arrays of ids excepted: they are dropped). Point
+ * array FreePoint (unsigned char): 1 for points inside that were made here or were free before. Only
+ * if there are tetrahedra that miss what was asked for: cell array RefinementFault (unsigned char), 1
+ * too large, 2 radius-edge ratio, 3 dihedral angle, 4 the latter two at a sharp angle of the input
+ * or across a thin layer, 0 for all others. Port 1: the refined boundary as triangles, with
+ * BoundaryLabels (int, 2 components) and the cell data of port 2.
+ *
+ * Guarantees: the mesh is Delaunay and keeps the shape of the boundary; each boundary triangle
+ * fulfils the criterion. Points on the boundary, and those inside that are not free, keep their
+ * coordinates. It ends for every bound. Deterministic.
+ *
+ * Failure: an error that names the cells, and empty outputs, for an empty input, cells of another
+ * type, tetrahedra that are inverted or flat, a boundary that does not belong to the mesh. An aborted
+ * run has empty outputs. A warning counts tetrahedra that miss what was asked for.
+ *
+ * Cost: about 25 microseconds for a tetrahedron of the result.
+ *
+ * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999;
+ * J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998; J. Tournois et al.,
+ * "Perturbing slivers in 3D Delaunay meshes", 2009. Filters/Core/SteinerPointRefiner.h is the engine.
+ */
+#ifndef vtkSteinerPointRefiner_h
+#define vtkSteinerPointRefiner_h
+
+#include "cdmMeshingModule.h" // For export macro
+#include <vtkUnstructuredGridAlgorithm.h>
+
+class CDMMESHING_EXPORT vtkSteinerPointRefiner : public vtkUnstructuredGridAlgorithm
+{
+public:
+  static vtkSteinerPointRefiner* New();
+  vtkTypeMacro(vtkSteinerPointRefiner, vtkUnstructuredGridAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Criteria
+  {
+    /** Criterion 3.1: the smallest sphere of each triangle is empty. */
+    SmallestSphere = 1,
+    /** Criterion 3.2: those of each triangle and of its edges are: closed control volumes. */
+    SmallestSphereAndEdges
+  };
+
+  ///@{
+  /** What every boundary triangle has to fulfil, one of Criteria. Default SmallestSphere. */
+  vtkSetClampMacro(Criterion, int, SmallestSphere, SmallestSphereAndEdges);
+  vtkGetMacro(Criterion, int);
+  void SetCriterionToSmallestSphere() { this->SetCriterion(SmallestSphere); }
+  void SetCriterionToSmallestSphereAndEdges() { this->SetCriterion(SmallestSphereAndEdges); }
+  ///@}
+
+  ///@{
+  /**
+   * Largest ratio of the circumradius to the shortest edge. Default 1.4; 0: off; range >= 0 (a
+   * regular tetrahedron has 0.612; below 1.2 many points are spent in vain).
+   */
+  vtkSetClampMacro(RadiusEdgeRatio, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(RadiusEdgeRatio, double);
+  ///@}
+
+  ///@{
+  /**
+   * Tetrahedra with a smaller dihedral angle are slivers, to be removed. Degrees; default 15; 0: off;
+   * range 0 to 40 (up to 20 are reached nearly everywhere).
+   */
+  vtkSetClampMacro(DihedralAngleTarget, double, 0.0, 40.0);
+  vtkGetMacro(DihedralAngleTarget, double);
+  ///@}
+
+  ///@{
+  /** Largest volume of a tetrahedron. Cubic model units; default 0: off; range >= 0. */
+  vtkSetClampMacro(MaximumVolume, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(MaximumVolume, double);
+  ///@}
+
+  ///@{
+  /** Longest edge, inside and on the boundary. Model units; default 0: off; range >= 0. */
+  vtkSetClampMacro(MaximumEdgeLength, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(MaximumEdgeLength, double);
+  ///@}
+
+  ///@{
+  /**
+   * Free points closer to another one are taken out before the refinement, with a sizing also those
+   * closer than 0.3 of it. Model units; default 0: off; range >= 0.
+   */
+  vtkSetClampMacro(MinimumEdgeLength, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(MinimumEdgeLength, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether all points inside are free, to be moved and taken out where that makes better
+   * tetrahedra; otherwise those only that the point array FreePoint says. Default off.
+   */
+  vtkSetMacro(FreeInteriorPoints, bool);
+  vtkGetMacro(FreeInteriorPoints, bool);
+  vtkBooleanMacro(FreeInteriorPoints, bool);
+  ///@}
+
+  ///@{
+  /** See vtkDelaunaySurfaceRefiner. Degrees; default 0; range 0 to 180. */
+  vtkSetClampMacro(AccuracyAngle, double, 0.0, 180.0);
+  vtkGetMacro(AccuracyAngle, double);
+  ///@}
+
+  ///@{
+  /** See vtkDelaunaySurfaceRefiner. Ratio of the bounding box diagonal; default 1e-9; range 0 to 1. */
+  vtkSetClampMacro(FlatnessRatio, double, 0.0, 1.0);
+  vtkGetMacro(FlatnessRatio, double);
+  ///@}
+
+  ///@{
+  /** The refinement stops when it has made so many points. Default 0: no limit; range >= 0. */
+  vtkSetClampMacro(MaximumNewPoints, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MaximumNewPoints, int);
+  ///@}
+
+  ///@{
+  /** Of the last run. */
+  vtkGetMacro(NumberOfBoundaryPoints, vtkIdType);
+  vtkGetMacro(NumberOfInteriorPoints, vtkIdType);
+  vtkGetMacro(NumberOfMovedPoints, vtkIdType);
+  vtkGetMacro(NumberOfRemovedPoints, vtkIdType);
+  vtkGetMacro(NumberOfRounds, vtkIdType);
+  vtkGetMacro(NumberOfTooLargeTetrahedra, vtkIdType);
+  vtkGetMacro(NumberOfBadlyShapedTetrahedra, vtkIdType);
+  vtkGetMacro(NumberOfSlivers, vtkIdType);
+  vtkGetMacro(NumberOfInevitableFaults, vtkIdType);
+  ///@}
+
+protected:
+  vtkSteinerPointRefiner();
+  ~vtkSteinerPointRefiner() override = default;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  int Criterion = SmallestSphere;
+  double RadiusEdgeRatio = 1.4;
+  double DihedralAngleTarget = 15.0;
+  double MaximumVolume = 0.0;
+  double MaximumEdgeLength = 0.0;
+  double MinimumEdgeLength = 0.0;
+  bool FreeInteriorPoints = false;
+  double AccuracyAngle = 0.0;
+  double FlatnessRatio = 1e-9;
+  int MaximumNewPoints = 0;
+
+  vtkIdType NumberOfBoundaryPoints = 0;
+  vtkIdType NumberOfInteriorPoints = 0;
+  vtkIdType NumberOfMovedPoints = 0;
+  vtkIdType NumberOfRemovedPoints = 0;
+  vtkIdType NumberOfRounds = 0;
+  vtkIdType NumberOfTooLargeTetrahedra = 0;
+  vtkIdType NumberOfBadlyShapedTetrahedra = 0;
+  vtkIdType NumberOfSlivers = 0;
+  vtkIdType NumberOfInevitableFaults = 0;
+
+private:
+  vtkSteinerPointRefiner(const vtkSteinerPointRefiner&) = delete;
+  void operator=(const vtkSteinerPointRefiner&) = delete;
+};
+
+#endif
