@@ -876,6 +876,18 @@ void AdvancingFront::CollectTetrahedra()
   constexpr unsigned char NotMeshed = 12;
   // Their order within a vertex is left to chance here; it is settled below.
   std::vector<std::atomic<Id>> ends(this->Order.size() + 1);
+  const bool isAlone = this->Options.NumberOfThreads <= 1;
+  const auto increment = [isAlone](std::atomic<Id>& counter)
+  {
+    if (!isAlone)
+    {
+      return counter.fetch_add(1, std::memory_order_relaxed);
+    }
+    // Without the lock, which would take as long as the rest of the loop.
+    const Id value = counter.load(std::memory_order_relaxed);
+    counter.store(value + 1, std::memory_order_relaxed);
+    return value;
+  };
   this->ForAll(slots,
     [&](std::size_t begin, std::size_t end)
     {
@@ -894,7 +906,7 @@ void AdvancingFront::CollectTetrahedra()
         turn = ids[Turns[3 * first + 1][1]] < ids[Turns[turn][1]] ? 3 * first + 1 : turn;
         turn = ids[Turns[3 * first + 2][1]] < ids[Turns[turn][1]] ? 3 * first + 2 : turn;
         this->States[t] = static_cast<unsigned char>(turn);
-        ends[ids[first]].fetch_add(1, std::memory_order_relaxed);
+        increment(ends[ids[first]]);
       }
     });
   std::vector<Id> starts(this->Order.size() + 1, 0);
@@ -903,7 +915,8 @@ void AdvancingFront::CollectTetrahedra()
     starts[vertex + 1] = starts[vertex] + ends[vertex].load(std::memory_order_relaxed);
     ends[vertex].store(starts[vertex], std::memory_order_relaxed);
   }
-  RawVector<Id> order(count);
+  // Where the tetrahedra of a vertex will be: the others of their vertices, and where they are now.
+  mesh.Tetrahedra.resize(count);
   this->ForAll(slots,
     [&](std::size_t begin, std::size_t end)
     {
@@ -911,64 +924,53 @@ void AdvancingFront::CollectTetrahedra()
       {
         if (this->States[t] != NotMeshed)
         {
-          const Id vertex = this->All.Tetrahedra[t][Turns[this->States[t]][0]];
-          order[ends[vertex].fetch_add(1, std::memory_order_relaxed)] = static_cast<Id>(t);
+          const TetrahedronIds& ids = this->All.Tetrahedra[t];
+          const unsigned char* const turn = Turns[this->States[t]];
+          mesh.Tetrahedra[increment(ends[ids[turn[0]]])] = { ids[turn[1]], ids[turn[2]],
+            ids[turn[3]], static_cast<Id>(t) };
         }
       }
     });
-  // Two tetrahedra with the same first three vertices would lie on the same side of a facet.
-  struct Item
-  {
-    std::uint64_t Key;
-    Id Source;
-  };
-  constexpr std::size_t ManyItems = 32;
-  mesh.Tetrahedra.resize(count);
+  this->All.Tetrahedra = RawVector<TetrahedronIds>();
   mesh.Regions.resize(count);
   this->ForAll(this->Order.size(),
     [&](std::size_t begin, std::size_t end)
     {
-      std::vector<Item> items;
+      // Two tetrahedra with the same first three vertices would lie on the same side of a facet.
+      const auto isLess = [](const TetrahedronIds& s, const TetrahedronIds& t)
+      { return s[0] != t[0] ? s[0] < t[0] : s[1] < t[1]; };
+      constexpr Id Many = 32;
       for (std::size_t vertex = begin; vertex < end; ++vertex)
       {
-        items.clear();
-        for (Id i = starts[vertex]; i < starts[vertex + 1]; ++i)
+        TetrahedronIds* const items = mesh.Tetrahedra.data() + starts[vertex];
+        const Id size = starts[vertex + 1] - starts[vertex];
+        if (size > Many)
         {
-          const Id t = order[i];
-          const TetrahedronIds& ids = this->All.Tetrahedra[t];
-          const unsigned char* const turn = Turns[this->States[t]];
-          const Item item{ (static_cast<std::uint64_t>(ids[turn[1]]) << 32) |
-              static_cast<std::uint32_t>(ids[turn[2]]),
-            t };
+          std::sort(items, items + size, isLess);
+        }
+        for (Id i = 1; i < size && size <= Many; ++i)
+        {
           // They are few: seven, on average.
-          std::size_t k = items.size();
-          items.push_back(item);
-          for (; k > 0 && k < ManyItems && items[k - 1].Key > item.Key; --k)
+          const TetrahedronIds item = items[i];
+          Id k = i;
+          for (; k > 0 && isLess(item, items[k - 1]); --k)
           {
             items[k] = items[k - 1];
           }
           items[k] = item;
         }
-        if (items.size() > ManyItems)
+        for (Id i = 0; i < size; ++i)
         {
-          std::sort(
-            items.begin(), items.end(), [](const Item& x, const Item& y) { return x.Key < y.Key; });
-        }
-        Id place = starts[vertex];
-        for (const Item& item : items)
-        {
-          const TetrahedronIds& ids = this->All.Tetrahedra[item.Source];
-          const unsigned char* const turn = Turns[this->States[item.Source]];
-          mesh.Tetrahedra[place] = { this->Order[ids[turn[0]]], this->Order[ids[turn[1]]],
-            this->Order[ids[turn[2]]], this->Order[ids[turn[3]]] };
-          mesh.Regions[place] = this->Regions[item.Source];
+          const TetrahedronIds item = items[i];
+          items[i] = { this->Order[vertex], this->Order[item[0]], this->Order[item[1]],
+            this->Order[item[2]] };
+          const Id place = starts[vertex] + i;
+          mesh.Regions[place] = this->Regions[item[3]];
           // From here on its place.
-          this->Regions[item.Source] = place++;
+          this->Regions[item[3]] = place;
         }
       }
     });
-  this->All.Tetrahedra = RawVector<TetrahedronIds>();
-  order = RawVector<Id>();
   const std::vector<Id>& places = this->Regions;
   unsigned char inverse[12][4];
   for (int turn = 0; turn < 12; ++turn)

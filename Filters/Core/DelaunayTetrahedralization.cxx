@@ -70,8 +70,8 @@ inline RoughSphere MakeRoughSphere(
   const double tolerance = 2.05 * (1.01 * FloatEpsilon * offset + error);
   // Not if an error in the last bits of a float, or of the double, could be larger than that.
   return tolerance > 1e-30 && offset < 1e30 && error < 1e-3 * offset
-    ? RoughSphere{ static_cast<float>(center.X), static_cast<float>(center.Y),
-        static_cast<float>(center.Z), static_cast<float>(tolerance) }
+    ? RoughSphere{ static_cast<float>(2.0 * center.X), static_cast<float>(2.0 * center.Y),
+        static_cast<float>(2.0 * center.Z), static_cast<float>(tolerance) }
     : NoSphere;
 }
 
@@ -114,7 +114,10 @@ private:
     bool HasInserted = false;
     bool HasTies = false;
 
-    /** Tetrahedra of the hole and its facets: the first so many of the arrays. */
+    /**
+     * Tetrahedra of the hole, by the facet that each was found through, and facets of the hole: the
+     * first so many of the arrays.
+     */
     std::vector<Id> Cavity = std::vector<Id>(64);
     std::vector<HoleFacet> Facets = std::vector<HoleFacet>(64);
     std::size_t NumberOfRemoved = 0;
@@ -125,9 +128,9 @@ private:
   /** State of a tetrahedron during an insertion. */
   enum Mark : unsigned char
   {
-    Unknown,
-    Removed,
-    Stays
+    Unknown = 0,
+    Removed = 1,
+    Stays = 2
   };
 
   Status FindFirst(TetrahedronIds& ids) const;
@@ -149,7 +152,6 @@ private:
   void ConnectByTable(Worker& worker);
   void ConnectBySorting(Worker& worker);
   bool IsOwned(Id tetrahedron, const Worker& worker) const;
-  bool IsInConflict(Id tetrahedron, Id vertex, Worker& worker) const;
   bool IsInConflictExactly(Id tetrahedron, Id vertex, Worker& worker) const;
   int GetSide(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
   int GetPosition(const TetrahedronIds& ids, Id vertex, Worker& worker) const;
@@ -297,24 +299,6 @@ bool Builder::IsInConflictExactly(Id tetrahedron, Id vertex, Worker& worker) con
   return this->GetPosition(ids, vertex, worker) > 0;
 }
 
-inline bool Builder::IsInConflict(Id tetrahedron, Id vertex, Worker& worker) const
-{
-  const RoughSphere& sphere = this->Spheres[tetrahedron];
-  if (sphere.Tolerance < std::numeric_limits<float>::infinity())
-  {
-    const Vec3 d = this->Points[vertex] - this->Points[this->Output.Tetrahedra[tetrahedron][3]];
-    const double power =
-      d.X * (d.X - 2.0 * sphere.X) + d.Y * (d.Y - 2.0 * sphere.Y) + d.Z * (d.Z - 2.0 * sphere.Z);
-    const double bound =
-      sphere.Tolerance * (std::abs(d.X) + std::abs(d.Y) + std::abs(d.Z)) + SmallestCertainBound;
-    if (std::abs(power) > bound)
-    {
-      return power < 0.0;
-    }
-  }
-  return this->IsInConflictExactly(tetrahedron, vertex, worker);
-}
-
 bool Builder::IsOwned(Id tetrahedron, const Worker& worker) const
 {
   for (Id vertex : this->Output.Tetrahedra[tetrahedron])
@@ -380,13 +364,21 @@ bool Builder::Locate(Id vertex, Worker& worker, Id& tetrahedron) const
 template <bool IsShared>
 bool Builder::FindHole(Id vertex, Id first, Worker& worker)
 {
-  // What is found is written in any case, and counted if it belongs there: whether it does is a
-  // matter of chance, and a wrongly predicted branch costs more than the rest.
+  // Without branches: whether a neighbor belongs to the hole is a matter of chance, and a wrongly
+  // predicted branch costs more than to test some neighbors twice. What is found is written in any
+  // case, and counted if it belongs there. Marks may alias anything, in the eyes of a compiler:
+  // what does not change is held here.
+  const Vec3* const points = this->Points;
+  const Vec3 position = points[vertex];
+  const TetrahedronIds* const tetrahedra = this->Output.Tetrahedra.data();
+  const TetrahedronIds* const allNeighbors = this->Output.Neighbors.data();
+  const RoughSphere* const spheres = this->Spheres.data();
+  unsigned char* const marks = this->Marks.data();
   std::size_t removed = 1;
   std::size_t facets = 0;
   bool isWithin = true;
-  worker.Cavity[0] = first;
-  this->Marks[first] = Removed;
+  worker.Cavity[0] = 4 * first;
+  marks[first] = Removed;
   for (std::size_t k = 0; k < removed && isWithin; ++k)
   {
     if (worker.Cavity.size() < removed + 4)
@@ -397,29 +389,46 @@ bool Builder::FindHole(Id vertex, Id first, Worker& worker)
     {
       worker.Facets.resize(2 * facets);
     }
-    const TetrahedronIds& ids = this->Output.Tetrahedra[worker.Cavity[k]];
-    const TetrahedronIds& neighbors = this->Output.Neighbors[worker.Cavity[k]];
-    for (int i = 0; i < 4; ++i)
+    Id* const cavity = worker.Cavity.data();
+    HoleFacet* const holeFacets = worker.Facets.data();
+    const TetrahedronIds& ids = tetrahedra[cavity[k] / 4];
+    const TetrahedronIds& neighbors = allNeighbors[cavity[k] / 4];
+    // Not where it was found from.
+    for (int j = k == 0 ? 0 : 1; j < 4; ++j)
     {
+      const int i = (cavity[k] + j) % 4;
       const Id outer = neighbors[i] / 4;
-      unsigned char mark = this->Marks[outer];
+      const RoughSphere sphere = spheres[outer];
+      // The last vertex is never the one at infinity.
+      const Vec3 d = position - points[tetrahedra[outer][3]];
+      const double power = d.X * (d.X - sphere.X) + d.Y * (d.Y - sphere.Y) + d.Z * (d.Z - sphere.Z);
+      const double bound =
+        sphere.Tolerance * (std::abs(d.X) + std::abs(d.Y) + std::abs(d.Z)) + SmallestCertainBound;
+      const unsigned mark = marks[outer];
+      unsigned isRemoved = power < 0.0 ? 1 : 0;
       // Tetrahedra at the border belong to nobody: they are looked at, and never marked.
       if (IsShared && !this->IsOwned(outer, worker))
       {
-        mark = Stays;
-        isWithin = isWithin && this->Spheres[outer].Tolerance < NoSphere.Tolerance &&
-          !this->IsInConflict(outer, vertex, worker);
+        isWithin = isWithin && sphere.Tolerance < NoSphere.Tolerance &&
+          !(std::abs(power) > bound ? isRemoved != 0
+                                    : this->IsInConflictExactly(outer, vertex, worker));
+        isRemoved = 0;
       }
-      else if (mark == Unknown)
+      else if (!(std::abs(power) > bound))
       {
-        mark = this->IsInConflict(outer, vertex, worker) ? Removed : Stays;
-        this->Marks[outer] = mark;
-        worker.Cavity[removed] = outer;
-        removed += mark == Removed ? 1 : 0;
+        isRemoved =
+          mark == Unknown ? this->IsInConflictExactly(outer, vertex, worker) : mark == Removed;
+        marks[outer] = isRemoved ? Removed : Stays;
       }
+      else
+      {
+        marks[outer] = static_cast<unsigned char>(mark | isRemoved);
+      }
+      cavity[removed] = neighbors[i];
+      removed += isRemoved & ~mark;
       const int* const facet = FacetVertices[i];
-      worker.Facets[facets] = { ids[facet[0]], ids[facet[2]], ids[facet[1]], neighbors[i] };
-      facets += mark == Stays ? 1 : 0;
+      holeFacets[facets] = { ids[facet[0]], ids[facet[2]], ids[facet[1]], neighbors[i] };
+      facets += isRemoved ^ 1;
     }
   }
   worker.NumberOfRemoved = removed;
@@ -432,7 +441,7 @@ void Builder::ForgetHole(Worker& worker)
 {
   for (std::size_t k = 0; k < worker.NumberOfRemoved; ++k)
   {
-    this->Marks[worker.Cavity[k]] = Unknown;
+    this->Marks[worker.Cavity[k] / 4] = Unknown;
   }
   for (std::size_t k = 0; k < worker.NumberOfFacets; ++k)
   {
@@ -464,12 +473,13 @@ bool Builder::FillHole(Id vertex, Worker& worker)
   }
   for (std::size_t k = removed; k < count; ++k)
   {
-    worker.Cavity[k] = TakePlace(worker);
+    worker.Cavity[k] = 4 * TakePlace(worker);
   }
   for (std::size_t k = count; k < removed; ++k)
   {
-    tetrahedra[worker.Cavity[k]][0] = NoId;
-    worker.Free.push_back(worker.Cavity[k]);
+    const Id place = worker.Cavity[k] / 4;
+    tetrahedra[place][0] = NoId;
+    worker.Free.push_back(place);
     ++worker.NumberOfPlaces;
   }
 
@@ -503,7 +513,7 @@ bool Builder::FillHole(Id vertex, Worker& worker)
   for (std::size_t k = 0; k < count; ++k)
   {
     HoleFacet& facet = worker.Facets[k];
-    const Id t = worker.Cavity[k];
+    const Id t = worker.Cavity[k] / 4;
     tetrahedra[t] = { facet.A, facet.B, facet.C, vertex };
     neighbors[t][3] = facet.Outer;
     const Id outer = facet.Outer / 4;
@@ -716,22 +726,24 @@ Status Builder::FindFirst(TetrahedronIds& ids) const
 
 void Builder::MakeFirst(const TetrahedronIds& ids)
 {
-  // The tetrahedron and, beyond its facet i, number i + 1.
+  // The tetrahedron and, beyond its facet i, number i + 1: the vertex at infinity and the facet.
+  constexpr Id Places[3] = { 1, 3, 2 };
   this->Output.Tetrahedra.push_back(ids);
-  this->Output.Neighbors.push_back({ 7, 11, 15, 19 });
+  this->Output.Neighbors.push_back({ 4, 8, 12, 16 });
   this->Spheres.push_back(NoSphere);
   for (Id i = 0; i < 4; ++i)
   {
-    // Opposite to each of its vertices the facet meets the one that is opposite to that vertex.
     const int* const facet = FacetVertices[i];
-    TetrahedronIds neighbors{ NoId, NoId, NoId, i };
+    TetrahedronIds vertices{ this->Infinite, NoId, NoId, NoId };
+    TetrahedronIds neighbors{ i, NoId, NoId, NoId };
     for (int j = 0; j < 3; ++j)
     {
+      // Opposite to each of its vertices the facet meets the one that is opposite to that vertex.
       const int* const other = FacetVertices[facet[j]];
-      neighbors[j] = static_cast<Id>(4 * (facet[j] + 1) + (std::find(other, other + 3, i) - other));
+      vertices[Places[j]] = ids[facet[j]];
+      neighbors[Places[j]] = 4 * (facet[j] + 1) + Places[std::find(other, other + 3, i) - other];
     }
-    this->Output.Tetrahedra.push_back(
-      { ids[facet[0]], ids[facet[1]], ids[facet[2]], this->Infinite });
+    this->Output.Tetrahedra.push_back(vertices);
     this->Output.Neighbors.push_back(neighbors);
     this->Spheres.push_back(NoSphere);
   }
