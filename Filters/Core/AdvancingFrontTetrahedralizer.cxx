@@ -438,7 +438,8 @@ Status AdvancingFront::TetrahedralizePoints()
       }
     });
   const Status status = BuildDelaunayTetrahedralization(this->VertexPoints, this->Order,
-    this->Options.NumberOfThreads, this->Context.Part(0.05, 0.6), this->All);
+    FindGridBlock(this->VertexPoints), std::max(1, this->Options.NumberOfThreads),
+    this->Context.Part(0.05, 0.6), this->All);
   if (!status.IsOk())
   {
     // A surface of a few points or in a plane has nothing within.

@@ -2,9 +2,9 @@
 #include "DelaunayTetrahedralization.h"
 
 #include "Determinants.h"
+#include "ParallelLoop.h"
 #include "Predicates.h"
 #include "TetMesh.h"
-#include "Threads.h"
 
 #include <algorithm>
 #include <atomic>
@@ -26,6 +26,7 @@ constexpr double FloatEpsilon = std::numeric_limits<float>::epsilon() / 2.0;
 constexpr std::size_t SmallRound = 8192;
 /** The first round has about so many vertices, each of the others eight times more. */
 constexpr Id FirstRound = 100;
+constexpr const char* Activity = "Tetrahedralizing the points";
 /** How often the context is asked, in vertices. */
 constexpr std::size_t ReportInterval = 4096;
 /** Facet ids of 4 * tetrahedron + i have to fit into an Id. */
@@ -85,7 +86,10 @@ public:
   {
   }
 
-  Status Run(int numberOfThreads);
+  Status Start();
+  Status StartFromBlock(
+    const GridBlock& block, const std::vector<Id>& numbers, int numberOfThreads);
+  Status InsertOthers(int numberOfThreads);
 
 private:
   /** A facet of the hole, counter-clockwise seen from within it. */
@@ -133,8 +137,10 @@ private:
     Stays = 2
   };
 
+  void Reserve();
   Status FindFirst(TetrahedronIds& ids) const;
   void MakeFirst(const TetrahedronIds& ids);
+  void MakeSphere(std::size_t tetrahedron);
   Status InsertRound(const std::vector<Id>& vertices, int numberOfThreads);
   template <bool IsShared>
   bool Work(Worker& worker, const std::function<bool(std::size_t)>& mayContinue);
@@ -170,6 +176,8 @@ private:
   double ExactPositionBound = 0.0;
   RawVector<RoughSphere> Spheres;
   RawVector<unsigned char> Marks;
+  /** Vertices that need no insertion. */
+  std::vector<bool> IsInserted;
   /** Where a vertex may stand among those of the hole. */
   std::vector<Id> Places;
   std::vector<Worker> Workers;
@@ -757,8 +765,7 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
   const auto report = [&](std::size_t done)
   {
     return this->Context.Continue(
-      std::min(0.99, (begin + static_cast<double>(done)) / this->Infinite),
-      "Tetrahedralizing the points");
+      std::min(0.99, (begin + static_cast<double>(done)) / this->Infinite), Activity);
   };
   std::vector<Id> left(vertices);
   // Two cuts of the curve for the threads, then all of it for one.
@@ -845,24 +852,92 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
   return isDone ? Status() : Status::Aborted();
 }
 
-Status Builder::Run(int numberOfThreads)
+void Builder::Reserve()
 {
-  TetrahedronIds first;
-  Status status = this->FindFirst(first);
-  if (!status.IsOk())
-  {
-    return status;
-  }
-  this->SetUnit();
   const std::size_t expected = 8 * static_cast<std::size_t>(this->Infinite);
   this->Output.Tetrahedra.reserve(expected);
   this->Output.Neighbors.reserve(expected);
   this->Spheres.reserve(expected);
   this->Marks.reserve(expected);
-  this->Places.assign(static_cast<std::size_t>(this->Infinite) + 1, 0);
-  this->Workers.resize(static_cast<std::size_t>(std::max(1, numberOfThreads)));
-  this->MakeFirst(first);
+  this->IsInserted.resize(static_cast<std::size_t>(this->Infinite), false);
+}
 
+Status Builder::Start()
+{
+  TetrahedronIds first;
+  Status status = this->FindFirst(first);
+  if (status.IsOk())
+  {
+    this->Reserve();
+    this->MakeFirst(first);
+    for (Id vertex : first)
+    {
+      this->IsInserted[vertex] = true;
+    }
+  }
+  return status;
+}
+
+void Builder::MakeSphere(std::size_t tetrahedron)
+{
+  const TetrahedronIds& ids = this->Output.Tetrahedra[tetrahedron];
+  if (ids[0] == this->Infinite)
+  {
+    this->Spheres[tetrahedron] = NoSphere;
+    return;
+  }
+  RelativeVertex vertices[3];
+  double size = 0.0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const Vec3 d = this->Points[ids[i]] - this->Points[ids[3]];
+    size = std::max(size, GetLargest(std::abs(d.X), std::abs(d.Y), std::abs(d.Z)));
+    vertices[i] = { ids[i], d, SquaredNorm(d) };
+  }
+  this->Spheres[tetrahedron] = MakeRoughSphere(vertices[0], vertices[1], vertices[2], size);
+}
+
+Status Builder::StartFromBlock(
+  const GridBlock& block, const std::vector<Id>& numbers, int numberOfThreads)
+{
+  this->Reserve();
+  for (Id vertex : block.Points)
+  {
+    this->IsInserted[vertex] = true;
+  }
+  const std::size_t count = GetNumberOfTetrahedra(block);
+  this->Output.Tetrahedra.resize(count);
+  this->Output.Neighbors.resize(count);
+  this->Output.HasCosphericalPoints = true;
+  const bool isAlone = block.Points.size() == static_cast<std::size_t>(this->Infinite);
+  const double share =
+    0.9 * static_cast<double>(block.Points.size()) / static_cast<double>(this->Infinite);
+  if (!MeshGridBlock(block, numbers, numberOfThreads,
+        this->Context.Part(0.0, isAlone ? 1.0 : 0.7 * share), this->Output.Tetrahedra,
+        this->Output.Neighbors))
+  {
+    return Status::Aborted();
+  }
+  if (isAlone)
+  {
+    return Status();
+  }
+  this->Spheres.resize(count);
+  this->Marks.assign(count, Unknown);
+  const bool isDone = ParallelLoop(count, { numberOfThreads, std::size_t(1) << 15 },
+    this->Context.Part(0.7 * share, share), Activity,
+    [this](std::size_t begin, std::size_t end, std::size_t)
+    {
+      for (std::size_t t = begin; t < end; ++t)
+      {
+        this->MakeSphere(t);
+      }
+    });
+  return isDone ? Status() : Status::Aborted();
+}
+
+Status Builder::InsertOthers(int numberOfThreads)
+{
   int rounds = 0;
   for (Id size = this->Infinite; size > FirstRound; size /= 8)
   {
@@ -871,7 +946,7 @@ Status Builder::Run(int numberOfThreads)
   std::vector<std::vector<Id>> vertices(static_cast<std::size_t>(rounds) + 1);
   for (Id vertex = 0; vertex < this->Infinite; ++vertex)
   {
-    if (std::find(first.begin(), first.end(), vertex) != first.end())
+    if (this->IsInserted[vertex])
     {
       continue;
     }
@@ -886,6 +961,10 @@ Status Builder::Run(int numberOfThreads)
     }
     vertices[static_cast<std::size_t>(round)].push_back(vertex);
   }
+  this->SetUnit();
+  this->Places.assign(static_cast<std::size_t>(this->Infinite) + 1, 0);
+  this->Workers.resize(static_cast<std::size_t>(std::max(1, numberOfThreads)));
+  Status status;
   for (std::vector<Id>& round : vertices)
   {
     status = this->InsertRound(round, numberOfThreads);
@@ -911,11 +990,18 @@ Status Builder::Run(int numberOfThreads)
 } // namespace
 
 Status BuildDelaunayTetrahedralization(const std::vector<Vec3>& points,
-  const std::vector<Id>& numbers, int numberOfThreads, const ExecutionContext& context,
-  DelaunayTetrahedralization& output)
+  const std::vector<Id>& numbers, const GridBlock& block, int numberOfThreads,
+  const ExecutionContext& context, DelaunayTetrahedralization& output)
 {
   output = DelaunayTetrahedralization();
-  const Status status = Builder(points, numbers, context, output).Run(numberOfThreads);
+  Builder builder(points, numbers, context, output);
+  const bool hasBlock = !block.IsEmpty() && GetNumberOfTetrahedra(block) <= MaximumTetrahedra;
+  Status status =
+    hasBlock ? builder.StartFromBlock(block, numbers, numberOfThreads) : builder.Start();
+  if (status.IsOk() && (!hasBlock || block.Points.size() < points.size()))
+  {
+    status = builder.InsertOthers(numberOfThreads);
+  }
   if (!status.IsOk())
   {
     output = DelaunayTetrahedralization();
