@@ -23,7 +23,7 @@ constexpr double Epsilon = std::numeric_limits<double>::epsilon() / 2.0;
 constexpr double FloatEpsilon = std::numeric_limits<float>::epsilon() / 2.0;
 
 /** Rounds of fewer vertices are inserted by one thread. */
-constexpr std::size_t SmallRound = 8192;
+constexpr std::size_t SmallRound = 2048;
 /** The first round has about so many vertices, each of the others eight times more. */
 constexpr Id FirstRound = 100;
 constexpr const char* Activity = "Tetrahedralizing the points";
@@ -101,12 +101,24 @@ private:
     /** The facet id beyond; then the new tetrahedron. */
     Id Outer;
   };
+  /** The vertices from First on, Count of them, around the end of the curve; and infinity. */
+  struct Part
+  {
+    Id First = 0;
+    Id Count = 0;
+    Id Infinite = 0;
+
+    bool Has(Id vertex) const
+    {
+      const Id place = vertex - this->First;
+      return (place >= 0 ? place : place + this->Infinite) < this->Count ||
+        vertex == this->Infinite;
+    }
+  };
   /** What a thread has for itself: a part of the curve, and room for tetrahedra. */
   struct Worker
   {
-    /** Owns the vertices from First on, Count of them, around the end of the curve. */
-    Id First = 0;
-    Id Count = 0;
+    Part Own;
     std::vector<Id> Todo;
     std::vector<Id> Postponed;
     /** Places for new tetrahedra: of removed ones, and ranges never used. */
@@ -148,8 +160,15 @@ private:
   bool Locate(Id vertex, Worker& worker, Id& tetrahedron) const;
   template <bool IsShared>
   bool FindHole(Id vertex, Id first, Worker& worker);
-  template <bool IsShared>
   void ForgetHole(Worker& worker);
+  /** What is marked is owned. */
+  void ForgetMark(Id tetrahedron)
+  {
+    if (this->Marks[tetrahedron] != Unknown)
+    {
+      this->Marks[tetrahedron] = Unknown;
+    }
+  }
   template <bool IsShared>
   bool FillHole(Id vertex, Worker& worker);
   static Id TakePlace(Worker& worker);
@@ -157,7 +176,7 @@ private:
   static void MovePlaces(Worker& from, Worker& to, std::size_t wanted);
   void ConnectByTable(Worker& worker);
   void ConnectBySorting(Worker& worker);
-  bool IsOwned(Id tetrahedron, const Worker& worker) const;
+  bool IsOwned(Id tetrahedron, const Part& part) const;
   bool IsInConflictExactly(Id tetrahedron, Id vertex, Worker& worker) const;
   int GetSide(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
   int GetPosition(const TetrahedronIds& ids, Id vertex, Worker& worker) const;
@@ -307,17 +326,10 @@ bool Builder::IsInConflictExactly(Id tetrahedron, Id vertex, Worker& worker) con
   return this->GetPosition(ids, vertex, worker) > 0;
 }
 
-bool Builder::IsOwned(Id tetrahedron, const Worker& worker) const
+bool Builder::IsOwned(Id tetrahedron, const Part& part) const
 {
-  for (Id vertex : this->Output.Tetrahedra[tetrahedron])
-  {
-    const Id place = vertex - worker.First;
-    if (vertex != this->Infinite && (place >= 0 ? place : place + this->Infinite) >= worker.Count)
-    {
-      return false;
-    }
-  }
-  return true;
+  const TetrahedronIds& ids = this->Output.Tetrahedra[tetrahedron];
+  return part.Has(ids[0]) && part.Has(ids[1]) && part.Has(ids[2]) && part.Has(ids[3]);
 }
 
 /** The tetrahedron that holds the vertex, or one beyond the hull whose facet it sees. */
@@ -335,12 +347,12 @@ bool Builder::Locate(Id vertex, Worker& worker, Id& tetrahedron) const
       break;
     }
   }
+  if (IsShared && !this->IsOwned(t, worker.Own))
+  {
+    return false;
+  }
   for (;;)
   {
-    if (IsShared && !this->IsOwned(t, worker))
-    {
-      return false;
-    }
     const TetrahedronIds& ids = this->Output.Tetrahedra[t];
     int next = -1;
     for (int i = 0; i < 4 && next < 0; ++i)
@@ -361,10 +373,16 @@ bool Builder::Locate(Id vertex, Worker& worker, Id& tetrahedron) const
     const Id facet = this->Output.Neighbors[t][next];
     t = facet / 4;
     from = facet % 4;
-    if (this->Output.Tetrahedra[t][from] == this->Infinite)
+    // Only the vertex opposite to the facet is new.
+    const Id apex = this->Output.Tetrahedra[t][from];
+    if (apex == this->Infinite)
     {
       tetrahedron = t;
-      return !IsShared || this->IsOwned(t, worker);
+      return true;
+    }
+    if (IsShared && !worker.Own.Has(apex))
+    {
+      return false;
     }
   }
 }
@@ -382,6 +400,7 @@ bool Builder::FindHole(Id vertex, Id first, Worker& worker)
   const TetrahedronIds* const allNeighbors = this->Output.Neighbors.data();
   const RoughSphere* const spheres = this->Spheres.data();
   unsigned char* const marks = this->Marks.data();
+  const Part own = worker.Own;
   std::size_t removed = 1;
   std::size_t facets = 0;
   bool isWithin = true;
@@ -414,8 +433,9 @@ bool Builder::FindHole(Id vertex, Id first, Worker& worker)
         sphere.Tolerance * (std::abs(d.X) + std::abs(d.Y) + std::abs(d.Z)) + SmallestCertainBound;
       const unsigned mark = marks[outer];
       unsigned isRemoved = power < 0.0 ? 1 : 0;
-      // Tetrahedra at the border belong to nobody: they are looked at, and never marked.
-      if (IsShared && !this->IsOwned(outer, worker))
+      // Tetrahedra at the border belong to nobody: they are looked at, and never marked. The facet
+      // is owned.
+      if (IsShared && !own.Has(tetrahedra[outer][neighbors[i] % 4]))
       {
         isWithin = isWithin && sphere.Tolerance < NoSphere.Tolerance &&
           !(std::abs(power) > bound ? isRemoved != 0
@@ -444,7 +464,6 @@ bool Builder::FindHole(Id vertex, Id first, Worker& worker)
   return isWithin;
 }
 
-template <bool IsShared>
 void Builder::ForgetHole(Worker& worker)
 {
   for (std::size_t k = 0; k < worker.NumberOfRemoved; ++k)
@@ -453,11 +472,7 @@ void Builder::ForgetHole(Worker& worker)
   }
   for (std::size_t k = 0; k < worker.NumberOfFacets; ++k)
   {
-    const Id outer = worker.Facets[k].Outer / 4;
-    if (!IsShared || this->IsOwned(outer, worker))
-    {
-      this->Marks[outer] = Unknown;
-    }
+    this->ForgetMark(worker.Facets[k].Outer / 4);
   }
 }
 
@@ -526,11 +541,7 @@ bool Builder::FillHole(Id vertex, Worker& worker)
     neighbors[t][3] = facet.Outer;
     const Id outer = facet.Outer / 4;
     neighbors[outer][facet.Outer % 4] = 4 * t + 3;
-    // What is marked is owned.
-    if (!IsShared || this->Marks[outer] != Unknown)
-    {
-      this->Marks[outer] = Unknown;
-    }
+    this->ForgetMark(outer);
     this->Marks[t] = Unknown;
     facet = { getPlace(facet.A), getPlace(facet.B), getPlace(facet.C), t };
   }
@@ -684,7 +695,7 @@ bool Builder::Work(Worker& worker, const std::function<bool(std::size_t)>& mayCo
         this->FindHole<IsShared>(vertex, first, worker) && this->FillHole<IsShared>(vertex, worker);
       if (!isDone)
       {
-        this->ForgetHole<IsShared>(worker);
+        this->ForgetHole(worker);
       }
     }
     if (!isDone)
@@ -773,20 +784,21 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
   {
     const std::size_t count = static_cast<std::size_t>(numberOfThreads);
     const Id part = this->Infinite / numberOfThreads + 1;
+    const Id shift = cut == 0 ? 0 : part / 2;
     Worker spare;
     MovePlaces(this->Workers[0], spare, std::numeric_limits<std::size_t>::max());
     Id last = this->Workers[0].Last;
     for (std::size_t w = 0; w < count; ++w)
     {
       Worker& worker = this->Workers[w];
-      worker.First = static_cast<Id>(w) * part + (cut == 1 ? part / 2 : 0);
-      worker.Count = std::min(part, this->Infinite - static_cast<Id>(w) * part);
+      worker.Own = { static_cast<Id>(w) * part + shift,
+        std::min(part, this->Infinite - static_cast<Id>(w) * part), this->Infinite };
       worker.Todo.clear();
       worker.Postponed.clear();
     }
     for (Id vertex : left)
     {
-      const Id shifted = vertex - (cut == 1 ? part / 2 : 0);
+      const Id shifted = vertex - shift;
       const Id place = shifted < 0 ? shifted + this->Infinite : shifted;
       this->Workers[place / part].Todo.push_back(vertex);
     }
@@ -800,7 +812,7 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
       for (std::size_t i = 0; i < worker.Todo.size() && !hasStart; i += 1 + worker.Todo.size() / 64)
       {
         this->Locate<false>(worker.Todo[i], worker, worker.Last);
-        hasStart = this->IsOwned(worker.Last, worker);
+        hasStart = this->IsOwned(worker.Last, worker.Own);
       }
       if (!hasStart)
       {
