@@ -5,7 +5,9 @@
 #include "TetMesh.h"
 
 #include <algorithm>
+#include <queue>
 #include <unordered_map>
+#include <utility>
 
 namespace cdm
 {
@@ -109,133 +111,150 @@ class Lattice
 {
 public:
   explicit Lattice(const std::array<Lines, 3>& lines)
+    : Strides{ 1, std::size_t(lines[0].Count),
+        std::size_t(lines[0].Count) * std::size_t(lines[1].Count) },
+      Points(this->Strides[2] * std::size_t(lines[2].Count), NoId)
   {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      this->Kept[axis].resize(lines[axis].Count);
-      this->Missing[axis].resize(lines[axis].Count, 0);
-      for (Id line = 0; line < lines[axis].Count; ++line)
-      {
-        this->Kept[axis][line] = line;
-      }
-    }
-    this->Strides = { 1, std::size_t(lines[0].Count),
-      std::size_t(lines[0].Count) * std::size_t(lines[1].Count) };
-    this->Places.resize(this->Strides[2] * std::size_t(lines[2].Count), NoId);
     for (std::size_t i = 0; i < lines[0].OfPoints.size(); ++i)
     {
-      const Id x = lines[0].OfPoints[i];
-      const Id y = lines[1].OfPoints[i];
-      const Id z = lines[2].OfPoints[i];
-      if (x != NoId && y != NoId && z != NoId)
+      const std::array<Id, 3> place{ lines[0].OfPoints[i], lines[1].OfPoints[i],
+        lines[2].OfPoints[i] };
+      if (std::find(place.begin(), place.end(), NoId) == place.end())
       {
-        this->Places[this->GetPlace(x, y, z)] = static_cast<Id>(i);
+        this->GetPoint(place) = static_cast<Id>(i);
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Axes[axis].Kept = lines[axis].Count;
+      this->Axes[axis].IsDropped.resize(lines[axis].Count, false);
+      this->Axes[axis].Missing.resize(lines[axis].Count, 0);
+    }
+    this->ForAll(this->GetAllLines(),
+      [this](const std::array<Id, 3>& place) { this->CountMissing(place, 1); });
+    for (Axis& axis : this->Axes)
+    {
+      for (Id line = 0; line < axis.Kept; ++line)
+      {
+        axis.Worst.emplace(axis.Missing[line], line);
       }
     }
   }
 
   GridBlock GetBlock(std::size_t smallest)
   {
-    const auto& [xs, ys, zs] = this->Kept;
-    for (Id z : zs)
-    {
-      for (Id y : ys)
-      {
-        for (Id x : xs)
-        {
-          this->CountMissing(x, y, z, 1);
-        }
-      }
-    }
     GridBlock block;
-    for (;;)
+    do
     {
-      if (xs.size() < 2 || ys.size() < 2 || zs.size() < 2 ||
-        xs.size() * ys.size() * zs.size() < smallest)
+      if (this->Axes[0].Kept < 2 || this->Axes[1].Kept < 2 || this->Axes[2].Kept < 2 ||
+        std::size_t(this->Axes[0].Kept) * std::size_t(this->Axes[1].Kept) *
+            std::size_t(this->Axes[2].Kept) <
+          smallest)
       {
         return block;
       }
-      if (!this->DropWorstLine())
-      {
-        break;
-      }
-    }
-    block.Sizes = { Id(xs.size()), Id(ys.size()), Id(zs.size()) };
-    for (Id z : zs)
-    {
-      for (Id y : ys)
-      {
-        for (Id x : xs)
-        {
-          block.Points.push_back(this->Places[this->GetPlace(x, y, z)]);
-        }
-      }
-    }
+    } while (this->DropWorstLine());
+    block.Sizes = { this->Axes[0].Kept, this->Axes[1].Kept, this->Axes[2].Kept };
+    this->ForAll(this->GetAllLines(),
+      [this, &block](const std::array<Id, 3>& place)
+      { block.Points.push_back(this->GetPoint(place)); });
     return block;
   }
 
 private:
-  std::size_t GetPlace(Id x, Id y, Id z) const
+  struct Axis
   {
-    return std::size_t(x) + this->Strides[1] * std::size_t(y) + this->Strides[2] * std::size_t(z);
+    Id Kept;
+    std::vector<bool> IsDropped;
+    /** Points that are missing on each line, as long as it is kept. */
+    std::vector<Id> Missing;
+    /** At least so many on each line: the worst first. */
+    std::priority_queue<std::pair<Id, Id>> Worst;
+  };
+  /** Lines from the first to before the second, on each axis. */
+  using Range = std::array<std::pair<Id, Id>, 3>;
+
+  Id& GetPoint(const std::array<Id, 3>& place)
+  {
+    return this->Points[std::size_t(place[0]) + this->Strides[1] * std::size_t(place[1]) +
+      this->Strides[2] * std::size_t(place[2])];
   }
 
-  void CountMissing(Id x, Id y, Id z, Id change)
+  Range GetAllLines() const
   {
-    if (this->Places[this->GetPlace(x, y, z)] == NoId)
+    return { std::make_pair(0, Id(this->Axes[0].IsDropped.size())),
+      std::make_pair(0, Id(this->Axes[1].IsDropped.size())),
+      std::make_pair(0, Id(this->Axes[2].IsDropped.size())) };
+  }
+
+  /** work(place) for the crossings of lines that are kept. */
+  template <typename Work>
+  void ForAll(const Range& range, const Work& work)
+  {
+    for (Id z = range[2].first; z < range[2].second; ++z)
     {
-      this->Missing[0][x] += change;
-      this->Missing[1][y] += change;
-      this->Missing[2][z] += change;
+      for (Id y = range[1].first; y < range[1].second && !this->Axes[2].IsDropped[z]; ++y)
+      {
+        for (Id x = range[0].first; x < range[0].second && !this->Axes[1].IsDropped[y]; ++x)
+        {
+          if (!this->Axes[0].IsDropped[x])
+          {
+            work(std::array<Id, 3>{ x, y, z });
+          }
+        }
+      }
+    }
+  }
+
+  void CountMissing(const std::array<Id, 3>& place, Id change)
+  {
+    if (this->GetPoint(place) == NoId)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        this->Axes[axis].Missing[place[axis]] += change;
+      }
     }
   }
 
   /** False if no point is missing. */
   bool DropWorstLine()
   {
-    const double all =
-      double(this->Kept[0].size()) * double(this->Kept[1].size()) * double(this->Kept[2].size());
-    int worstAxis = 0;
-    std::size_t worst = 0;
-    double share = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
+    // Lines of one axis have the same number of places.
+    int worst = -1;
+    double largest = 0.0;
+    for (int i = 0; i < 3; ++i)
     {
-      for (std::size_t i = 0; i < this->Kept[axis].size(); ++i)
+      Axis& axis = this->Axes[i];
+      while (axis.Worst.top().first != axis.Missing[axis.Worst.top().second])
       {
-        const double missing =
-          this->Missing[axis][this->Kept[axis][i]] * (double(this->Kept[axis].size()) / all);
-        if (missing > share)
-        {
-          share = missing;
-          worstAxis = axis;
-          worst = i;
-        }
+        const Id line = axis.Worst.top().second;
+        axis.Worst.pop();
+        axis.Worst.emplace(axis.Missing[line], line);
       }
+      const double share = double(axis.Worst.top().first) * axis.Kept;
+      worst = share > largest ? i : worst;
+      largest = std::max(largest, share);
     }
-    if (share == 0.0)
+    if (worst < 0)
     {
       return false;
     }
-    std::array<std::vector<Id>, 3> lines = this->Kept;
-    lines[worstAxis] = { this->Kept[worstAxis][worst] };
-    for (Id z : lines[2])
-    {
-      for (Id y : lines[1])
-      {
-        for (Id x : lines[0])
-        {
-          this->CountMissing(x, y, z, -1);
-        }
-      }
-    }
-    this->Kept[worstAxis].erase(this->Kept[worstAxis].begin() + static_cast<std::ptrdiff_t>(worst));
+    Axis& axis = this->Axes[worst];
+    const Id line = axis.Worst.top().second;
+    Range range = this->GetAllLines();
+    range[worst] = { line, line + 1 };
+    this->ForAll(range, [this](const std::array<Id, 3>& place) { this->CountMissing(place, -1); });
+    axis.Worst.pop();
+    axis.IsDropped[line] = true;
+    --axis.Kept;
     return true;
   }
 
-  std::array<std::vector<Id>, 3> Kept;
-  std::array<std::vector<Id>, 3> Missing;
   std::array<std::size_t, 3> Strides;
-  std::vector<Id> Places;
+  /** The point at each place, or NoId. */
+  std::vector<Id> Points;
+  std::array<Axis, 3> Axes;
 };
 
 /** Corners of a box: bit i is set on the upper side of axis i. */

@@ -19,8 +19,10 @@
  *
  * Guarantees: the tetrahedra are those of the pulling rule (thesis 6.4.3, DelaunayTetrahedralization.h),
  * for any number of threads in the same places.
- * Failure: no block, if it would have less than an eighth of the points.
- * Cost: O(n); 1 us per point, and 0.1 us to see that there is no block where there are lines at all.
+ * Failure: no block, if it would have less than an eighth of the points: a few points that are missing
+ * here and there in a large grid leave none.
+ * Cost: O(n). Beside the insertion of the points, which takes 3 to 7 us for each: 0.1 us per point to
+ * find a block or that there is none, nothing where there are no lines, and 0.4 us for its tetrahedra.
  */
 #ifndef cdmGridBlock_h
 #define cdmGridBlock_h
