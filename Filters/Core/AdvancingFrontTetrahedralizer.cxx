@@ -119,11 +119,17 @@ private:
     std::rotate(points.begin(), std::min_element(points.begin(), points.end()), points.end());
     return points;
   }
-  /** work(begin, end) for parts of the numbers below size, on all threads. */
+  /**
+   * work(begin, end) for parts of the numbers below size, on all threads. The parts are large: what is
+   * close in number is close in memory, and threads that write to the same place wait for each other.
+   */
   template <typename Work>
   void ForAll(std::size_t size, const Work& work) const
   {
-    ParallelLoop(size, { std::max(1, this->Options.NumberOfThreads), std::size_t(1) << 15 }, {}, "",
+    const int numberOfThreads = std::max(1, this->Options.NumberOfThreads);
+    const std::size_t part =
+      std::max(std::size_t(1) << 15, size / (8 * static_cast<std::size_t>(numberOfThreads)) + 1);
+    ParallelLoop(size, { numberOfThreads, part }, {}, "",
       [&work](std::size_t begin, std::size_t end, std::size_t) { work(begin, end); });
   }
   bool HasSurface() const { return this->NumberOfSurfaceTriangles > 0; }
@@ -149,7 +155,7 @@ private:
   std::vector<Vec3> VertexPoints;
   DelaunayTetrahedralization All;
   RawVector<unsigned char> States;
-  std::vector<Id> Regions;
+  RawVector<Id> Regions;
 
   /** For each side of the surface: the facet of the tetrahedron there, or NoId. */
   std::vector<Id> SideFacets;
@@ -216,14 +222,24 @@ Status AdvancingFront::CollectPoints()
   this->Order.resize(this->Points.size());
   std::iota(this->Order.begin(), this->Order.end(), 0);
   SortAlongHilbertCurve(this->Points, this->Order, std::max(1, this->Options.NumberOfThreads));
+  this->VertexPoints.resize(this->Order.size());
+  this->ForAll(this->Order.size(),
+    [this](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t vertex = begin; vertex < end; ++vertex)
+      {
+        this->VertexPoints[vertex] = this->Points[this->Order[vertex]];
+      }
+    });
   std::vector<Id> coincident;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < this->Order.size(); ++i)
   {
     const Id point = this->Order[i];
-    if (kept == 0 || this->Points[point] != this->Points[this->Order[kept - 1]])
+    if (kept == 0 || this->VertexPoints[i] != this->VertexPoints[kept - 1])
     {
-      this->Order[kept++] = point;
+      this->Order[kept] = point;
+      this->VertexPoints[kept++] = this->VertexPoints[i];
     }
     else if (point < this->NumberOfSurfacePoints && this->HasSurface())
     {
@@ -232,6 +248,7 @@ Status AdvancingFront::CollectPoints()
     }
   }
   this->Order.resize(kept);
+  this->VertexPoints.resize(kept);
   if (!coincident.empty())
   {
     SortUnique(coincident);
@@ -428,17 +445,9 @@ Status AdvancingFront::TurnDiagonals(const std::vector<Id>& doubtful)
 
 Status AdvancingFront::TetrahedralizePoints()
 {
-  this->VertexPoints.resize(this->Order.size());
-  this->ForAll(this->Order.size(),
-    [this](std::size_t begin, std::size_t end)
-    {
-      for (std::size_t vertex = begin; vertex < end; ++vertex)
-      {
-        this->VertexPoints[vertex] = this->Points[this->Order[vertex]];
-      }
-    });
   const Status status = BuildDelaunayTetrahedralization(this->VertexPoints, this->Order,
-    this->Options.NumberOfThreads, this->Context.Part(0.05, 0.6), this->All);
+    FindGridBlock(this->VertexPoints), std::max(1, this->Options.NumberOfThreads),
+    this->Context.Part(0.05, 0.6), this->All);
   if (!status.IsOk())
   {
     // A surface of a few points or in a plane has nothing within.
@@ -754,7 +763,7 @@ Status AdvancingFront::Advance(const Seed& seed)
 /** Where the front would end up if there is nothing to stop it. */
 void AdvancingFront::TakeAll()
 {
-  this->Regions.assign(this->States.size(), 0);
+  this->Regions.resize(this->States.size());
   const Id infinite = static_cast<Id>(this->Order.size());
   std::mutex mutex;
   this->ForAll(this->States.size(),
@@ -765,6 +774,7 @@ void AdvancingFront::TakeAll()
       for (std::size_t t = begin; t < end; ++t)
       {
         const TetrahedronIds& ids = this->All.Tetrahedra[t];
+        this->Regions[t] = 0;
         if (this->States[t] == BeyondHull)
         {
           const auto place = std::find(ids.begin(), ids.end(), infinite) - ids.begin();
@@ -835,6 +845,7 @@ void AdvancingFront::CollectPointsUsed()
     }
   }
   Id count = this->NumberOfSurfacePoints;
+  this->Output.MeshPointSources.reserve(places.size() - static_cast<std::size_t>(count));
   for (Id i = 0; i < static_cast<Id>(places.size()); ++i)
   {
     if (i < this->NumberOfSurfacePoints)
@@ -875,7 +886,20 @@ void AdvancingFront::CollectTetrahedra()
     { 3, 0, 2, 1 }, { 3, 2, 1, 0 }, { 3, 1, 0, 2 } };
   constexpr unsigned char NotMeshed = 12;
   // Their order within a vertex is left to chance here; it is settled below.
-  std::vector<std::atomic<Id>> ends(this->Order.size() + 1);
+  std::vector<std::atomic<Id>> counts(this->Order.size());
+  RawVector<Id> ranks(slots);
+  const bool isAlone = this->Options.NumberOfThreads <= 1;
+  const auto increment = [isAlone](std::atomic<Id>& counter)
+  {
+    if (!isAlone)
+    {
+      return counter.fetch_add(1, std::memory_order_relaxed);
+    }
+    // Without the lock, which would take as long as the rest of the loop.
+    const Id value = counter.load(std::memory_order_relaxed);
+    counter.store(value + 1, std::memory_order_relaxed);
+    return value;
+  };
   this->ForAll(slots,
     [&](std::size_t begin, std::size_t end)
     {
@@ -894,16 +918,16 @@ void AdvancingFront::CollectTetrahedra()
         turn = ids[Turns[3 * first + 1][1]] < ids[Turns[turn][1]] ? 3 * first + 1 : turn;
         turn = ids[Turns[3 * first + 2][1]] < ids[Turns[turn][1]] ? 3 * first + 2 : turn;
         this->States[t] = static_cast<unsigned char>(turn);
-        ends[ids[first]].fetch_add(1, std::memory_order_relaxed);
+        ranks[t] = increment(counts[ids[first]]);
       }
     });
   std::vector<Id> starts(this->Order.size() + 1, 0);
   for (std::size_t vertex = 0; vertex < this->Order.size(); ++vertex)
   {
-    starts[vertex + 1] = starts[vertex] + ends[vertex].load(std::memory_order_relaxed);
-    ends[vertex].store(starts[vertex], std::memory_order_relaxed);
+    starts[vertex + 1] = starts[vertex] + counts[vertex].load(std::memory_order_relaxed);
   }
-  RawVector<Id> order(count);
+  // Where the tetrahedra of a vertex will be: the others of their vertices, and where they are now.
+  mesh.Tetrahedra.resize(count);
   this->ForAll(slots,
     [&](std::size_t begin, std::size_t end)
     {
@@ -911,65 +935,55 @@ void AdvancingFront::CollectTetrahedra()
       {
         if (this->States[t] != NotMeshed)
         {
-          const Id vertex = this->All.Tetrahedra[t][Turns[this->States[t]][0]];
-          order[ends[vertex].fetch_add(1, std::memory_order_relaxed)] = static_cast<Id>(t);
+          const TetrahedronIds& ids = this->All.Tetrahedra[t];
+          const unsigned char* const turn = Turns[this->States[t]];
+          mesh.Tetrahedra[starts[ids[turn[0]]] + ranks[t]] = { ids[turn[1]], ids[turn[2]],
+            ids[turn[3]], static_cast<Id>(t) };
         }
       }
     });
-  // Two tetrahedra with the same first three vertices would lie on the same side of a facet.
-  struct Item
-  {
-    std::uint64_t Key;
-    Id Source;
-  };
-  constexpr std::size_t ManyItems = 32;
-  mesh.Tetrahedra.resize(count);
+  this->All.Tetrahedra = RawVector<TetrahedronIds>();
+  ranks = RawVector<Id>();
   mesh.Regions.resize(count);
   this->ForAll(this->Order.size(),
     [&](std::size_t begin, std::size_t end)
     {
-      std::vector<Item> items;
+      // Two tetrahedra with the same first three vertices would lie on the same side of a facet.
+      const auto isLess = [](const TetrahedronIds& s, const TetrahedronIds& t)
+      { return s[0] != t[0] ? s[0] < t[0] : s[1] < t[1]; };
+      constexpr Id Many = 32;
       for (std::size_t vertex = begin; vertex < end; ++vertex)
       {
-        items.clear();
-        for (Id i = starts[vertex]; i < starts[vertex + 1]; ++i)
+        TetrahedronIds* const items = mesh.Tetrahedra.data() + starts[vertex];
+        const Id size = starts[vertex + 1] - starts[vertex];
+        if (size > Many)
         {
-          const Id t = order[i];
-          const TetrahedronIds& ids = this->All.Tetrahedra[t];
-          const unsigned char* const turn = Turns[this->States[t]];
-          const Item item{ (static_cast<std::uint64_t>(ids[turn[1]]) << 32) |
-              static_cast<std::uint32_t>(ids[turn[2]]),
-            t };
+          std::sort(items, items + size, isLess);
+        }
+        for (Id i = 1; i < size && size <= Many; ++i)
+        {
           // They are few: seven, on average.
-          std::size_t k = items.size();
-          items.push_back(item);
-          for (; k > 0 && k < ManyItems && items[k - 1].Key > item.Key; --k)
+          const TetrahedronIds item = items[i];
+          Id k = i;
+          for (; k > 0 && isLess(item, items[k - 1]); --k)
           {
             items[k] = items[k - 1];
           }
           items[k] = item;
         }
-        if (items.size() > ManyItems)
+        for (Id i = 0; i < size; ++i)
         {
-          std::sort(
-            items.begin(), items.end(), [](const Item& x, const Item& y) { return x.Key < y.Key; });
-        }
-        Id place = starts[vertex];
-        for (const Item& item : items)
-        {
-          const TetrahedronIds& ids = this->All.Tetrahedra[item.Source];
-          const unsigned char* const turn = Turns[this->States[item.Source]];
-          mesh.Tetrahedra[place] = { this->Order[ids[turn[0]]], this->Order[ids[turn[1]]],
-            this->Order[ids[turn[2]]], this->Order[ids[turn[3]]] };
-          mesh.Regions[place] = this->Regions[item.Source];
+          const TetrahedronIds item = items[i];
+          items[i] = { this->Order[vertex], this->Order[item[0]], this->Order[item[1]],
+            this->Order[item[2]] };
+          const Id place = starts[vertex] + i;
+          mesh.Regions[place] = this->Regions[item[3]];
           // From here on its place.
-          this->Regions[item.Source] = place++;
+          this->Regions[item[3]] = place;
         }
       }
     });
-  this->All.Tetrahedra = RawVector<TetrahedronIds>();
-  order = RawVector<Id>();
-  const std::vector<Id>& places = this->Regions;
+  const RawVector<Id>& places = this->Regions;
   unsigned char inverse[12][4];
   for (int turn = 0; turn < 12; ++turn)
   {

@@ -690,8 +690,8 @@ Status SurfaceRefiner::SplitRequested()
   for (Id t : this->Input.TrianglesToSplit)
   {
     const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-    const TriangleIds& given = this->Input.Surface->Triangles[t];
-    if (std::is_permutation(ids.begin(), ids.end(), given.begin()))
+    // Flips do not count: the triangle is still about there.
+    if (*std::max_element(ids.begin(), ids.end()) < this->NumberOfGivenPoints)
     {
       const Vec3 center =
         GetCircumcenter(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]);

@@ -2,9 +2,10 @@
 #include "DelaunayTetrahedralization.h"
 
 #include "Determinants.h"
+#include "ParallelLoop.h"
 #include "Predicates.h"
+#include "PulledSphere.h"
 #include "TetMesh.h"
-#include "Threads.h"
 
 #include <algorithm>
 #include <atomic>
@@ -23,9 +24,10 @@ constexpr double Epsilon = std::numeric_limits<double>::epsilon() / 2.0;
 constexpr double FloatEpsilon = std::numeric_limits<float>::epsilon() / 2.0;
 
 /** Rounds of fewer vertices are inserted by one thread. */
-constexpr std::size_t SmallRound = 8192;
+constexpr std::size_t SmallRound = 2048;
 /** The first round has about so many vertices, each of the others eight times more. */
 constexpr Id FirstRound = 100;
+constexpr const char* Activity = "Tetrahedralizing the points";
 /** How often the context is asked, in vertices. */
 constexpr std::size_t ReportInterval = 4096;
 /** Facet ids of 4 * tetrahedron + i have to fit into an Id. */
@@ -70,8 +72,8 @@ inline RoughSphere MakeRoughSphere(
   const double tolerance = 2.05 * (1.01 * FloatEpsilon * offset + error);
   // Not if an error in the last bits of a float, or of the double, could be larger than that.
   return tolerance > 1e-30 && offset < 1e30 && error < 1e-3 * offset
-    ? RoughSphere{ static_cast<float>(center.X), static_cast<float>(center.Y),
-        static_cast<float>(center.Z), static_cast<float>(tolerance) }
+    ? RoughSphere{ static_cast<float>(2.0 * center.X), static_cast<float>(2.0 * center.Y),
+        static_cast<float>(2.0 * center.Z), static_cast<float>(tolerance) }
     : NoSphere;
 }
 
@@ -85,7 +87,10 @@ public:
   {
   }
 
-  Status Run(int numberOfThreads);
+  Status Start();
+  Status StartFromBlock(
+    const GridBlock& block, const std::vector<Id>& numbers, int numberOfThreads);
+  Status InsertOthers(int numberOfThreads);
 
 private:
   /** A facet of the hole, counter-clockwise seen from within it. */
@@ -97,12 +102,24 @@ private:
     /** The facet id beyond; then the new tetrahedron. */
     Id Outer;
   };
+  /** The vertices from First on, Count of them, around the end of the curve; and infinity. */
+  struct Part
+  {
+    Id First = 0;
+    Id Count = 0;
+    Id Infinite = 0;
+
+    bool Has(Id vertex) const
+    {
+      const Id place = vertex - this->First;
+      return (place >= 0 ? place : place + this->Infinite) < this->Count ||
+        vertex == this->Infinite;
+    }
+  };
   /** What a thread has for itself: a part of the curve, and room for tetrahedra. */
   struct Worker
   {
-    /** Owns the vertices from First on, Count of them, around the end of the curve. */
-    Id First = 0;
-    Id Count = 0;
+    Part Own;
     std::vector<Id> Todo;
     std::vector<Id> Postponed;
     /** Places for new tetrahedra: of removed ones, and ranges never used. */
@@ -114,7 +131,10 @@ private:
     bool HasInserted = false;
     bool HasTies = false;
 
-    /** Tetrahedra of the hole and its facets: the first so many of the arrays. */
+    /**
+     * Tetrahedra of the hole, by the facet that each was found through, and facets of the hole: the
+     * first so many of the arrays.
+     */
     std::vector<Id> Cavity = std::vector<Id>(64);
     std::vector<HoleFacet> Facets = std::vector<HoleFacet>(64);
     std::size_t NumberOfRemoved = 0;
@@ -125,13 +145,15 @@ private:
   /** State of a tetrahedron during an insertion. */
   enum Mark : unsigned char
   {
-    Unknown,
-    Removed,
-    Stays
+    Unknown = 0,
+    Removed = 1,
+    Stays = 2
   };
 
+  void Reserve();
   Status FindFirst(TetrahedronIds& ids) const;
   void MakeFirst(const TetrahedronIds& ids);
+  void MakeSphere(std::size_t tetrahedron);
   Status InsertRound(const std::vector<Id>& vertices, int numberOfThreads);
   template <bool IsShared>
   bool Work(Worker& worker, const std::function<bool(std::size_t)>& mayContinue);
@@ -139,8 +161,15 @@ private:
   bool Locate(Id vertex, Worker& worker, Id& tetrahedron) const;
   template <bool IsShared>
   bool FindHole(Id vertex, Id first, Worker& worker);
-  template <bool IsShared>
   void ForgetHole(Worker& worker);
+  /** What is marked is owned. */
+  void ForgetMark(Id tetrahedron)
+  {
+    if (this->Marks[tetrahedron] != Unknown)
+    {
+      this->Marks[tetrahedron] = Unknown;
+    }
+  }
   template <bool IsShared>
   bool FillHole(Id vertex, Worker& worker);
   static Id TakePlace(Worker& worker);
@@ -148,8 +177,7 @@ private:
   static void MovePlaces(Worker& from, Worker& to, std::size_t wanted);
   void ConnectByTable(Worker& worker);
   void ConnectBySorting(Worker& worker);
-  bool IsOwned(Id tetrahedron, const Worker& worker) const;
-  bool IsInConflict(Id tetrahedron, Id vertex, Worker& worker) const;
+  bool IsOwned(Id tetrahedron, const Part& part) const;
   bool IsInConflictExactly(Id tetrahedron, Id vertex, Worker& worker) const;
   int GetSide(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
   int GetPosition(const TetrahedronIds& ids, Id vertex, Worker& worker) const;
@@ -168,6 +196,8 @@ private:
   double ExactPositionBound = 0.0;
   RawVector<RoughSphere> Spheres;
   RawVector<unsigned char> Marks;
+  /** Vertices that need no insertion. */
+  std::vector<bool> IsInserted;
   /** Where a vertex may stand among those of the hole. */
   std::vector<Id> Places;
   std::vector<Worker> Workers;
@@ -242,38 +272,12 @@ int Builder::GetPosition(const TetrahedronIds& ids, Id vertex, Worker& worker) c
 
 int Builder::GetPulledPosition(const TetrahedronIds& ids, Id vertex) const
 {
-  // What is pulled most decides: the vertex comes to lie within; another one leaves the vertex
-  // outside where the tetrahedron is, and inside on the other side of its other three. If these are
-  // coplanar with the vertex the next one decides.
-  const Id own = this->Numbers[vertex];
-  Id limit = std::numeric_limits<Id>::min();
-  for (;;)
-  {
-    Id lowest = own;
-    int place = -1;
-    for (int i = 0; i < 4; ++i)
-    {
-      const Id number = this->Numbers[ids[i]];
-      if (number > limit && number < lowest)
-      {
-        lowest = number;
-        place = i;
-      }
-    }
-    if (place < 0)
-    {
-      return 1;
-    }
-    TetrahedronIds other = ids;
-    other[place] = vertex;
-    const int side = this->GetSide(this->Points[other[0]], this->Points[other[1]],
-      this->Points[other[2]], this->Points[other[3]]);
-    if (side != 0)
-    {
-      return -side;
-    }
-    limit = lowest;
-  }
+  const auto getSide = [this](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+  { return this->GetSide(a, b, c, d); };
+  return cdm::GetPulledPosition(
+    { this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]], this->Points[ids[3]] },
+    { this->Numbers[ids[0]], this->Numbers[ids[1]], this->Numbers[ids[2]], this->Numbers[ids[3]] },
+    this->Points[vertex], this->Numbers[vertex], getSide);
 }
 
 bool Builder::IsInConflictExactly(Id tetrahedron, Id vertex, Worker& worker) const
@@ -297,35 +301,10 @@ bool Builder::IsInConflictExactly(Id tetrahedron, Id vertex, Worker& worker) con
   return this->GetPosition(ids, vertex, worker) > 0;
 }
 
-inline bool Builder::IsInConflict(Id tetrahedron, Id vertex, Worker& worker) const
+bool Builder::IsOwned(Id tetrahedron, const Part& part) const
 {
-  const RoughSphere& sphere = this->Spheres[tetrahedron];
-  if (sphere.Tolerance < std::numeric_limits<float>::infinity())
-  {
-    const Vec3 d = this->Points[vertex] - this->Points[this->Output.Tetrahedra[tetrahedron][3]];
-    const double power =
-      d.X * (d.X - 2.0 * sphere.X) + d.Y * (d.Y - 2.0 * sphere.Y) + d.Z * (d.Z - 2.0 * sphere.Z);
-    const double bound =
-      sphere.Tolerance * (std::abs(d.X) + std::abs(d.Y) + std::abs(d.Z)) + SmallestCertainBound;
-    if (std::abs(power) > bound)
-    {
-      return power < 0.0;
-    }
-  }
-  return this->IsInConflictExactly(tetrahedron, vertex, worker);
-}
-
-bool Builder::IsOwned(Id tetrahedron, const Worker& worker) const
-{
-  for (Id vertex : this->Output.Tetrahedra[tetrahedron])
-  {
-    const Id place = vertex - worker.First;
-    if (vertex != this->Infinite && (place >= 0 ? place : place + this->Infinite) >= worker.Count)
-    {
-      return false;
-    }
-  }
-  return true;
+  const TetrahedronIds& ids = this->Output.Tetrahedra[tetrahedron];
+  return part.Has(ids[0]) && part.Has(ids[1]) && part.Has(ids[2]) && part.Has(ids[3]);
 }
 
 /** The tetrahedron that holds the vertex, or one beyond the hull whose facet it sees. */
@@ -343,12 +322,12 @@ bool Builder::Locate(Id vertex, Worker& worker, Id& tetrahedron) const
       break;
     }
   }
+  if (IsShared && !this->IsOwned(t, worker.Own))
+  {
+    return false;
+  }
   for (;;)
   {
-    if (IsShared && !this->IsOwned(t, worker))
-    {
-      return false;
-    }
     const TetrahedronIds& ids = this->Output.Tetrahedra[t];
     int next = -1;
     for (int i = 0; i < 4 && next < 0; ++i)
@@ -369,10 +348,16 @@ bool Builder::Locate(Id vertex, Worker& worker, Id& tetrahedron) const
     const Id facet = this->Output.Neighbors[t][next];
     t = facet / 4;
     from = facet % 4;
-    if (this->Output.Tetrahedra[t][from] == this->Infinite)
+    // Only the vertex opposite to the facet is new.
+    const Id apex = this->Output.Tetrahedra[t][from];
+    if (apex == this->Infinite)
     {
       tetrahedron = t;
-      return !IsShared || this->IsOwned(t, worker);
+      return true;
+    }
+    if (IsShared && !worker.Own.Has(apex))
+    {
+      return false;
     }
   }
 }
@@ -380,13 +365,22 @@ bool Builder::Locate(Id vertex, Worker& worker, Id& tetrahedron) const
 template <bool IsShared>
 bool Builder::FindHole(Id vertex, Id first, Worker& worker)
 {
-  // What is found is written in any case, and counted if it belongs there: whether it does is a
-  // matter of chance, and a wrongly predicted branch costs more than the rest.
+  // Without branches: whether a neighbor belongs to the hole is a matter of chance, and a wrongly
+  // predicted branch costs more than to test some neighbors twice. What is found is written in any
+  // case, and counted if it belongs there. Marks may alias anything, in the eyes of a compiler:
+  // what does not change is held here.
+  const Vec3* const points = this->Points;
+  const Vec3 position = points[vertex];
+  const TetrahedronIds* const tetrahedra = this->Output.Tetrahedra.data();
+  const TetrahedronIds* const allNeighbors = this->Output.Neighbors.data();
+  const RoughSphere* const spheres = this->Spheres.data();
+  unsigned char* const marks = this->Marks.data();
+  const Part own = worker.Own;
   std::size_t removed = 1;
   std::size_t facets = 0;
   bool isWithin = true;
-  worker.Cavity[0] = first;
-  this->Marks[first] = Removed;
+  worker.Cavity[0] = 4 * first;
+  marks[first] = Removed;
   for (std::size_t k = 0; k < removed && isWithin; ++k)
   {
     if (worker.Cavity.size() < removed + 4)
@@ -397,29 +391,47 @@ bool Builder::FindHole(Id vertex, Id first, Worker& worker)
     {
       worker.Facets.resize(2 * facets);
     }
-    const TetrahedronIds& ids = this->Output.Tetrahedra[worker.Cavity[k]];
-    const TetrahedronIds& neighbors = this->Output.Neighbors[worker.Cavity[k]];
-    for (int i = 0; i < 4; ++i)
+    Id* const cavity = worker.Cavity.data();
+    HoleFacet* const holeFacets = worker.Facets.data();
+    const TetrahedronIds& ids = tetrahedra[cavity[k] / 4];
+    const TetrahedronIds& neighbors = allNeighbors[cavity[k] / 4];
+    // Not where it was found from.
+    for (int j = k == 0 ? 0 : 1; j < 4; ++j)
     {
+      const int i = (cavity[k] + j) % 4;
       const Id outer = neighbors[i] / 4;
-      unsigned char mark = this->Marks[outer];
-      // Tetrahedra at the border belong to nobody: they are looked at, and never marked.
-      if (IsShared && !this->IsOwned(outer, worker))
+      const RoughSphere sphere = spheres[outer];
+      // The last vertex is never the one at infinity.
+      const Vec3 d = position - points[tetrahedra[outer][3]];
+      const double power = d.X * (d.X - sphere.X) + d.Y * (d.Y - sphere.Y) + d.Z * (d.Z - sphere.Z);
+      const double bound =
+        sphere.Tolerance * (std::abs(d.X) + std::abs(d.Y) + std::abs(d.Z)) + SmallestCertainBound;
+      const unsigned mark = marks[outer];
+      unsigned isRemoved = power < 0.0 ? 1 : 0;
+      // Tetrahedra at the border belong to nobody: they are looked at, and never marked. The facet
+      // is owned.
+      if (IsShared && !own.Has(tetrahedra[outer][neighbors[i] % 4]))
       {
-        mark = Stays;
-        isWithin = isWithin && this->Spheres[outer].Tolerance < NoSphere.Tolerance &&
-          !this->IsInConflict(outer, vertex, worker);
+        isWithin = isWithin && sphere.Tolerance < NoSphere.Tolerance &&
+          !(std::abs(power) > bound ? isRemoved != 0
+                                    : this->IsInConflictExactly(outer, vertex, worker));
+        isRemoved = 0;
       }
-      else if (mark == Unknown)
+      else if (!(std::abs(power) > bound))
       {
-        mark = this->IsInConflict(outer, vertex, worker) ? Removed : Stays;
-        this->Marks[outer] = mark;
-        worker.Cavity[removed] = outer;
-        removed += mark == Removed ? 1 : 0;
+        isRemoved =
+          mark == Unknown ? this->IsInConflictExactly(outer, vertex, worker) : mark == Removed;
+        marks[outer] = isRemoved ? Removed : Stays;
       }
+      else
+      {
+        marks[outer] = static_cast<unsigned char>(mark | isRemoved);
+      }
+      cavity[removed] = neighbors[i];
+      removed += isRemoved & ~mark;
       const int* const facet = FacetVertices[i];
-      worker.Facets[facets] = { ids[facet[0]], ids[facet[2]], ids[facet[1]], neighbors[i] };
-      facets += mark == Stays ? 1 : 0;
+      holeFacets[facets] = { ids[facet[0]], ids[facet[2]], ids[facet[1]], neighbors[i] };
+      facets += isRemoved ^ 1;
     }
   }
   worker.NumberOfRemoved = removed;
@@ -427,20 +439,15 @@ bool Builder::FindHole(Id vertex, Id first, Worker& worker)
   return isWithin;
 }
 
-template <bool IsShared>
 void Builder::ForgetHole(Worker& worker)
 {
   for (std::size_t k = 0; k < worker.NumberOfRemoved; ++k)
   {
-    this->Marks[worker.Cavity[k]] = Unknown;
+    this->Marks[worker.Cavity[k] / 4] = Unknown;
   }
   for (std::size_t k = 0; k < worker.NumberOfFacets; ++k)
   {
-    const Id outer = worker.Facets[k].Outer / 4;
-    if (!IsShared || this->IsOwned(outer, worker))
-    {
-      this->Marks[outer] = Unknown;
-    }
+    this->ForgetMark(worker.Facets[k].Outer / 4);
   }
 }
 
@@ -464,12 +471,13 @@ bool Builder::FillHole(Id vertex, Worker& worker)
   }
   for (std::size_t k = removed; k < count; ++k)
   {
-    worker.Cavity[k] = TakePlace(worker);
+    worker.Cavity[k] = 4 * TakePlace(worker);
   }
   for (std::size_t k = count; k < removed; ++k)
   {
-    tetrahedra[worker.Cavity[k]][0] = NoId;
-    worker.Free.push_back(worker.Cavity[k]);
+    const Id place = worker.Cavity[k] / 4;
+    tetrahedra[place][0] = NoId;
+    worker.Free.push_back(place);
     ++worker.NumberOfPlaces;
   }
 
@@ -503,16 +511,12 @@ bool Builder::FillHole(Id vertex, Worker& worker)
   for (std::size_t k = 0; k < count; ++k)
   {
     HoleFacet& facet = worker.Facets[k];
-    const Id t = worker.Cavity[k];
+    const Id t = worker.Cavity[k] / 4;
     tetrahedra[t] = { facet.A, facet.B, facet.C, vertex };
     neighbors[t][3] = facet.Outer;
     const Id outer = facet.Outer / 4;
     neighbors[outer][facet.Outer % 4] = 4 * t + 3;
-    // What is marked is owned.
-    if (!IsShared || this->Marks[outer] != Unknown)
-    {
-      this->Marks[outer] = Unknown;
-    }
+    this->ForgetMark(outer);
     this->Marks[t] = Unknown;
     facet = { getPlace(facet.A), getPlace(facet.B), getPlace(facet.C), t };
   }
@@ -666,7 +670,7 @@ bool Builder::Work(Worker& worker, const std::function<bool(std::size_t)>& mayCo
         this->FindHole<IsShared>(vertex, first, worker) && this->FillHole<IsShared>(vertex, worker);
       if (!isDone)
       {
-        this->ForgetHole<IsShared>(worker);
+        this->ForgetHole(worker);
       }
     }
     if (!isDone)
@@ -716,22 +720,24 @@ Status Builder::FindFirst(TetrahedronIds& ids) const
 
 void Builder::MakeFirst(const TetrahedronIds& ids)
 {
-  // The tetrahedron and, beyond its facet i, number i + 1.
+  // The tetrahedron and, beyond its facet i, number i + 1: the vertex at infinity and the facet.
+  constexpr Id Places[3] = { 1, 3, 2 };
   this->Output.Tetrahedra.push_back(ids);
-  this->Output.Neighbors.push_back({ 7, 11, 15, 19 });
+  this->Output.Neighbors.push_back({ 4, 8, 12, 16 });
   this->Spheres.push_back(NoSphere);
   for (Id i = 0; i < 4; ++i)
   {
-    // Opposite to each of its vertices the facet meets the one that is opposite to that vertex.
     const int* const facet = FacetVertices[i];
-    TetrahedronIds neighbors{ NoId, NoId, NoId, i };
+    TetrahedronIds vertices{ this->Infinite, NoId, NoId, NoId };
+    TetrahedronIds neighbors{ i, NoId, NoId, NoId };
     for (int j = 0; j < 3; ++j)
     {
+      // Opposite to each of its vertices the facet meets the one that is opposite to that vertex.
       const int* const other = FacetVertices[facet[j]];
-      neighbors[j] = static_cast<Id>(4 * (facet[j] + 1) + (std::find(other, other + 3, i) - other));
+      vertices[Places[j]] = ids[facet[j]];
+      neighbors[Places[j]] = 4 * (facet[j] + 1) + Places[std::find(other, other + 3, i) - other];
     }
-    this->Output.Tetrahedra.push_back(
-      { ids[facet[0]], ids[facet[1]], ids[facet[2]], this->Infinite });
+    this->Output.Tetrahedra.push_back(vertices);
     this->Output.Neighbors.push_back(neighbors);
     this->Spheres.push_back(NoSphere);
   }
@@ -745,8 +751,7 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
   const auto report = [&](std::size_t done)
   {
     return this->Context.Continue(
-      std::min(0.99, (begin + static_cast<double>(done)) / this->Infinite),
-      "Tetrahedralizing the points");
+      std::min(0.99, (begin + static_cast<double>(done)) / this->Infinite), Activity);
   };
   std::vector<Id> left(vertices);
   // Two cuts of the curve for the threads, then all of it for one.
@@ -754,20 +759,21 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
   {
     const std::size_t count = static_cast<std::size_t>(numberOfThreads);
     const Id part = this->Infinite / numberOfThreads + 1;
+    const Id shift = cut == 0 ? 0 : part / 2;
     Worker spare;
     MovePlaces(this->Workers[0], spare, std::numeric_limits<std::size_t>::max());
     Id last = this->Workers[0].Last;
     for (std::size_t w = 0; w < count; ++w)
     {
       Worker& worker = this->Workers[w];
-      worker.First = static_cast<Id>(w) * part + (cut == 1 ? part / 2 : 0);
-      worker.Count = std::min(part, this->Infinite - static_cast<Id>(w) * part);
+      worker.Own = { static_cast<Id>(w) * part + shift,
+        std::min(part, this->Infinite - static_cast<Id>(w) * part), this->Infinite };
       worker.Todo.clear();
       worker.Postponed.clear();
     }
     for (Id vertex : left)
     {
-      const Id shifted = vertex - (cut == 1 ? part / 2 : 0);
+      const Id shifted = vertex - shift;
       const Id place = shifted < 0 ? shifted + this->Infinite : shifted;
       this->Workers[place / part].Todo.push_back(vertex);
     }
@@ -781,7 +787,7 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
       for (std::size_t i = 0; i < worker.Todo.size() && !hasStart; i += 1 + worker.Todo.size() / 64)
       {
         this->Locate<false>(worker.Todo[i], worker, worker.Last);
-        hasStart = this->IsOwned(worker.Last, worker);
+        hasStart = this->IsOwned(worker.Last, worker.Own);
       }
       if (!hasStart)
       {
@@ -833,24 +839,92 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
   return isDone ? Status() : Status::Aborted();
 }
 
-Status Builder::Run(int numberOfThreads)
+void Builder::Reserve()
 {
-  TetrahedronIds first;
-  Status status = this->FindFirst(first);
-  if (!status.IsOk())
-  {
-    return status;
-  }
-  this->SetUnit();
   const std::size_t expected = 8 * static_cast<std::size_t>(this->Infinite);
   this->Output.Tetrahedra.reserve(expected);
   this->Output.Neighbors.reserve(expected);
   this->Spheres.reserve(expected);
   this->Marks.reserve(expected);
-  this->Places.assign(static_cast<std::size_t>(this->Infinite) + 1, 0);
-  this->Workers.resize(static_cast<std::size_t>(std::max(1, numberOfThreads)));
-  this->MakeFirst(first);
+  this->IsInserted.resize(static_cast<std::size_t>(this->Infinite), false);
+}
 
+Status Builder::Start()
+{
+  TetrahedronIds first;
+  Status status = this->FindFirst(first);
+  if (status.IsOk())
+  {
+    this->Reserve();
+    this->MakeFirst(first);
+    for (Id vertex : first)
+    {
+      this->IsInserted[vertex] = true;
+    }
+  }
+  return status;
+}
+
+void Builder::MakeSphere(std::size_t tetrahedron)
+{
+  const TetrahedronIds& ids = this->Output.Tetrahedra[tetrahedron];
+  if (ids[0] == this->Infinite)
+  {
+    this->Spheres[tetrahedron] = NoSphere;
+    return;
+  }
+  RelativeVertex vertices[3];
+  double size = 0.0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const Vec3 d = this->Points[ids[i]] - this->Points[ids[3]];
+    size = std::max(size, GetLargest(std::abs(d.X), std::abs(d.Y), std::abs(d.Z)));
+    vertices[i] = { ids[i], d, SquaredNorm(d) };
+  }
+  this->Spheres[tetrahedron] = MakeRoughSphere(vertices[0], vertices[1], vertices[2], size);
+}
+
+Status Builder::StartFromBlock(
+  const GridBlock& block, const std::vector<Id>& numbers, int numberOfThreads)
+{
+  this->Reserve();
+  for (Id vertex : block.Points)
+  {
+    this->IsInserted[vertex] = true;
+  }
+  const std::size_t count = GetNumberOfTetrahedra(block);
+  this->Output.Tetrahedra.resize(count);
+  this->Output.Neighbors.resize(count);
+  this->Output.HasCosphericalPoints = true;
+  const bool isAlone = block.Points.size() == static_cast<std::size_t>(this->Infinite);
+  const double share =
+    0.9 * static_cast<double>(block.Points.size()) / static_cast<double>(this->Infinite);
+  if (!MeshGridBlock(block, numbers, numberOfThreads,
+        this->Context.Part(0.0, isAlone ? 1.0 : 0.7 * share), this->Output.Tetrahedra,
+        this->Output.Neighbors))
+  {
+    return Status::Aborted();
+  }
+  if (isAlone)
+  {
+    return Status();
+  }
+  this->Spheres.resize(count);
+  this->Marks.assign(count, Unknown);
+  const bool isDone = ParallelLoop(count, { numberOfThreads, std::size_t(1) << 15 },
+    this->Context.Part(0.7 * share, share), Activity,
+    [this](std::size_t begin, std::size_t end, std::size_t)
+    {
+      for (std::size_t t = begin; t < end; ++t)
+      {
+        this->MakeSphere(t);
+      }
+    });
+  return isDone ? Status() : Status::Aborted();
+}
+
+Status Builder::InsertOthers(int numberOfThreads)
+{
   int rounds = 0;
   for (Id size = this->Infinite; size > FirstRound; size /= 8)
   {
@@ -859,7 +933,7 @@ Status Builder::Run(int numberOfThreads)
   std::vector<std::vector<Id>> vertices(static_cast<std::size_t>(rounds) + 1);
   for (Id vertex = 0; vertex < this->Infinite; ++vertex)
   {
-    if (std::find(first.begin(), first.end(), vertex) != first.end())
+    if (this->IsInserted[vertex])
     {
       continue;
     }
@@ -874,6 +948,10 @@ Status Builder::Run(int numberOfThreads)
     }
     vertices[static_cast<std::size_t>(round)].push_back(vertex);
   }
+  this->SetUnit();
+  this->Places.assign(static_cast<std::size_t>(this->Infinite) + 1, 0);
+  this->Workers.resize(static_cast<std::size_t>(std::max(1, numberOfThreads)));
+  Status status;
   for (std::vector<Id>& round : vertices)
   {
     status = this->InsertRound(round, numberOfThreads);
@@ -899,11 +977,18 @@ Status Builder::Run(int numberOfThreads)
 } // namespace
 
 Status BuildDelaunayTetrahedralization(const std::vector<Vec3>& points,
-  const std::vector<Id>& numbers, int numberOfThreads, const ExecutionContext& context,
-  DelaunayTetrahedralization& output)
+  const std::vector<Id>& numbers, const GridBlock& block, int numberOfThreads,
+  const ExecutionContext& context, DelaunayTetrahedralization& output)
 {
   output = DelaunayTetrahedralization();
-  const Status status = Builder(points, numbers, context, output).Run(numberOfThreads);
+  Builder builder(points, numbers, context, output);
+  const bool hasBlock = !block.IsEmpty() && GetNumberOfTetrahedra(block) <= MaximumTetrahedra;
+  Status status =
+    hasBlock ? builder.StartFromBlock(block, numbers, numberOfThreads) : builder.Start();
+  if (status.IsOk() && (!hasBlock || block.Points.size() < points.size()))
+  {
+    status = builder.InsertOthers(numberOfThreads);
+  }
   if (!status.IsOk())
   {
     output = DelaunayTetrahedralization();

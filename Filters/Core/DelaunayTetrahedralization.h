@@ -5,9 +5,10 @@
  * of every facet.
  *
  * Method:
- *  1. vertices are the points in the order of a Hilbert curve; they are inserted in rounds, each
- *     about eight times larger than the one before, drawn by a hash of the vertex, and along the
- *     curve within a round;
+ *  1. vertices are the points in the order of a Hilbert curve. Those of a block of a rectilinear grid
+ *     get their tetrahedra at once (GridBlock.h); the others are inserted in rounds, each about eight
+ *     times larger than the one before, drawn by a hash of the vertex, and along the curve within a
+ *     round;
  *  2. a vertex is located by a walk from the last one; the tetrahedra whose sphere holds it, and the
  *     facets of the hull that it sees, are removed, and the hole is filled with the cone from the
  *     vertex (Bowyer 1981, Watson 1981). Beyond each facet of the hull lies a tetrahedron with the
@@ -35,6 +36,7 @@
 #define cdmDelaunayTetrahedralization_h
 
 #include "ExecutionContext.h"
+#include "GridBlock.h"
 #include "RawVector.h"
 #include "Status.h"
 #include "Types.h"
@@ -59,12 +61,13 @@ struct DelaunayTetrahedralization
 
 /**
  * Points are distinct, finite, and follow a Hilbert curve (SortAlongHilbertCurve()); numbers are
- * distinct and decide the order of pulling. InvalidInput if there are fewer than four points, or all
+ * distinct and decide the order of pulling. The block of a grid among them, if there is one
+ * (FindGridBlock()), saves time and changes nothing else. InvalidInput if there are fewer than four points, or all
  * of them lie on a line or in a plane, and for more than 2^29 tetrahedra; Aborted leaves nothing.
  */
 Status BuildDelaunayTetrahedralization(const std::vector<Vec3>& points,
-  const std::vector<Id>& numbers, int numberOfThreads, const ExecutionContext& context,
-  DelaunayTetrahedralization& output);
+  const std::vector<Id>& numbers, const GridBlock& block, int numberOfThreads,
+  const ExecutionContext& context, DelaunayTetrahedralization& output);
 
 /** A tetrahedron that holds the position in its closure; NoId outside of the hull. */
 Id LocateInTetrahedralization(const std::vector<Vec3>& points,

@@ -294,7 +294,7 @@ bool DynamicTetrahedralization::Remove(Id point)
     points.push_back(this->Mesh.Points[id]);
   }
   DelaunayTetrahedralization local;
-  if (!BuildDelaunayTetrahedralization(points, ids, 1, ExecutionContext(), local).IsOk())
+  if (!BuildDelaunayTetrahedralization(points, ids, GridBlock(), 1, ExecutionContext(), local).IsOk())
   {
     return false;
   }

@@ -17,6 +17,8 @@ namespace
 constexpr std::size_t SmallRun = 6;
 constexpr int MaximumBits = 21;
 constexpr int DigitBits = 11;
+/** Threads sort parts of this many items at least. */
+constexpr std::size_t SmallestPart = std::size_t(1) << 15;
 
 /** Where the curve goes in each octant: its number along the curve, and the next state. */
 struct CurveTable
@@ -164,7 +166,8 @@ private:
       { return this->Points[i] != this->Points[j] ? this->Points[i] < this->Points[j] : i < j; });
   }
 
-  static void SortByKey(RawVector<Item>& items, int bits)
+  /** By digits from the last one on; each thread counts and moves one part of the items. */
+  void SortByKey(RawVector<Item>& items, int bits) const
   {
     if (items.size() < 512)
     {
@@ -172,26 +175,42 @@ private:
         items.begin(), items.end(), [](const Item& a, const Item& b) { return a.Key < b.Key; });
       return;
     }
+    constexpr std::size_t Digits = std::size_t(1) << DigitBits;
+    const std::size_t part =
+      std::max(SmallestPart, items.size() / static_cast<std::size_t>(this->NumberOfThreads) + 1);
+    const ParallelLoopOptions options{ this->NumberOfThreads, part };
     RawVector<Item> other(items.size());
-    std::vector<std::size_t> starts(std::size_t(1) << DigitBits);
+    std::vector<std::vector<std::size_t>> starts(GetNumberOfBlocks(items.size(), options));
     for (int shift = 0; shift < bits; shift += DigitBits)
     {
-      const std::uint64_t mask = (std::uint64_t(1) << DigitBits) - 1;
-      std::fill(starts.begin(), starts.end(), 0);
-      for (const Item& item : items)
-      {
-        ++starts[(item.Key >> shift) & mask];
-      }
+      const auto getDigit = [shift](const Item& item)
+      { return (item.Key >> shift) & (Digits - 1); };
+      ParallelLoop(items.size(), options, {}, "",
+        [&](std::size_t first, std::size_t last, std::size_t block)
+        {
+          starts[block].assign(Digits, 0);
+          for (std::size_t i = first; i < last; ++i)
+          {
+            ++starts[block][getDigit(items[i])];
+          }
+        });
       std::size_t sum = 0;
-      for (std::size_t& start : starts)
+      for (std::size_t digit = 0; digit < Digits; ++digit)
       {
-        sum += start;
-        start = sum - start;
+        for (std::vector<std::size_t>& ofPart : starts)
+        {
+          sum += ofPart[digit];
+          ofPart[digit] = sum - ofPart[digit];
+        }
       }
-      for (const Item& item : items)
-      {
-        other[starts[(item.Key >> shift) & mask]++] = item;
-      }
+      ParallelLoop(items.size(), options, {}, "",
+        [&](std::size_t first, std::size_t last, std::size_t block)
+        {
+          for (std::size_t i = first; i < last; ++i)
+          {
+            other[starts[block][getDigit(items[i])]++] = items[i];
+          }
+        });
       items.swap(other);
     }
   }

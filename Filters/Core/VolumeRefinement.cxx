@@ -17,7 +17,7 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t ReportInterval = 256;
 
 /** What is left of a point's size between it and a new one. */
-constexpr double SizeRatio = 0.25;
+constexpr double SizeRatio = 0.1;
 /** Degrees that a change has to gain. */
 constexpr double SmallestGain = 0.05;
 /** Points are moved where angles are below this multiple of the target: it leaves some room. */
