@@ -4,13 +4,12 @@
 #include "AdvancingFrontTetrahedralizer.h"
 #include "BoundaryDisplacement.h"
 #include "BoundaryTriangulator.h"
-#include "Box.h"
-#include "Measures.h"
 #include "MeshBoundary.h"
 #include "MeshChecks.h"
 #include "Predicates.h"
 #include "RegionLocator.h"
-#include "SimplexIncidence.h"
+#include "SurfaceCoarsening.h"
+#include "SurfaceSides.h"
 #include "TriangleIntersection.h"
 #include "VolumeSums.h"
 
@@ -29,6 +28,8 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double FullSolidAngle = 12.566370614359172;
 /** A step is halved at most so often before it counts as one that changes the topology. */
 constexpr int MaximumNumberOfHalvings = 5;
+/** Distance of a point from a triangle to look from, in heights of the triangle. */
+constexpr double ProbeRatio = 1e-6;
 
 /** What becomes of the boundary if it moves. */
 enum class Passage
@@ -114,6 +115,82 @@ Passage CheckPassage(const TriangleMesh& surface, const ExecutionContext& contex
   return pairs.empty() ? Passage::Free : isFolded ? Passage::Folded : Passage::Collided;
 }
 
+/** The region that a surface with labels winds around a point most often; of several the lowest. */
+Id FindRegion(const TriangleMesh& surface, const Vec3& point)
+{
+  std::map<Id, double> angles;
+  for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
+  {
+    const TriangleIds& ids = surface.Triangles[t];
+    const double angle =
+      GetSolidAngle(point, surface.Points[ids[0]], surface.Points[ids[1]], surface.Points[ids[2]]);
+    angles[surface.Labels[t].Back] += angle;
+    angles[surface.Labels[t].Front] -= angle;
+  }
+  long most = 0;
+  Id found = OutsideRegion;
+  for (const auto& [region, angle] : angles)
+  {
+    const long windings = std::lround(angle / FullSolidAngle);
+    if (region != OutsideRegion && windings > most)
+    {
+      most = windings;
+      found = region;
+    }
+  }
+  return found;
+}
+
+/**
+ * Gives the pieces of a moved surface the regions that it winds around the space on their sides, and
+ * drops those between equal ones.
+ */
+void AssignRegions(const TriangleMesh& moved, TriangleMesh& pieces)
+{
+  // Sides of one shell look into the same space: that of its fattest triangle is asked.
+  struct Probe
+  {
+    double Height = 0.0;
+    Vec3 Position;
+  };
+  const SurfaceSides sides = FindSurfaceSides(pieces);
+  std::vector<Probe> probes(sides.IsOuter.size());
+  for (std::size_t side = 0; side < sides.Shells.size(); ++side)
+  {
+    const TriangleIds& ids = pieces.Triangles[side / 2];
+    const Vec3& a = pieces.Points[ids[0]];
+    const Vec3& b = pieces.Points[ids[1]];
+    const Vec3& c = pieces.Points[ids[2]];
+    const Vec3 normal = Cross(b - a, c - a);
+    const double area = Norm(normal);
+    const double height = area / std::max({ Distance(a, b), Distance(b, c), Distance(c, a) });
+    Probe& probe = probes[sides.Shells[side]];
+    if (height > probe.Height)
+    {
+      const double offset = (side % 2 == 0 ? ProbeRatio : -ProbeRatio) * height / area;
+      probe = { height, (1.0 / 3.0) * (a + b + c) + offset * normal };
+    }
+  }
+  std::vector<Id> regions;
+  for (const Probe& probe : probes)
+  {
+    regions.push_back(FindRegion(moved, probe.Position));
+  }
+  std::vector<TriangleIds> triangles;
+  pieces.Labels.clear();
+  for (std::size_t t = 0; t < pieces.Triangles.size(); ++t)
+  {
+    const RegionPair labels{ regions[sides.Shells[2 * t]], regions[sides.Shells[2 * t + 1]] };
+    if (labels.Front != labels.Back)
+    {
+      triangles.push_back(pieces.Triangles[t]);
+      pieces.Labels.push_back(labels);
+    }
+  }
+  pieces.Triangles = std::move(triangles);
+  pieces.SourceCells.clear();
+}
+
 class Remeshing
 {
 public:
@@ -153,7 +230,7 @@ private:
   Status CutSurface(const Surface& surface, const ExecutionContext& context, Surface& cut);
   Status Remesh(
     const Surface& surface, const std::vector<Vec3>& moved, const ExecutionContext& context);
-  Status AssignRegions(const TriangleMesh& moved);
+  Status Simplify(const ExecutionContext& context, Surface& surface) const;
   void AddNewPoints(const std::vector<PointParents>& points, std::vector<Id>& origins);
   Status Describe(Status status, const Surface& surface) const;
   void FindTetrahedronSources();
@@ -328,9 +405,45 @@ Status Remeshing::ChangeTopology(
   Status status = this->CutSurface(surface, context.Part(0.0, 0.3), cut);
   if (status.IsOk())
   {
-    status = this->Remesh(cut, moved, context.Part(0.3, 1.0));
+    AssignRegions(surface.Mesh, cut.Mesh);
+    if (cut.Mesh.Triangles.empty())
+    {
+      return Status::InvalidInput("Nothing is left inside of the moved boundary: move it by less.");
+    }
+    status = this->Simplify(context.Part(0.3, 0.3), cut);
   }
-  return status.IsOk() ? this->AssignRegions(surface.Mesh) : status;
+  return status.IsOk() ? this->Remesh(cut, moved, context.Part(0.3, 1.0)) : status;
+}
+
+/** Takes out points that are new and do not shape the surface, if that makes no intersections. */
+Status Remeshing::Simplify(const ExecutionContext& context, Surface& surface) const
+{
+  std::vector<char> isNew;
+  for (const Id origin : surface.Origins)
+  {
+    isNew.push_back(origin >= this->GetNumberOfInputPoints());
+  }
+  TriangleMesh coarse = surface.Mesh;
+  CoarsenSurface(isNew,
+    this->Options.Refinement.StructuralEdges.FlatnessRatio * GetBoundingBoxDiagonal(coarse.Points),
+    coarse);
+  std::vector<TrianglePair> pairs;
+  if (!FindIntersectingPairs(coarse.Points, coarse.Triangles, {}, context, pairs))
+  {
+    return Status::Aborted();
+  }
+  if (pairs.empty())
+  {
+    surface.Mesh = std::move(coarse);
+  }
+  const std::vector<Id> kept = RemoveUnusedPoints(surface.Mesh);
+  std::vector<Id> origins;
+  for (const Id id : kept)
+  {
+    origins.push_back(surface.Origins[id]);
+  }
+  surface.Origins = std::move(origins);
+  return {};
 }
 
 std::vector<Vec3> Remeshing::MovePoints(double begin, double end) const
@@ -570,90 +683,6 @@ Status Remeshing::Describe(Status status, const Surface& surface) const
   status.Cells.clear();
   status.Points = std::move(points);
   return status;
-}
-
-Status Remeshing::AssignRegions(const TriangleMesh& moved)
-{
-  TetMesh& mesh = this->Output.Mesh;
-  struct Cell
-  {
-    double Height = 0.0;
-    Vec3 Center;
-  };
-  std::map<Id, Cell> cells;
-  for (std::size_t i = 0; i < mesh.Tetrahedra.size(); ++i)
-  {
-    const TetrahedronIds& ids = mesh.Tetrahedra[i];
-    const Vec3 corners[4] = { mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]],
-      mesh.Points[ids[3]] };
-    const double height = GetSmallestHeight(corners[0], corners[1], corners[2], corners[3]);
-    Cell& cell = cells[mesh.Regions[i]];
-    if (height > cell.Height)
-    {
-      cell = { height, 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]) };
-    }
-  }
-  std::map<Id, Id> regions;
-  for (const auto& [id, cell] : cells)
-  {
-    std::map<Id, double> angles;
-    for (std::size_t t = 0; t < moved.Triangles.size(); ++t)
-    {
-      const TriangleIds& ids = moved.Triangles[t];
-      const double angle = GetSolidAngle(
-        cell.Center, moved.Points[ids[0]], moved.Points[ids[1]], moved.Points[ids[2]]);
-      angles[moved.Labels[t].Back] += angle;
-      angles[moved.Labels[t].Front] -= angle;
-    }
-    long most = 0;
-    regions[id] = OutsideRegion;
-    for (const auto& [region, angle] : angles)
-    {
-      const long windings = std::lround(angle / FullSolidAngle);
-      if (region != OutsideRegion && windings > most)
-      {
-        most = windings;
-        regions[id] = region;
-      }
-    }
-  }
-
-  TetMesh kept;
-  std::vector<Id> newIds(mesh.Points.size(), NoId);
-  for (std::size_t i = 0; i < mesh.Tetrahedra.size(); ++i)
-  {
-    const Id region = regions[mesh.Regions[i]];
-    if (region != OutsideRegion)
-    {
-      kept.Tetrahedra.push_back(mesh.Tetrahedra[i]);
-      kept.Regions.push_back(region);
-      for (const Id id : mesh.Tetrahedra[i])
-      {
-        newIds[id] = id;
-      }
-    }
-  }
-  if (kept.Tetrahedra.empty())
-  {
-    return Status::InvalidInput("Nothing is left inside of the moved boundary: move it by less.");
-  }
-  std::vector<Id> origins;
-  for (Id& id : newIds)
-  {
-    if (id != NoId)
-    {
-      kept.Points.push_back(mesh.Points[id]);
-      origins.push_back(this->Output.Origins[id]);
-      id = static_cast<Id>(origins.size()) - 1;
-    }
-  }
-  for (TetrahedronIds& ids : kept.Tetrahedra)
-  {
-    std::transform(ids.begin(), ids.end(), ids.begin(), [&newIds](Id id) { return newIds[id]; });
-  }
-  mesh = std::move(kept);
-  this->Output.Origins = std::move(origins);
-  return BuildNeighbors(mesh);
 }
 
 void Remeshing::FindTetrahedronSources()
