@@ -187,8 +187,7 @@ TEST(MeshPointGeneratorFilter, EdgesFollowASizingOfOneToThousand)
   auto grid = MakeGradedGrid(field, 0.00005);
   using Generator = vtkMeshPointGenerator;
   const std::array<int, 2> kinds[] = { { Generator::OCTREE, Generator::BODY_CENTERED },
-    { Generator::OCTREE, Generator::FACE_CENTERED }, { Generator::OCTREE, Generator::CORNERS },
-    { Generator::OCTREE, Generator::CENTERS }, { Generator::RANDOM, Generator::BODY_CENTERED } };
+    { Generator::OCTREE, Generator::CORNERS }, { Generator::RANDOM, Generator::BODY_CENTERED } };
   for (const auto& [placement, kind] : kinds)
   {
     Pipeline run(MakeCube());
