@@ -4,6 +4,7 @@
 #include "AdvancingFrontTetrahedralizer.h"
 #include "BoundaryDisplacement.h"
 #include "BoundaryTriangulator.h"
+#include "Box.h"
 #include "MeshBoundary.h"
 #include "MeshChecks.h"
 #include "Predicates.h"
@@ -25,6 +26,7 @@ namespace cdm
 namespace
 {
 constexpr double Infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t ContinueInterval = 4096;
 constexpr double FullSolidAngle = 12.566370614359172;
 /** A step is halved at most so often before it counts as one that changes the topology. */
 constexpr int MaximumNumberOfHalvings = 5;
@@ -143,9 +145,9 @@ Id FindRegion(const TriangleMesh& surface, const Vec3& point)
 
 /**
  * Gives the pieces of a moved surface the regions that it winds around the space on their sides, and
- * drops those between equal ones.
+ * drops those between equal ones. False if the context asks to stop.
  */
-void AssignRegions(const TriangleMesh& moved, TriangleMesh& pieces)
+bool AssignRegions(const TriangleMesh& moved, const ExecutionContext& context, TriangleMesh& pieces)
 {
   // Sides of one shell look into the same space: that of its fattest triangle is asked.
   struct Probe
@@ -174,6 +176,10 @@ void AssignRegions(const TriangleMesh& moved, TriangleMesh& pieces)
   std::vector<Id> regions;
   for (const Probe& probe : probes)
   {
+    if (!context.Continue(static_cast<double>(regions.size()) / probes.size(), "Finding regions"))
+    {
+      return false;
+    }
     regions.push_back(FindRegion(moved, probe.Position));
   }
   std::vector<TriangleIds> triangles;
@@ -189,6 +195,25 @@ void AssignRegions(const TriangleMesh& moved, TriangleMesh& pieces)
   }
   pieces.Triangles = std::move(triangles);
   pieces.SourceCells.clear();
+  return true;
+}
+
+/** The shortest edge at each point; infinite without edges. */
+std::vector<double> FindShortestEdges(const TetMesh& mesh)
+{
+  std::vector<double> lengths(mesh.Points.size(), Infinity);
+  for (const TetrahedronIds& ids : mesh.Tetrahedra)
+  {
+    for (const int(&edge)[2] : TetrahedronEdges)
+    {
+      const double length = Distance(mesh.Points[ids[edge[0]]], mesh.Points[ids[edge[1]]]);
+      for (const int end : edge)
+      {
+        lengths[ids[end]] = std::min(lengths[ids[end]], length);
+      }
+    }
+  }
+  return lengths;
 }
 
 class Remeshing
@@ -219,11 +244,12 @@ private:
   Status Start();
   Status Advance(const ExecutionContext& context);
   Status TakeStep(double& begin, double end, double smallest, const ExecutionContext& context);
-  std::vector<Vec3> MovePoints(double begin, double end) const;
+  bool MovePoints(
+    double begin, double end, const ExecutionContext& context, std::vector<Vec3>& moved) const;
   Surface MakeSurface(const std::vector<Vec3>& moved) const;
-  Status KeepInterior(
-    const std::vector<Vec3>& moved, const TriangleMesh& surface, Interior& interior) const;
-  std::vector<double> FindDistances(const RegionLocator& boundary) const;
+  Status KeepInterior(const std::vector<Vec3>& moved, const TriangleMesh& surface,
+    const ExecutionContext& context, Interior& interior) const;
+  Box FindMotion(const std::vector<Vec3>& moved) const;
   void FindBoundary();
   Status ChangeTopology(
     const Surface& surface, const std::vector<Vec3>& moved, const ExecutionContext& context);
@@ -346,7 +372,10 @@ Status Remeshing::TakeStep(
   Surface surface;
   const auto check = [&](double place)
   {
-    moved = this->MovePoints(begin, place);
+    if (!this->MovePoints(begin, place, waiting, moved))
+    {
+      return Passage::Aborted;
+    }
     surface = this->MakeSurface(moved);
     return CheckPassage(surface.Mesh, waiting);
   };
@@ -402,10 +431,13 @@ Status Remeshing::ChangeTopology(
 {
   ++this->Output.Report.TopologyChanges;
   Surface cut;
-  Status status = this->CutSurface(surface, context.Part(0.0, 0.3), cut);
+  Status status = this->CutSurface(surface, context.Part(0.0, 0.2), cut);
   if (status.IsOk())
   {
-    AssignRegions(surface.Mesh, cut.Mesh);
+    if (!AssignRegions(surface.Mesh, context.Part(0.2, 0.3), cut.Mesh))
+    {
+      return Status::Aborted();
+    }
     if (cut.Mesh.Triangles.empty())
     {
       return Status::InvalidInput("Nothing is left inside of the moved boundary: move it by less.");
@@ -446,7 +478,9 @@ Status Remeshing::Simplify(const ExecutionContext& context, Surface& surface) co
   return {};
 }
 
-std::vector<Vec3> Remeshing::MovePoints(double begin, double end) const
+/** False if the context asks to stop. */
+bool Remeshing::MovePoints(
+  double begin, double end, const ExecutionContext& context, std::vector<Vec3>& moved) const
 {
   const TetMesh& mesh = this->Output.Mesh;
   BoundaryDisplacementInput input;
@@ -459,8 +493,12 @@ std::vector<Vec3> Remeshing::MovePoints(double begin, double end) const
     input.Given.push_back(this->Given[origin]);
     input.IsPrescribed.push_back(origin < numberOfInputPoints && this->Given[origin] != Vec3{});
   }
-  const std::vector<Vec3> displacements = SpreadBoundaryDisplacement(input);
-  std::vector<Vec3> moved = mesh.Points;
+  std::vector<Vec3> displacements;
+  if (!SpreadBoundaryDisplacement(input, context, displacements))
+  {
+    return false;
+  }
+  moved = mesh.Points;
   for (std::size_t i = 0; i < moved.size(); ++i)
   {
     const Id origin = this->Output.Origins[i];
@@ -473,7 +511,7 @@ std::vector<Vec3> Remeshing::MovePoints(double begin, double end) const
       moved[i] = mesh.Points[i] + (end - begin) * displacements[i];
     }
   }
-  return moved;
+  return true;
 }
 
 Remeshing::Surface Remeshing::MakeSurface(const std::vector<Vec3>& moved) const
@@ -487,34 +525,27 @@ Remeshing::Surface Remeshing::MakeSurface(const std::vector<Vec3>& moved) const
   return surface;
 }
 
-/** Distance of each point inside from the next point of its edges, or the boundary. */
-std::vector<double> Remeshing::FindDistances(const RegionLocator& boundary) const
+/** A box around all triangles of the boundary that move, before and after. */
+Box Remeshing::FindMotion(const std::vector<Vec3>& moved) const
 {
-  const TetMesh& mesh = this->Output.Mesh;
-  std::vector<double> distances(mesh.Points.size(), Infinity);
-  for (const TetrahedronIds& ids : mesh.Tetrahedra)
+  const std::vector<Vec3>& points = this->Output.Mesh.Points;
+  Box motion;
+  for (const TriangleIds& ids : this->Boundary.Triangles)
   {
-    for (const int(&edge)[2] : TetrahedronEdges)
+    if (std::any_of(ids.begin(), ids.end(), [&](Id id) { return moved[id] != points[id]; }))
     {
-      const double length = Distance(mesh.Points[ids[edge[0]]], mesh.Points[ids[edge[1]]]);
-      for (const int end : edge)
+      for (const Id id : ids)
       {
-        distances[ids[end]] = std::min(distances[ids[end]], length);
+        motion.Add(points[id]);
+        motion.Add(moved[id]);
       }
     }
   }
-  for (std::size_t i = 0; i < distances.size(); ++i)
-  {
-    if (!this->IsOnBoundary[i] && distances[i] < Infinity)
-    {
-      distances[i] = boundary.GetDistance(mesh.Points[i], distances[i]);
-    }
-  }
-  return distances;
+  return motion;
 }
 
-Status Remeshing::KeepInterior(
-  const std::vector<Vec3>& moved, const TriangleMesh& surface, Interior& interior) const
+Status Remeshing::KeepInterior(const std::vector<Vec3>& moved, const TriangleMesh& surface,
+  const ExecutionContext& context, Interior& interior) const
 {
   const TetMesh& mesh = this->Output.Mesh;
   RegionLocator before(this->Boundary);
@@ -528,13 +559,31 @@ Status Remeshing::KeepInterior(
     }
   }
   const double clearance = this->Options.PointClearance;
-  const std::vector<double> distances = this->FindDistances(before);
+  // From the nearest point and, where anything moves, the boundary.
+  std::vector<double> distances = FindShortestEdges(mesh);
   std::vector<char> isKept(moved.size(), 0);
+  const Box motion = this->FindMotion(moved);
   for (std::size_t i = 0; i < moved.size(); ++i)
   {
-    const double distance = clearance * distances[i];
-    isKept[i] = !this->IsOnBoundary[i] && distances[i] < Infinity &&
-      after.GetDistance(moved[i], distance) >= distance && after.Locate(moved[i]) != OutsideRegion;
+    if (i % ContinueInterval == 0 &&
+      !context.Continue(static_cast<double>(i) / moved.size(), "Keeping points"))
+    {
+      return Status::Aborted();
+    }
+    if (this->IsOnBoundary[i] || distances[i] == Infinity)
+    {
+      continue;
+    }
+    const Vec3 reach{ distances[i], distances[i], distances[i] };
+    isKept[i] =
+      moved[i] == mesh.Points[i] && !motion.Overlaps({ moved[i] - reach, moved[i] + reach });
+    if (!isKept[i])
+    {
+      distances[i] = before.GetDistance(mesh.Points[i], distances[i]);
+      const double distance = clearance * distances[i];
+      isKept[i] = after.GetDistance(moved[i], distance) >= distance &&
+        after.Locate(moved[i]) != OutsideRegion;
+    }
   }
   for (const TetrahedronIds& ids : mesh.Tetrahedra)
   {
@@ -613,7 +662,7 @@ Status Remeshing::Remesh(
   const Surface& surface, const std::vector<Vec3>& moved, const ExecutionContext& context)
 {
   Interior interior;
-  Status status = this->KeepInterior(moved, surface.Mesh, interior);
+  Status status = this->KeepInterior(moved, surface.Mesh, context.Part(0.0, 0.1), interior);
   if (!status.IsOk())
   {
     return this->Describe(status, surface);
@@ -624,7 +673,7 @@ Status Remeshing::Remesh(
   DelaunaySurfaceRefinerOptions options = this->Options.Refinement;
   options.MeshPointClearanceRatio = 0.0;
   DelaunaySurfaceRefinerOutput refined;
-  status = RefineDelaunaySurface(refinerInput, options, context.Part(0.0, 0.6), refined);
+  status = RefineDelaunaySurface(refinerInput, options, context.Part(0.1, 0.6), refined);
   if (!status.IsOk())
   {
     return this->Describe(status, surface);
