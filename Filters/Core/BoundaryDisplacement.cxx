@@ -89,7 +89,7 @@ public:
   {
   }
 
-  std::vector<Vec3> Run()
+  bool Run(const ExecutionContext& context)
   {
     this->FindFreedoms();
     this->CollectNeighbors();
@@ -108,6 +108,10 @@ public:
     double change = Infinity;
     for (int sweep = 0; sweep < MaximumNumberOfSweeps && change > SweepTolerance * largest; ++sweep)
     {
+      if (!context.Continue(static_cast<double>(sweep) / MaximumNumberOfSweeps, "Moving points"))
+      {
+        return false;
+      }
       change = 0.0;
       const auto relax = [&](Id point)
       {
@@ -120,8 +124,10 @@ public:
       std::for_each(followers.begin(), followers.end(), relax);
       std::for_each(followers.rbegin(), followers.rend(), relax);
     }
-    return std::move(this->Displacements);
+    return true;
   }
+
+  std::vector<Vec3>& GetDisplacements() { return this->Displacements; }
 
 private:
   struct Link
@@ -324,8 +330,15 @@ private:
 };
 } // namespace
 
-std::vector<Vec3> SpreadBoundaryDisplacement(const BoundaryDisplacementInput& input)
+bool SpreadBoundaryDisplacement(const BoundaryDisplacementInput& input,
+  const ExecutionContext& context, std::vector<Vec3>& displacements)
 {
-  return Spreading(input).Run();
+  Spreading spreading(input);
+  if (!spreading.Run(context))
+  {
+    return false;
+  }
+  displacements = std::move(spreading.GetDisplacements());
+  return true;
 }
 } // namespace cdm

@@ -20,6 +20,7 @@
 #ifndef cdmBoundaryDisplacement_h
 #define cdmBoundaryDisplacement_h
 
+#include "ExecutionContext.h"
 #include "TetMesh.h"
 #include "TriangleMesh.h"
 
@@ -38,8 +39,9 @@ struct BoundaryDisplacementInput
   double FollowDistance = 0.0;
 };
 
-/** One displacement for each point. */
-std::vector<Vec3> SpreadBoundaryDisplacement(const BoundaryDisplacementInput& input);
+/** One displacement for each point. False if the context asks to stop. */
+bool SpreadBoundaryDisplacement(const BoundaryDisplacementInput& input,
+  const ExecutionContext& context, std::vector<Vec3>& displacements);
 } // namespace cdm
 
 #endif

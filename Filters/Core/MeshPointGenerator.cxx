@@ -37,6 +37,7 @@ double GetLeafRatio(PointTemplate kind)
 {
   return kind == PointTemplate::BodyCentered ? 1.32
     : kind == PointTemplate::FaceCentered    ? 1.5
+    : kind == PointTemplate::Corners         ? 0.97
                                              : 0.9;
 }
 

@@ -5,12 +5,12 @@
 #include "BoundaryDisplacement.h"
 #include "BoundaryTriangulator.h"
 #include "Box.h"
-#include "Measures.h"
 #include "MeshBoundary.h"
 #include "MeshChecks.h"
 #include "Predicates.h"
 #include "RegionLocator.h"
-#include "SimplexIncidence.h"
+#include "SurfaceCoarsening.h"
+#include "SurfaceSides.h"
 #include "TriangleIntersection.h"
 #include "VolumeSums.h"
 
@@ -26,9 +26,12 @@ namespace cdm
 namespace
 {
 constexpr double Infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t ContinueInterval = 4096;
 constexpr double FullSolidAngle = 12.566370614359172;
 /** A step is halved at most so often before it counts as one that changes the topology. */
 constexpr int MaximumNumberOfHalvings = 5;
+/** Distance of a point from a triangle to look from, in heights of the triangle. */
+constexpr double ProbeRatio = 1e-6;
 
 /** What becomes of the boundary if it moves. */
 enum class Passage
@@ -114,6 +117,105 @@ Passage CheckPassage(const TriangleMesh& surface, const ExecutionContext& contex
   return pairs.empty() ? Passage::Free : isFolded ? Passage::Folded : Passage::Collided;
 }
 
+/** The region that a surface with labels winds around a point most often; of several the lowest. */
+Id FindRegion(const TriangleMesh& surface, const Vec3& point)
+{
+  std::map<Id, double> angles;
+  for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
+  {
+    const TriangleIds& ids = surface.Triangles[t];
+    const double angle =
+      GetSolidAngle(point, surface.Points[ids[0]], surface.Points[ids[1]], surface.Points[ids[2]]);
+    angles[surface.Labels[t].Back] += angle;
+    angles[surface.Labels[t].Front] -= angle;
+  }
+  long most = 0;
+  Id found = OutsideRegion;
+  for (const auto& [region, angle] : angles)
+  {
+    const long windings = std::lround(angle / FullSolidAngle);
+    if (region != OutsideRegion && windings > most)
+    {
+      most = windings;
+      found = region;
+    }
+  }
+  return found;
+}
+
+/**
+ * Gives the pieces of a moved surface the regions that it winds around the space on their sides, and
+ * drops those between equal ones. False if the context asks to stop.
+ */
+bool AssignRegions(const TriangleMesh& moved, const ExecutionContext& context, TriangleMesh& pieces)
+{
+  // Sides of one shell look into the same space: that of its fattest triangle is asked.
+  struct Probe
+  {
+    double Height = 0.0;
+    Vec3 Position;
+  };
+  const SurfaceSides sides = FindSurfaceSides(pieces);
+  std::vector<Probe> probes(sides.IsOuter.size());
+  for (std::size_t side = 0; side < sides.Shells.size(); ++side)
+  {
+    const TriangleIds& ids = pieces.Triangles[side / 2];
+    const Vec3& a = pieces.Points[ids[0]];
+    const Vec3& b = pieces.Points[ids[1]];
+    const Vec3& c = pieces.Points[ids[2]];
+    const Vec3 normal = Cross(b - a, c - a);
+    const double area = Norm(normal);
+    const double height = area / std::max({ Distance(a, b), Distance(b, c), Distance(c, a) });
+    Probe& probe = probes[sides.Shells[side]];
+    if (height > probe.Height)
+    {
+      const double offset = (side % 2 == 0 ? ProbeRatio : -ProbeRatio) * height / area;
+      probe = { height, (1.0 / 3.0) * (a + b + c) + offset * normal };
+    }
+  }
+  std::vector<Id> regions;
+  for (const Probe& probe : probes)
+  {
+    if (!context.Continue(static_cast<double>(regions.size()) / probes.size(), "Finding regions"))
+    {
+      return false;
+    }
+    regions.push_back(FindRegion(moved, probe.Position));
+  }
+  std::vector<TriangleIds> triangles;
+  pieces.Labels.clear();
+  for (std::size_t t = 0; t < pieces.Triangles.size(); ++t)
+  {
+    const RegionPair labels{ regions[sides.Shells[2 * t]], regions[sides.Shells[2 * t + 1]] };
+    if (labels.Front != labels.Back)
+    {
+      triangles.push_back(pieces.Triangles[t]);
+      pieces.Labels.push_back(labels);
+    }
+  }
+  pieces.Triangles = std::move(triangles);
+  pieces.SourceCells.clear();
+  return true;
+}
+
+/** The shortest edge at each point; infinite without edges. */
+std::vector<double> FindShortestEdges(const TetMesh& mesh)
+{
+  std::vector<double> lengths(mesh.Points.size(), Infinity);
+  for (const TetrahedronIds& ids : mesh.Tetrahedra)
+  {
+    for (const int(&edge)[2] : TetrahedronEdges)
+    {
+      const double length = Distance(mesh.Points[ids[edge[0]]], mesh.Points[ids[edge[1]]]);
+      for (const int end : edge)
+      {
+        lengths[ids[end]] = std::min(lengths[ids[end]], length);
+      }
+    }
+  }
+  return lengths;
+}
+
 class Remeshing
 {
 public:
@@ -142,18 +244,19 @@ private:
   Status Start();
   Status Advance(const ExecutionContext& context);
   Status TakeStep(double& begin, double end, double smallest, const ExecutionContext& context);
-  std::vector<Vec3> MovePoints(double begin, double end) const;
+  bool MovePoints(
+    double begin, double end, const ExecutionContext& context, std::vector<Vec3>& moved) const;
   Surface MakeSurface(const std::vector<Vec3>& moved) const;
-  Status KeepInterior(
-    const std::vector<Vec3>& moved, const TriangleMesh& surface, Interior& interior) const;
-  std::vector<double> FindDistances(const RegionLocator& boundary) const;
+  Status KeepInterior(const std::vector<Vec3>& moved, const TriangleMesh& surface,
+    const ExecutionContext& context, Interior& interior) const;
+  Box FindMotion(const std::vector<Vec3>& moved) const;
   void FindBoundary();
   Status ChangeTopology(
     const Surface& surface, const std::vector<Vec3>& moved, const ExecutionContext& context);
   Status CutSurface(const Surface& surface, const ExecutionContext& context, Surface& cut);
   Status Remesh(
     const Surface& surface, const std::vector<Vec3>& moved, const ExecutionContext& context);
-  Status AssignRegions(const TriangleMesh& moved);
+  Status Simplify(const ExecutionContext& context, Surface& surface) const;
   void AddNewPoints(const std::vector<PointParents>& points, std::vector<Id>& origins);
   Status Describe(Status status, const Surface& surface) const;
   void FindTetrahedronSources();
@@ -269,7 +372,10 @@ Status Remeshing::TakeStep(
   Surface surface;
   const auto check = [&](double place)
   {
-    moved = this->MovePoints(begin, place);
+    if (!this->MovePoints(begin, place, waiting, moved))
+    {
+      return Passage::Aborted;
+    }
     surface = this->MakeSurface(moved);
     return CheckPassage(surface.Mesh, waiting);
   };
@@ -325,15 +431,56 @@ Status Remeshing::ChangeTopology(
 {
   ++this->Output.Report.TopologyChanges;
   Surface cut;
-  Status status = this->CutSurface(surface, context.Part(0.0, 0.3), cut);
+  Status status = this->CutSurface(surface, context.Part(0.0, 0.2), cut);
   if (status.IsOk())
   {
-    status = this->Remesh(cut, moved, context.Part(0.3, 1.0));
+    if (!AssignRegions(surface.Mesh, context.Part(0.2, 0.3), cut.Mesh))
+    {
+      return Status::Aborted();
+    }
+    if (cut.Mesh.Triangles.empty())
+    {
+      return Status::InvalidInput("Nothing is left inside of the moved boundary: move it by less.");
+    }
+    status = this->Simplify(context.Part(0.3, 0.3), cut);
   }
-  return status.IsOk() ? this->AssignRegions(surface.Mesh) : status;
+  return status.IsOk() ? this->Remesh(cut, moved, context.Part(0.3, 1.0)) : status;
 }
 
-std::vector<Vec3> Remeshing::MovePoints(double begin, double end) const
+/** Takes out points that are new and do not shape the surface, if that makes no intersections. */
+Status Remeshing::Simplify(const ExecutionContext& context, Surface& surface) const
+{
+  std::vector<char> isNew;
+  for (const Id origin : surface.Origins)
+  {
+    isNew.push_back(origin >= this->GetNumberOfInputPoints());
+  }
+  TriangleMesh coarse = surface.Mesh;
+  CoarsenSurface(isNew,
+    this->Options.Refinement.StructuralEdges.FlatnessRatio * GetBoundingBoxDiagonal(coarse.Points),
+    coarse);
+  std::vector<TrianglePair> pairs;
+  if (!FindIntersectingPairs(coarse.Points, coarse.Triangles, {}, context, pairs))
+  {
+    return Status::Aborted();
+  }
+  if (pairs.empty())
+  {
+    surface.Mesh = std::move(coarse);
+  }
+  const std::vector<Id> kept = RemoveUnusedPoints(surface.Mesh);
+  std::vector<Id> origins;
+  for (const Id id : kept)
+  {
+    origins.push_back(surface.Origins[id]);
+  }
+  surface.Origins = std::move(origins);
+  return {};
+}
+
+/** False if the context asks to stop. */
+bool Remeshing::MovePoints(
+  double begin, double end, const ExecutionContext& context, std::vector<Vec3>& moved) const
 {
   const TetMesh& mesh = this->Output.Mesh;
   BoundaryDisplacementInput input;
@@ -346,8 +493,12 @@ std::vector<Vec3> Remeshing::MovePoints(double begin, double end) const
     input.Given.push_back(this->Given[origin]);
     input.IsPrescribed.push_back(origin < numberOfInputPoints && this->Given[origin] != Vec3{});
   }
-  const std::vector<Vec3> displacements = SpreadBoundaryDisplacement(input);
-  std::vector<Vec3> moved = mesh.Points;
+  std::vector<Vec3> displacements;
+  if (!SpreadBoundaryDisplacement(input, context, displacements))
+  {
+    return false;
+  }
+  moved = mesh.Points;
   for (std::size_t i = 0; i < moved.size(); ++i)
   {
     const Id origin = this->Output.Origins[i];
@@ -360,7 +511,7 @@ std::vector<Vec3> Remeshing::MovePoints(double begin, double end) const
       moved[i] = mesh.Points[i] + (end - begin) * displacements[i];
     }
   }
-  return moved;
+  return true;
 }
 
 Remeshing::Surface Remeshing::MakeSurface(const std::vector<Vec3>& moved) const
@@ -374,34 +525,27 @@ Remeshing::Surface Remeshing::MakeSurface(const std::vector<Vec3>& moved) const
   return surface;
 }
 
-/** Distance of each point inside from the next point of its edges, or the boundary. */
-std::vector<double> Remeshing::FindDistances(const RegionLocator& boundary) const
+/** A box around all triangles of the boundary that move, before and after. */
+Box Remeshing::FindMotion(const std::vector<Vec3>& moved) const
 {
-  const TetMesh& mesh = this->Output.Mesh;
-  std::vector<double> distances(mesh.Points.size(), Infinity);
-  for (const TetrahedronIds& ids : mesh.Tetrahedra)
+  const std::vector<Vec3>& points = this->Output.Mesh.Points;
+  Box motion;
+  for (const TriangleIds& ids : this->Boundary.Triangles)
   {
-    for (const int(&edge)[2] : TetrahedronEdges)
+    if (std::any_of(ids.begin(), ids.end(), [&](Id id) { return moved[id] != points[id]; }))
     {
-      const double length = Distance(mesh.Points[ids[edge[0]]], mesh.Points[ids[edge[1]]]);
-      for (const int end : edge)
+      for (const Id id : ids)
       {
-        distances[ids[end]] = std::min(distances[ids[end]], length);
+        motion.Add(points[id]);
+        motion.Add(moved[id]);
       }
     }
   }
-  for (std::size_t i = 0; i < distances.size(); ++i)
-  {
-    if (!this->IsOnBoundary[i] && distances[i] < Infinity)
-    {
-      distances[i] = boundary.GetDistance(mesh.Points[i], distances[i]);
-    }
-  }
-  return distances;
+  return motion;
 }
 
-Status Remeshing::KeepInterior(
-  const std::vector<Vec3>& moved, const TriangleMesh& surface, Interior& interior) const
+Status Remeshing::KeepInterior(const std::vector<Vec3>& moved, const TriangleMesh& surface,
+  const ExecutionContext& context, Interior& interior) const
 {
   const TetMesh& mesh = this->Output.Mesh;
   RegionLocator before(this->Boundary);
@@ -415,13 +559,31 @@ Status Remeshing::KeepInterior(
     }
   }
   const double clearance = this->Options.PointClearance;
-  const std::vector<double> distances = this->FindDistances(before);
+  // From the nearest point and, where anything moves, the boundary.
+  std::vector<double> distances = FindShortestEdges(mesh);
   std::vector<char> isKept(moved.size(), 0);
+  const Box motion = this->FindMotion(moved);
   for (std::size_t i = 0; i < moved.size(); ++i)
   {
-    const double distance = clearance * distances[i];
-    isKept[i] = !this->IsOnBoundary[i] && distances[i] < Infinity &&
-      after.GetDistance(moved[i], distance) >= distance && after.Locate(moved[i]) != OutsideRegion;
+    if (i % ContinueInterval == 0 &&
+      !context.Continue(static_cast<double>(i) / moved.size(), "Keeping points"))
+    {
+      return Status::Aborted();
+    }
+    if (this->IsOnBoundary[i] || distances[i] == Infinity)
+    {
+      continue;
+    }
+    const Vec3 reach{ distances[i], distances[i], distances[i] };
+    isKept[i] =
+      moved[i] == mesh.Points[i] && !motion.Overlaps({ moved[i] - reach, moved[i] + reach });
+    if (!isKept[i])
+    {
+      distances[i] = before.GetDistance(mesh.Points[i], distances[i]);
+      const double distance = clearance * distances[i];
+      isKept[i] = after.GetDistance(moved[i], distance) >= distance &&
+        after.Locate(moved[i]) != OutsideRegion;
+    }
   }
   for (const TetrahedronIds& ids : mesh.Tetrahedra)
   {
@@ -500,7 +662,7 @@ Status Remeshing::Remesh(
   const Surface& surface, const std::vector<Vec3>& moved, const ExecutionContext& context)
 {
   Interior interior;
-  Status status = this->KeepInterior(moved, surface.Mesh, interior);
+  Status status = this->KeepInterior(moved, surface.Mesh, context.Part(0.0, 0.1), interior);
   if (!status.IsOk())
   {
     return this->Describe(status, surface);
@@ -511,7 +673,7 @@ Status Remeshing::Remesh(
   DelaunaySurfaceRefinerOptions options = this->Options.Refinement;
   options.MeshPointClearanceRatio = 0.0;
   DelaunaySurfaceRefinerOutput refined;
-  status = RefineDelaunaySurface(refinerInput, options, context.Part(0.0, 0.6), refined);
+  status = RefineDelaunaySurface(refinerInput, options, context.Part(0.1, 0.6), refined);
   if (!status.IsOk())
   {
     return this->Describe(status, surface);
@@ -570,90 +732,6 @@ Status Remeshing::Describe(Status status, const Surface& surface) const
   status.Cells.clear();
   status.Points = std::move(points);
   return status;
-}
-
-Status Remeshing::AssignRegions(const TriangleMesh& moved)
-{
-  TetMesh& mesh = this->Output.Mesh;
-  struct Cell
-  {
-    double Height = 0.0;
-    Vec3 Center;
-  };
-  std::map<Id, Cell> cells;
-  for (std::size_t i = 0; i < mesh.Tetrahedra.size(); ++i)
-  {
-    const TetrahedronIds& ids = mesh.Tetrahedra[i];
-    const Vec3 corners[4] = { mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]],
-      mesh.Points[ids[3]] };
-    const double height = GetSmallestHeight(corners[0], corners[1], corners[2], corners[3]);
-    Cell& cell = cells[mesh.Regions[i]];
-    if (height > cell.Height)
-    {
-      cell = { height, 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]) };
-    }
-  }
-  std::map<Id, Id> regions;
-  for (const auto& [id, cell] : cells)
-  {
-    std::map<Id, double> angles;
-    for (std::size_t t = 0; t < moved.Triangles.size(); ++t)
-    {
-      const TriangleIds& ids = moved.Triangles[t];
-      const double angle = GetSolidAngle(
-        cell.Center, moved.Points[ids[0]], moved.Points[ids[1]], moved.Points[ids[2]]);
-      angles[moved.Labels[t].Back] += angle;
-      angles[moved.Labels[t].Front] -= angle;
-    }
-    long most = 0;
-    regions[id] = OutsideRegion;
-    for (const auto& [region, angle] : angles)
-    {
-      const long windings = std::lround(angle / FullSolidAngle);
-      if (region != OutsideRegion && windings > most)
-      {
-        most = windings;
-        regions[id] = region;
-      }
-    }
-  }
-
-  TetMesh kept;
-  std::vector<Id> newIds(mesh.Points.size(), NoId);
-  for (std::size_t i = 0; i < mesh.Tetrahedra.size(); ++i)
-  {
-    const Id region = regions[mesh.Regions[i]];
-    if (region != OutsideRegion)
-    {
-      kept.Tetrahedra.push_back(mesh.Tetrahedra[i]);
-      kept.Regions.push_back(region);
-      for (const Id id : mesh.Tetrahedra[i])
-      {
-        newIds[id] = id;
-      }
-    }
-  }
-  if (kept.Tetrahedra.empty())
-  {
-    return Status::InvalidInput("Nothing is left inside of the moved boundary: move it by less.");
-  }
-  std::vector<Id> origins;
-  for (Id& id : newIds)
-  {
-    if (id != NoId)
-    {
-      kept.Points.push_back(mesh.Points[id]);
-      origins.push_back(this->Output.Origins[id]);
-      id = static_cast<Id>(origins.size()) - 1;
-    }
-  }
-  for (TetrahedronIds& ids : kept.Tetrahedra)
-  {
-    std::transform(ids.begin(), ids.end(), ids.begin(), [&newIds](Id id) { return newIds[id]; });
-  }
-  mesh = std::move(kept);
-  this->Output.Origins = std::move(origins);
-  return BuildNeighbors(mesh);
 }
 
 void Remeshing::FindTetrahedronSources()

@@ -16,10 +16,11 @@
  *  4. the surface is refined until it is Delaunay with these points (DelaunaySurfaceRefiner.h), and
  *     the regions are filled with the tetrahedra of all points (AdvancingFrontTetrahedralizer.h);
  *  5. where the topology changes (parts of the boundary meet, a layer vanishes, half steps do not
- *     help) the moved boundary is cut along its intersections (BoundaryTriangulator.h), all cells
- *     of space between the pieces are meshed, and each cell is given the region that the moved
- *     boundary winds around it most often, of several the one with the lowest id, or removed if there
- *     is none: fronts that meet merge, layers that have vanished are gone.
+ *     help) the moved boundary is cut along its intersections (BoundaryTriangulator.h) before step
+ *     3, and each cell of space between the pieces is given the region that the moved boundary winds
+ *     around it most often, of several the one with the lowest id: fronts that meet merge, layers
+ *     that have vanished are gone. Pieces between equal regions are dropped, and points
+ *     of cuts that do not shape the surface (SurfaceCoarsening.h).
  *
  * Guarantees: the mesh is exactly Delaunay, all tetrahedra are positive, and its boundary is the
  * moved one, with triangles cut and divided, in points computed on them. Points that are given a

@@ -6,11 +6,13 @@
 #include "vtkConformingDelaunayCompatibility.h"
 #include "vtkCoreBridge.h"
 #include "vtkDelaunaySurfaceRefiner.h"
+#include "vtkMeshPointGenerator.h"
 #include "vtkSliverRemover.h"
 
 #include "Core/MeshBoundary.h"
 #include "Core/MeshChecks.h"
 
+#include <vtkAppendFilter.h>
 #include <vtkCellData.h>
 #include <vtkCommand.h>
 #include <vtkDataSet.h>
@@ -178,6 +180,15 @@ cdm::TriangleMesh UpdateBoundary(const cdm::TetMesh& mesh, const cdm::TriangleMe
   return after;
 }
 
+/** The spacing of mesh points along the axes; 0 is the longest edge of the boundary. */
+std::array<double, 3> ChooseSpacing(const double (&spacing)[3], double longestEdge)
+{
+  std::array<double, 3> lengths;
+  std::transform(spacing, spacing + 3, lengths.begin(),
+    [longestEdge](double length) { return length == 0.0 ? longestEdge : length; });
+  return lengths;
+}
+
 /** Check the mesh, bring its boundary up to date if tetrahedra were peeled off, make outputs. */
 cdm::Status Finish(vtkAlgorithm* filter, vtkUnstructuredGrid* grid, vtkPolyData* surface,
   bool isPeeled, vtkInformationVector* outputs)
@@ -242,6 +253,21 @@ vtkConformingDelaunayMesher::vtkConformingDelaunayMesher()
 }
 
 //--------------------------------------------------------------------------------------------------
+void vtkConformingDelaunayMesher::AddLayers(
+  double region, double neighbor, double numberOfLayers, double firstDistance, double growthRatio)
+{
+  this->Layers.push_back({ region, neighbor, numberOfLayers, firstDistance, growthRatio });
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkConformingDelaunayMesher::RemoveAllLayers()
+{
+  this->Layers.clear();
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
 int vtkConformingDelaunayMesher::FillInputPortInformation(int port, vtkInformation* info)
 {
   static const char* const types[3] = { "vtkPolyData", "vtkPointSet", "vtkDataSet" };
@@ -284,10 +310,31 @@ int vtkConformingDelaunayMesher::RequestData(
   triangulator->SetMaximumGapEdges(this->MaximumGapEdges);
   triangulator->SetResolveSelfIntersections(this->ResolveSelfIntersections);
   triangulator->SetKeepInternalPieces(this->KeepInternalPieces);
+  vtkPointSet* pointInput = vtkPointSet::GetData(inputVector[1]);
+  vtkNew<vtkMeshPointGenerator> generator;
+  generator->SetInputConnection(triangulator->GetOutputPort());
+  generator->SetInputDataObject(1, vtkDataSet::GetData(inputVector[2]));
+  generator->SetPlacement(this->Placement);
+  generator->SetSpacing(ChooseSpacing(this->Spacing, this->MaximumEdgeLength).data());
+  for (const std::array<double, 5>& row : this->Layers)
+  {
+    generator->AddLayers(row[0], row[1], row[2], row[3], row[4]);
+  }
+  vtkNew<vtkAppendFilter> meshPoints;
+  meshPoints->AddInputDataObject(pointInput);
+  if (this->GenerateMeshPoints)
+  {
+    meshPoints->AddInputConnection(generator->GetOutputPort());
+  }
+  const bool hasMeshPoints = pointInput || this->GenerateMeshPoints;
   vtkNew<vtkDelaunaySurfaceRefiner> refiner;
   refiner->SetInputConnection(triangulator->GetOutputPort());
-  refiner->SetInputDataObject(1, vtkPointSet::GetData(inputVector[1]));
+  if (hasMeshPoints)
+  {
+    refiner->SetInputConnection(1, meshPoints->GetOutputPort());
+  }
   refiner->SetInputDataObject(2, vtkDataSet::GetData(inputVector[2]));
+  refiner->SetMeshPointClearanceRatio(this->MeshPointClearanceRatio);
   refiner->SetCriterion(this->Criterion);
   refiner->SetAccuracyAngle(this->AccuracyAngle);
   refiner->SetMinimumAngle(this->MinimumAngle);
@@ -295,7 +342,7 @@ int vtkConformingDelaunayMesher::RequestData(
   refiner->SetMaximumEdgeLength(this->MaximumEdgeLength);
   vtkNew<vtkAdvancingFrontTetrahedralizer> tetrahedralizer;
   tetrahedralizer->SetInputConnection(refiner->GetOutputPort());
-  if (vtkPointSet::GetData(inputVector[1]))
+  if (hasMeshPoints)
   {
     tetrahedralizer->SetInputConnection(1, refiner->GetOutputPort(2));
   }
@@ -310,9 +357,14 @@ int vtkConformingDelaunayMesher::RequestData(
   }
 
   cdm::Status status = RunStage(this, triangulator, "Boundary triangulation", 0.0, 0.1);
+  if (status.IsOk() && this->GenerateMeshPoints)
+  {
+    status = RunStage(this, generator, "Mesh points", 0.1, 0.2);
+  }
   if (status.IsOk())
   {
-    status = RunStage(this, refiner, "Surface refinement", 0.1, 0.5);
+    status =
+      RunStage(this, refiner, "Surface refinement", this->GenerateMeshPoints ? 0.2 : 0.1, 0.5);
   }
   if (status.IsOk())
   {
@@ -355,6 +407,16 @@ void vtkConformingDelaunayMesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MinimumAngle: " << this->MinimumAngle << "\n";
   os << indent << "MaximumArea: " << this->MaximumArea << "\n";
   os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
+  os << indent << "GenerateMeshPoints: " << this->GenerateMeshPoints << "\n";
+  os << indent << "Placement: " << this->Placement << "\n";
+  os << indent << "Spacing: " << this->Spacing[0] << ", " << this->Spacing[1] << ", "
+     << this->Spacing[2] << "\n";
+  for (const std::array<double, 5>& row : this->Layers)
+  {
+    os << indent << "Layers: region " << row[0] << ", neighbor " << row[1] << ", number " << row[2]
+       << ", first distance " << row[3] << ", growth ratio " << row[4] << "\n";
+  }
+  os << indent << "MeshPointClearanceRatio: " << this->MeshPointClearanceRatio << "\n";
   os << indent << "CloseOpenBoundary: " << this->CloseOpenBoundary << "\n";
   os << indent << "RemoveSlivers: " << this->RemoveSlivers << "\n";
   os << indent << "DihedralAngleTarget: " << this->DihedralAngleTarget << "\n";

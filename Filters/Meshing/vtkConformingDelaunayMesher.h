@@ -4,7 +4,8 @@
  * @brief   Everything at once: polygons in, boundary-conforming Delaunay tetrahedra out.
  *
  * Method (Fleischmann 1999, chapters 3, 5 and 6): the stages as a pipeline inside of this filter,
- *  1. vtkBoundaryTriangulator: one clean triangulated surface (3.5, 6.3);
+ *  1. vtkBoundaryTriangulator: one clean triangulated surface (3.5, 6.3); vtkMeshPointGenerator, if
+ *     GenerateMeshPoints is on (3.6, 6.2);
  *  2. vtkDelaunaySurfaceRefiner: structural edges, flips and new points until the surface is part of
  *     its Delaunay mesh (6.3);
  *  3. vtkAdvancingFrontTetrahedralizer: tetrahedra for every enclosed region (6.4);
@@ -13,7 +14,7 @@
  *
  * Inputs: port 0: vtkPolyData, any list of polygons, optionally with the two-component cell array
  * BoundaryLabels (region ids on the front and back side, -1 outside). Port 1, optional: vtkPointSet,
- * mesh points. Port 2, optional: vtkDataSet with the point array Sizing: target edge length in model
+ * mesh points, beside those that are generated. Port 2, optional: vtkDataSet with the point array Sizing: target edge length in model
  * units.
  *
  * Outputs: port 0: vtkUnstructuredGrid of VTK_TETRA with the cell array RegionId (int), the point
@@ -38,6 +39,9 @@
 
 #include "cdmMeshingModule.h" // For export macro
 #include <vtkUnstructuredGridAlgorithm.h>
+
+#include <array>
+#include <vector>
 
 class CDMMESHING_EXPORT vtkConformingDelaunayMesher : public vtkUnstructuredGridAlgorithm
 {
@@ -137,6 +141,48 @@ public:
 
   ///@{
   /**
+   * Whether to place mesh points inside of the regions by vtkMeshPointGenerator, as dense as the
+   * sizing input asks for, or without it Spacing. Default off.
+   */
+  vtkSetMacro(GenerateMeshPoints, bool);
+  vtkGetMacro(GenerateMeshPoints, bool);
+  vtkBooleanMacro(GenerateMeshPoints, bool);
+  ///@}
+
+  ///@{
+  /** How they are placed, one of vtkMeshPointGenerator::Placements. Default OCTREE. */
+  vtkSetClampMacro(Placement, int, 0, 3);
+  vtkGetMacro(Placement, int);
+  ///@}
+
+  ///@{
+  /**
+   * Their spacing along x, y and z where no sizing is connected. Model units; default 0:
+   * MaximumEdgeLength or, if that is off, a tenth of the longest side of the bounding box; range 0
+   * and above.
+   */
+  vtkSetVector3Macro(Spacing, double);
+  vtkGetVector3Macro(Spacing, double);
+  ///@}
+
+  ///@{
+  /** Layers of them along interfaces, as in vtkMeshPointGenerator. Default none. */
+  void AddLayers(double region, double neighbor, double numberOfLayers, double firstDistance,
+    double growthRatio);
+  void RemoveAllLayers();
+  ///@}
+
+  ///@{
+  /**
+   * Mesh points closer to the boundary are dropped. Ratio of the bounding box diagonal; default
+   * 1e-3; range 0 (only those on the boundary) and above. Thin layers need a smaller one.
+   */
+  vtkSetClampMacro(MeshPointClearanceRatio, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(MeshPointClearanceRatio, double);
+  ///@}
+
+  ///@{
+  /**
    * Where the surface is open, close the mesh with triangles on the convex hull of the points;
    * otherwise an open region is an error. Default off.
    */
@@ -178,6 +224,11 @@ protected:
   double MinimumAngle = 0.0;
   double MaximumArea = 0.0;
   double MaximumEdgeLength = 0.0;
+  bool GenerateMeshPoints = false;
+  int Placement = 0;
+  double Spacing[3] = { 0.0, 0.0, 0.0 };
+  std::vector<std::array<double, 5>> Layers;
+  double MeshPointClearanceRatio = 1e-3;
   bool CloseOpenBoundary = false;
   bool RemoveSlivers = true;
   double DihedralAngleTarget = 15.0;

@@ -106,6 +106,7 @@ int vtkMovingBoundaryRemesher::RequestData(
   options.Refinement.StructuralEdges.AccuracyAngle = this->AccuracyAngle;
   options.Refinement.MinimumAngle = this->MinimumAngle;
   options.Refinement.MaximumEdgeLength = this->MaximumEdgeLength;
+  options.Refinement.MaximumNewPoints = this->MaximumNewPoints;
   cdm::MovingBoundaryOutput result;
   const cdm::Status status = vtkCoreBridge::Guard(
     [&]
@@ -158,6 +159,7 @@ void vtkMovingBoundaryRemesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "AccuracyAngle: " << this->AccuracyAngle << "\n";
   os << indent << "MinimumAngle: " << this->MinimumAngle << "\n";
   os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
+  os << indent << "MaximumNewPoints: " << this->MaximumNewPoints << "\n";
   os << indent << "NumberOfStepsTaken: " << this->NumberOfStepsTaken << "\n";
   os << indent << "NumberOfTopologyChanges: " << this->NumberOfTopologyChanges << "\n";
   os << indent << "NumberOfRemovedPoints: " << this->NumberOfRemovedPoints << "\n";

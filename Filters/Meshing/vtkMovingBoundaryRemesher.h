@@ -128,6 +128,12 @@ public:
   ///@}
 
   ///@{
+  /** The refinement of a step stops when it has made so many points. Default 0: no limit. */
+  vtkSetClampMacro(MaximumNewPoints, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MaximumNewPoints, int);
+  ///@}
+
+  ///@{
   /**
    * Of the last run: meshes made, half steps included; steps in which the topology changed; points
    * of the input that are gone; points of the output that are new.
@@ -154,6 +160,7 @@ protected:
   double AccuracyAngle = 0.0;
   double MinimumAngle = 0.0;
   double MaximumEdgeLength = 0.0;
+  int MaximumNewPoints = 0;
 
   vtkIdType NumberOfStepsTaken = 0;
   vtkIdType NumberOfTopologyChanges = 0;

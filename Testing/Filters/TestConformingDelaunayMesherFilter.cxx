@@ -286,3 +286,63 @@ TEST(ConformingDelaunayMesherFilter, ReportsProgressOfItsStagesAndAborts)
   filter->Update();
   EXPECT_GT(filter->GetOutput()->GetNumberOfCells(), 0);
 }
+
+TEST(ConformingDelaunayMesherFilter, GeneratesMeshPoints)
+{
+  vtkNew<vtkConformingDelaunayMesher> filter;
+  filter->SetInputData(MakeTwoBoxes(true));
+  filter->SetMaximumEdgeLength(0.25);
+  filter->Update();
+  const vtkIdType without = filter->GetOutput()->GetNumberOfPoints();
+
+  // An octree as fine as the boundary, and layers on both sides of the interface.
+  filter->GenerateMeshPointsOn();
+  filter->AddLayers(3, 7, 2, 0.01, 2.0);
+  filter->AddLayers(7, 3, 1, 0.02, 1.0);
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->Update();
+  EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+  ExpectProgress(recorder);
+  vtkUnstructuredGrid* mesh = filter->GetOutput();
+  EXPECT_GT(mesh->GetNumberOfPoints(), without + 50);
+  EXPECT_NEAR(GetVolume(mesh, 3), 1.0, 1e-12);
+  EXPECT_NEAR(GetVolume(mesh, 7), 2.0, 1e-12);
+  EXPECT_TRUE(Contains(GetCertificate(mesh), ": valid")) << GetCertificate(mesh);
+  const auto countAt = [mesh](double x)
+  {
+    vtkIdType count = 0;
+    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+    {
+      double p[3];
+      mesh->GetPoint(i, p);
+      count += std::abs(p[0] - x) < 1e-12 && p[1] > 0.0 && p[1] < 1.0 && p[2] > 0.0 && p[2] < 1.0;
+    }
+    return count;
+  };
+  const vtkIdType inLayer = countAt(0.99);
+  EXPECT_GT(inLayer, 4);
+  EXPECT_EQ(countAt(0.97), inLayer);
+  EXPECT_EQ(countAt(1.02), inLayer);
+
+  // A layer nearer than the clearance is dropped, with a warning, unless that is lowered.
+  filter->RemoveAllLayers();
+  filter->SetPlacement(3);
+  filter->AddLayers(3, 7, 1, 0.001, 1.0);
+  filter->Update();
+  EXPECT_TRUE(Contains(recorder->Warnings, "MeshPointClearanceRatio"));
+  EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), without);
+  recorder->Warnings.clear();
+  filter->SetMeshPointClearanceRatio(1e-6);
+  filter->Update();
+  EXPECT_EQ(recorder->Warnings, "");
+  EXPECT_EQ(countAt(0.999), inLayer);
+
+  // Points of the second port are used as well; a wrong layer is this filter's error.
+  filter->SetInputData(1, MakePoints({ { 2.2, 0.4, 0.6 } }));
+  filter->Update();
+  EXPECT_EQ(countAt(2.2), 1);
+  EXPECT_EQ(countAt(0.999), inLayer);
+  filter->AddLayers(3, 8, 1, 0.1, 1.0);
+  ExpectFailure(filter, { "3", "8" }, 0);
+}

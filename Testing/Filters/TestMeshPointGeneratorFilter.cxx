@@ -185,11 +185,15 @@ TEST(MeshPointGeneratorFilter, EdgesFollowASizingOfOneToThousand)
   const double middle[3] = { 0.5, 0.5, 0.5 };
   EXPECT_GT(field(corner)[0] / field(middle)[0], 1000.0);
   auto grid = MakeGradedGrid(field, 0.00005);
-  for (const int placement : { vtkMeshPointGenerator::OCTREE, vtkMeshPointGenerator::RANDOM })
+  using Generator = vtkMeshPointGenerator;
+  const std::array<int, 2> kinds[] = { { Generator::OCTREE, Generator::BODY_CENTERED },
+    { Generator::OCTREE, Generator::CORNERS }, { Generator::RANDOM, Generator::BODY_CENTERED } };
+  for (const auto& [placement, kind] : kinds)
   {
     Pipeline run(MakeCube());
     run.Generator->SetInputData(1, grid);
     run.Generator->SetPlacement(placement);
+    run.Generator->SetTemplate(kind);
     run.Run();
     vtkNew<vtkConformingDelaunayMesher> mesher;
     mesher->SetInputData(MakeCube());
@@ -198,7 +202,8 @@ TEST(MeshPointGeneratorFilter, EdgesFollowASizingOfOneToThousand)
     mesher->Update();
     const std::vector<double> ratios = GetEdgeRatios(mesher->GetOutput(), field);
     ASSERT_FALSE(ratios.empty());
-    std::cout << "placement " << placement << ": " << mesher->GetOutput()->GetNumberOfPoints()
+    std::cout << "placement " << placement << ", template " << kind << ": "
+              << mesher->GetOutput()->GetNumberOfPoints()
               << " points, edges to sizing: " << ratios.front() << " to " << ratios.back()
               << ", median " << ratios[ratios.size() / 2] << "\n";
     EXPECT_GE(ratios[ratios.size() / 2], 0.7);

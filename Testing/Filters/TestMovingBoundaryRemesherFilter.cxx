@@ -5,6 +5,7 @@
 #include <vtkDelaunayMeshCriteria.h>
 #include <vtkMovingBoundaryRemesher.h>
 
+#include <cmath>
 #include <functional>
 
 using namespace testing_filters;
@@ -159,6 +160,8 @@ TEST(MovingBoundaryRemesherFilter, ALayerVanishes)
   filter->Update();
   EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
   EXPECT_GE(filter->GetNumberOfTopologyChanges(), 1);
+  // Cuts leave no points on the walls, which are flat: what is left is coarser than before.
+  EXPECT_LT(filter->GetOutput()->GetNumberOfPoints(), mesh->GetNumberOfPoints());
   // Region 7 sticks out where region 3 was; that is what its boundary encloses.
   EXPECT_NEAR(GetVolume(filter->GetOutput(), 7), 3.5, 1e-12);
   EXPECT_NEAR(GetVolume(filter->GetOutput()), 3.5, 1e-12);
@@ -189,6 +192,16 @@ TEST(MovingBoundaryRemesherFilter, RefusesBadInput)
   mixed->InsertNextCell(VTK_QUAD, 4, ids);
   filter->SetInputData(mixed);
   ExpectFailure(filter, { "VTK_TETRA" });
+
+  // Limits end in an error, not in a mesh that is not Delaunay.
+  auto bent = MakeMesh(
+    [](const Point& x) {
+      return Point{ x[0] == 1.0 ? 0.5 * std::sin(9.0 * x[1]) * x[2] : 0.0, 0.0, 0.0 };
+    });
+  filter->SetInputData(bent);
+  filter->SetMaximumNewPoints(1);
+  ExpectFailure(filter, { "cannot be meshed", "Points: " });
+  filter->SetMaximumNewPoints(0);
 
   // All that is left is turned inside out.
   auto mirrored = MakeMesh([](const Point& x) { return Point{ -2.0 * x[0], 0.0, 0.0 }; }, 1.0);
