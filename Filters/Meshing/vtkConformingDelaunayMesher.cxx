@@ -8,6 +8,7 @@
 #include "vtkDelaunaySurfaceRefiner.h"
 #include "vtkMeshPointGenerator.h"
 #include "vtkSliverRemover.h"
+#include "vtkSteinerPointRefiner.h"
 
 #include "Core/MeshBoundary.h"
 #include "Core/MeshChecks.h"
@@ -25,7 +26,9 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
@@ -243,6 +246,15 @@ cdm::Status Finish(vtkAlgorithm* filter, vtkUnstructuredGrid* grid, vtkPolyData*
   }
   return status;
 }
+/** Marks the points as ones that vtkSteinerPointRefiner may move and take out, or must not. */
+void SetFree(vtkPointSet* points, bool isFree)
+{
+  vtkNew<vtkUnsignedCharArray> flags;
+  flags->SetName("FreePoint");
+  flags->SetNumberOfTuples(points->GetNumberOfPoints());
+  flags->FillValue(isFree ? 1 : 0);
+  points->GetPointData()->AddArray(flags);
+}
 } // namespace
 
 //--------------------------------------------------------------------------------------------------
@@ -303,6 +315,10 @@ int vtkConformingDelaunayMesher::RequestData(
   inputCells->SetNumberOfTuples(input->GetNumberOfCells());
   std::iota(inputCells->GetPointer(0), inputCells->GetPointer(input->GetNumberOfCells()), 0);
   surface->GetCellData()->AddArray(inputCells);
+  if (this->AddSteinerPoints)
+  {
+    SetFree(surface, false);
+  }
 
   vtkNew<vtkBoundaryTriangulator> triangulator;
   triangulator->SetInputData(surface);
@@ -310,7 +326,16 @@ int vtkConformingDelaunayMesher::RequestData(
   triangulator->SetMaximumGapEdges(this->MaximumGapEdges);
   triangulator->SetResolveSelfIntersections(this->ResolveSelfIntersections);
   triangulator->SetKeepInternalPieces(this->KeepInternalPieces);
-  vtkPointSet* pointInput = vtkPointSet::GetData(inputVector[1]);
+  vtkSmartPointer<vtkPointSet> pointInput;
+  if (vtkPointSet* given = vtkPointSet::GetData(inputVector[1]))
+  {
+    pointInput.TakeReference(given->NewInstance());
+    pointInput->ShallowCopy(given);
+    if (this->AddSteinerPoints)
+    {
+      SetFree(pointInput, false);
+    }
+  }
   vtkNew<vtkMeshPointGenerator> generator;
   generator->SetInputConnection(triangulator->GetOutputPort());
   generator->SetInputDataObject(1, vtkDataSet::GetData(inputVector[2]));
@@ -322,10 +347,6 @@ int vtkConformingDelaunayMesher::RequestData(
   }
   vtkNew<vtkAppendFilter> meshPoints;
   meshPoints->AddInputDataObject(pointInput);
-  if (this->GenerateMeshPoints)
-  {
-    meshPoints->AddInputConnection(generator->GetOutputPort());
-  }
   const bool hasMeshPoints = pointInput || this->GenerateMeshPoints;
   vtkNew<vtkDelaunaySurfaceRefiner> refiner;
   refiner->SetInputConnection(triangulator->GetOutputPort());
@@ -347,10 +368,26 @@ int vtkConformingDelaunayMesher::RequestData(
     tetrahedralizer->SetInputConnection(1, refiner->GetOutputPort(2));
   }
   tetrahedralizer->SetCloseOpenBoundary(this->CloseOpenBoundary);
+  vtkNew<vtkSteinerPointRefiner> steiner;
+  steiner->SetInputConnection(tetrahedralizer->GetOutputPort());
+  steiner->SetInputDataObject(1, vtkDataSet::GetData(inputVector[2]));
+  steiner->SetInputConnection(2, tetrahedralizer->GetOutputPort(1));
+  steiner->SetCriterion(this->Criterion);
+  steiner->SetAccuracyAngle(this->AccuracyAngle);
+  steiner->SetRadiusEdgeRatio(this->RadiusEdgeRatio);
+  steiner->SetDihedralAngleTarget(this->DihedralAngleTarget);
+  steiner->SetMaximumVolume(this->MaximumVolume);
+  steiner->SetMaximumEdgeLength(this->MaximumEdgeLength);
+  // What makes the tetrahedra that the sliver remover gets; its second output is their boundary.
+  vtkAlgorithm* maker = tetrahedralizer;
+  if (this->AddSteinerPoints)
+  {
+    maker = steiner;
+  }
   vtkNew<vtkSliverRemover> remover;
-  remover->SetInputConnection(tetrahedralizer->GetOutputPort());
+  remover->SetInputConnection(maker->GetOutputPort());
   remover->SetDihedralAngleTarget(this->DihedralAngleTarget);
-  if (this->Criterion != Delaunay)
+  if (this->Criterion != Delaunay || this->AddSteinerPoints)
   {
     // Peeling turns a diagonal of the boundary, which the stronger criteria do not allow.
     remover->SetFlatnessRatio(0.0);
@@ -360,6 +397,13 @@ int vtkConformingDelaunayMesher::RequestData(
   if (status.IsOk() && this->GenerateMeshPoints)
   {
     status = RunStage(this, generator, "Mesh points", 0.1, 0.2);
+    vtkNew<vtkPolyData> points;
+    points->ShallowCopy(generator->GetOutput());
+    if (this->AddSteinerPoints)
+    {
+      SetFree(points, true);
+    }
+    meshPoints->AddInputDataObject(points);
   }
   if (status.IsOk())
   {
@@ -368,7 +412,12 @@ int vtkConformingDelaunayMesher::RequestData(
   }
   if (status.IsOk())
   {
-    status = RunStage(this, tetrahedralizer, "Tetrahedralization", 0.5, 0.85);
+    status = RunStage(
+      this, tetrahedralizer, "Tetrahedralization", 0.5, this->AddSteinerPoints ? 0.6 : 0.85);
+  }
+  if (status.IsOk() && this->AddSteinerPoints)
+  {
+    status = RunStage(this, steiner, "Steiner points", 0.6, 0.85);
   }
   if (status.IsOk() && this->RemoveSlivers)
   {
@@ -380,8 +429,9 @@ int vtkConformingDelaunayMesher::RequestData(
       [&]
       {
         return Finish(this,
-          this->RemoveSlivers ? remover->GetOutput() : tetrahedralizer->GetOutput(),
-          vtkPolyData::SafeDownCast(tetrahedralizer->GetOutputDataObject(1)),
+          vtkUnstructuredGrid::SafeDownCast(
+            (this->RemoveSlivers ? remover.Get() : maker)->GetOutputDataObject(0)),
+          vtkPolyData::SafeDownCast(maker->GetOutputDataObject(1)),
           remover->GetNumberOfPeeledTetrahedra() > 0, outputVector);
       });
   }
@@ -419,5 +469,8 @@ void vtkConformingDelaunayMesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MeshPointClearanceRatio: " << this->MeshPointClearanceRatio << "\n";
   os << indent << "CloseOpenBoundary: " << this->CloseOpenBoundary << "\n";
   os << indent << "RemoveSlivers: " << this->RemoveSlivers << "\n";
+  os << indent << "AddSteinerPoints: " << this->AddSteinerPoints << "\n";
+  os << indent << "RadiusEdgeRatio: " << this->RadiusEdgeRatio << "\n";
+  os << indent << "MaximumVolume: " << this->MaximumVolume << "\n";
   os << indent << "DihedralAngleTarget: " << this->DihedralAngleTarget << "\n";
 }

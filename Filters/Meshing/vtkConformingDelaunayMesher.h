@@ -9,13 +9,15 @@
  *  2. vtkDelaunaySurfaceRefiner: structural edges, flips and new points until the surface is part of
  *     its Delaunay mesh (6.3);
  *  3. vtkAdvancingFrontTetrahedralizer: tetrahedra for every enclosed region (6.4);
- *  4. vtkSliverRemover, if RemoveSlivers is on (3.4.7, 5.7);
- *  5. a check of the result, from the output alone.
+ *  4. vtkSteinerPointRefiner, if AddSteinerPoints is on (5.6, 6.5): generated points are free, those
+ *     of port 1 are not;
+ *  5. vtkSliverRemover, if RemoveSlivers is on (3.4.7, 5.7);
+ *  6. a check of the result, from the output alone.
  *
  * Inputs: port 0: vtkPolyData, any list of polygons, optionally with the two-component cell array
  * BoundaryLabels (region ids on the front and back side, -1 outside). Port 1, optional: vtkPointSet,
- * mesh points, beside those that are generated. Port 2, optional: vtkDataSet with the point array Sizing: target edge length in model
- * units.
+ * mesh points, beside those that are generated. Port 2, optional: vtkDataSet with the point array
+ * Sizing: target edge length in model units.
  *
  * Outputs: port 0: vtkUnstructuredGrid of VTK_TETRA with the cell array RegionId (int), the point
  * data of the input, interpolated at new points, and the string array Certificate in the field data:
@@ -200,7 +202,38 @@ public:
 
   ///@{
   /**
-   * Tetrahedra with a smaller dihedral angle are treated by the sliver remover. Degrees; default
+   * Whether to run vtkSteinerPointRefiner: new points on the boundary and inside until no tetrahedron
+   * has an edge longer than MaximumEdgeLength or the sizing, is larger than MaximumVolume, has a
+   * larger radius-edge ratio or a smaller dihedral angle than asked for, but for those at sharp input
+   * angles and across thin layers. Criterion Delaunay counts as SmallestSphere. Default off.
+   */
+  vtkSetMacro(AddSteinerPoints, bool);
+  vtkGetMacro(AddSteinerPoints, bool);
+  vtkBooleanMacro(AddSteinerPoints, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Largest ratio of a tetrahedron's circumradius to its shortest edge, with AddSteinerPoints.
+   * Default 1.4; 0: off; range >= 0.
+   */
+  vtkSetClampMacro(RadiusEdgeRatio, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(RadiusEdgeRatio, double);
+  ///@}
+
+  ///@{
+  /**
+   * Largest volume of a tetrahedron, with AddSteinerPoints. Cubic model units; default 0: off; range
+   * >= 0.
+   */
+  vtkSetClampMacro(MaximumVolume, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(MaximumVolume, double);
+  ///@}
+
+  ///@{
+  /**
+   * Tetrahedra with a smaller dihedral angle are treated by the sliver remover and, up to 40 degrees,
+   * by the Steiner point refiner. Degrees; default
    * 15; range 0 to 70.
    */
   vtkSetClampMacro(DihedralAngleTarget, double, 0.0, 70.0);
@@ -232,6 +265,9 @@ protected:
   bool CloseOpenBoundary = false;
   bool RemoveSlivers = true;
   double DihedralAngleTarget = 15.0;
+  bool AddSteinerPoints = false;
+  double RadiusEdgeRatio = 1.4;
+  double MaximumVolume = 0.0;
 
 private:
   vtkConformingDelaunayMesher(const vtkConformingDelaunayMesher&) = delete;

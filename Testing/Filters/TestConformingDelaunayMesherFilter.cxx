@@ -287,6 +287,47 @@ TEST(ConformingDelaunayMesherFilter, ReportsProgressOfItsStagesAndAborts)
   EXPECT_GT(filter->GetOutput()->GetNumberOfCells(), 0);
 }
 
+TEST(ConformingDelaunayMesherFilter, AddsSteinerPoints)
+{
+  vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetInputData(MakeTwoBoxes(true));
+  mesher->SetInputData(1, MakePoints({ { 0.5, 0.5, 0.5 }, { 0.5, 0.5, 0.52 } }));
+  mesher->AddSteinerPointsOn();
+  mesher->SetMaximumEdgeLength(0.3);
+  for (const bool isGenerating : { false, true })
+  {
+    mesher->SetGenerateMeshPoints(isGenerating);
+    vtkNew<EventRecorder> recorder;
+    recorder->Watch(mesher);
+    mesher->Update();
+    mesher->RemoveObserver(recorder);
+    EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+    ExpectProgress(recorder);
+    vtkUnstructuredGrid* output = mesher->GetOutput();
+    ExpectLinear(output);
+    EXPECT_NEAR(GetVolume(output, 0) + GetVolume(output, 1), GetVolume(output), 1e-12);
+    EXPECT_TRUE(Contains(
+      output->GetFieldData()->GetAbstractArray("Certificate")->GetVariantValue(0).ToString(),
+      ": valid"));
+    int given = 0;
+    for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+    {
+      const double* p = output->GetPoint(i);
+      given += p[0] == 0.5 && p[1] == 0.5 && (p[2] == 0.5 || p[2] == 0.52);
+    }
+    EXPECT_EQ(given, 2);
+    // Two points that close cannot be helped, and stay.
+    vtkDataArray* faults = output->GetCellData()->GetArray("RefinementFault");
+    double longest = 0.0;
+    for (vtkIdType cell = 0; cell < output->GetNumberOfCells(); ++cell)
+    {
+      longest = std::max(longest, output->GetCell(cell)->GetLength2());
+      EXPECT_TRUE(!faults || faults->GetComponent(cell, 0) == 0.0);
+    }
+    EXPECT_GT(longest, 0.0);
+  }
+}
+
 TEST(ConformingDelaunayMesherFilter, GeneratesMeshPoints)
 {
   vtkNew<vtkConformingDelaunayMesher> filter;
