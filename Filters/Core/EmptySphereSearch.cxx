@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace cdm
@@ -136,6 +137,7 @@ SphereForm::SphereForm(const Vec3& a, const Vec3& b)
   const WideVec3 edge = SubtractExactly(b, a, 1.0);
   this->Gradient = GetHigh(edge);
   this->GradientRest = GetLow(edge);
+  this->FindCenter();
 }
 
 SphereForm::SphereForm(const Vec3& a, const Vec3& b, const Vec3& c)
@@ -150,6 +152,7 @@ SphereForm::SphereForm(const Vec3& a, const Vec3& b, const Vec3& c)
   this->CurvatureRest = curvature.Low;
   this->Gradient = this->Size * GetHigh(gradient);
   this->GradientRest = this->Size * GetLow(gradient);
+  this->FindCenter();
 }
 
 SphereForm::SphereForm(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
@@ -174,6 +177,19 @@ SphereForm::SphereForm(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& 
   }
   this->Gradient = this->Size * GetHigh(gradient);
   this->GradientRest = this->Size * GetLow(gradient);
+  this->FindCenter();
+}
+
+void SphereForm::FindCenter()
+{
+  // Without curvature the parabolas are straight lines, with their lowest point infinitely far.
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double gradient = this->Gradient[axis];
+    this->Center[axis] = this->Curvature > 0.0 ? gradient / (2.0 * this->Curvature)
+      : gradient > 0.0                         ? std::numeric_limits<double>::infinity()
+                                               : -std::numeric_limits<double>::infinity();
+  }
 }
 
 bool SphereForm::MayTouch(const Vec3& lower, const Vec3& upper) const
@@ -185,13 +201,7 @@ bool SphereForm::MayTouch(const Vec3& lower, const Vec3& upper) const
     const double begin = lower[axis] - this->Origin[axis];
     const double end = upper[axis] - this->Origin[axis];
     const double gradient = this->Gradient[axis];
-    // The parabola's lowest point, or the lower end of the straight line that it is without
-    // curvature.
-    double lowest = gradient > 0.0 ? end : begin;
-    if (this->Curvature > 0.0)
-    {
-      lowest = std::min(std::max(gradient / (2.0 * this->Curvature), begin), end);
-    }
+    const double lowest = std::min(std::max(this->Center[axis], begin), end);
     smallest += lowest * (this->Curvature * lowest - gradient);
     const double reach = std::max(std::abs(begin), std::abs(end));
     error += reach *

@@ -50,6 +50,8 @@ public:
   int GetSide(const Vec3& point) const;
 
 private:
+  void FindCenter();
+
   Vec3 Origin;
   /** Length by which the polynomials are scaled: a power of two near the size of the simplex. */
   double Size = 1.0;
@@ -59,6 +61,8 @@ private:
   /** 2 D (c - a), likewise. */
   Vec3 Gradient;
   Vec3 GradientRest;
+  /** The center relative to Origin: along each axis where g is smallest. */
+  Vec3 Center;
 };
 
 class EmptySphereSearch
