@@ -20,7 +20,8 @@ std::int64_t GetIndex(double coordinate, double width)
 
 int GetLevel(double radius)
 {
-  return std::isfinite(radius) ? std::ilogb(std::max(radius, 1e-300)) + 2 : InfiniteLevel;
+  // Powers of four: half of the levels of powers of two cost less than the larger cells.
+  return std::isfinite(radius) ? (std::ilogb(std::max(radius, 1e-300)) & ~1) + 3 : InfiniteLevel;
 }
 } // namespace
 
@@ -35,16 +36,29 @@ std::uint64_t BallIndex::GetKey(int level, const std::int64_t index[3])
   return hash;
 }
 
-/** Place of the cell, or of a free one where it belongs. */
-std::size_t BallIndex::FindCell(std::uint64_t key) const
+/** The slot of a cell, or the free one where it belongs. */
+std::size_t BallIndex::FindSlot(std::uint64_t key) const
 {
-  const std::size_t mask = this->Cells.size() - 1;
-  std::size_t place = key & mask;
-  while (this->Cells[place].IsUsed && this->Cells[place].Key != key)
+  const std::size_t mask = this->Slots.size() - 1;
+  std::size_t slot = key & mask;
+  while (this->Slots[slot].second != NoId && this->Slots[slot].first != key)
   {
-    place = (place + 1) & mask;
+    slot = (slot + 1) & mask;
   }
-  return place;
+  return slot;
+}
+
+void BallIndex::Resize(std::size_t numberOfSlots)
+{
+  std::vector<std::pair<std::uint64_t, Id>> former(numberOfSlots, { 0, NoId });
+  former.swap(this->Slots);
+  for (const auto& [key, cell] : former)
+  {
+    if (cell != NoId)
+    {
+      this->Slots[this->FindSlot(key)] = { key, cell };
+    }
+  }
 }
 
 void BallIndex::Put(const Ball& ball)
@@ -59,32 +73,18 @@ void BallIndex::Put(const Ball& ball)
     }
   }
   const std::uint64_t key = GetKey(ball.Level, index);
-  const std::size_t place = this->FindCell(key);
-  Cell& cell = this->Cells[place];
-  this->NumberOfUsedCells += cell.IsUsed ? 0 : 1;
-  cell.IsUsed = true;
-  cell.Key = key;
-  this->Places[ball.Number] = { static_cast<Id>(place), static_cast<Id>(cell.Balls.size()) };
-  cell.Balls.push_back(ball);
-}
-
-/** Makes room for so many balls, each in a cell of its own. */
-void BallIndex::Resize(std::size_t numberOfBalls)
-{
-  std::size_t size = 1024;
-  while (size < 4 * numberOfBalls)
+  auto& slot = this->Slots[this->FindSlot(key)];
+  if (slot.second == NoId)
   {
-    size *= 2;
+    slot = { key, static_cast<Id>(this->Cells.size()) };
+    this->Cells.emplace_back();
   }
-  std::vector<Cell> former(size);
-  former.swap(this->Cells);
-  this->NumberOfUsedCells = 0;
-  for (const Cell& cell : former)
+  std::vector<Ball>& balls = this->Cells[slot.second];
+  this->Places[ball.Number] = { slot.second, static_cast<Id>(balls.size()) };
+  balls.push_back(ball);
+  if (2 * this->Cells.size() > this->Slots.size())
   {
-    for (const Ball& ball : cell.Balls)
-    {
-      this->Put(ball);
-    }
+    this->Resize(2 * this->Slots.size());
   }
 }
 
@@ -97,15 +97,11 @@ void BallIndex::Set(Id id, const Vec3& center, double radius)
   }
   const Ball ball{ center, radius, GetLevel(radius), id };
   ++this->Levels[ball.Level];
-  if (this->Cells.empty())
+  if (this->Slots.empty())
   {
     this->Places[id].Index = static_cast<Id>(this->Waiting.size());
     this->Waiting.push_back(ball);
     return;
-  }
-  if (2 * this->NumberOfUsedCells >= this->Cells.size())
-  {
-    this->Resize(this->Places.size());
   }
   this->Put(ball);
 }
@@ -117,7 +113,7 @@ void BallIndex::Remove(Id id)
     return;
   }
   const Place place = this->Places[id];
-  std::vector<Ball>& balls = this->Cells.empty() ? this->Waiting : this->Cells[place.Cell].Balls;
+  std::vector<Ball>& balls = this->Slots.empty() ? this->Waiting : this->Cells[place.Cell];
   const auto level = this->Levels.find(balls[place.Index].Level);
   if (--level->second == 0)
   {
@@ -132,9 +128,9 @@ void BallIndex::Remove(Id id)
 void BallIndex::Find(const Vec3& point, std::vector<Id>& ids)
 {
   ids.clear();
-  if (this->Cells.empty())
+  if (this->Slots.empty())
   {
-    this->Resize(this->Places.size());
+    this->Resize(1024);
     for (const Ball& ball : this->Waiting)
     {
       this->Put(ball);
@@ -143,7 +139,12 @@ void BallIndex::Find(const Vec3& point, std::vector<Id>& ids)
   }
   const auto visit = [this, &point, &ids](std::uint64_t key)
   {
-    for (const Ball& ball : this->Cells[this->FindCell(key)].Balls)
+    const Id cell = this->Slots[this->FindSlot(key)].second;
+    if (cell == NoId)
+    {
+      return;
+    }
+    for (const Ball& ball : this->Cells[cell])
     {
       if (SquaredNorm(point - ball.Center) <= ball.Radius * ball.Radius)
       {

@@ -17,6 +17,7 @@
 
 #include <cstdint>
 #include <map>
+#include <utility>
 #include <vector>
 
 namespace cdm
@@ -41,15 +42,6 @@ private:
     Id Number;
   };
 
-  /** Open addressing; a cell keeps its place when its last ball has gone. */
-  struct Cell
-  {
-    std::uint64_t Key = 0;
-    bool IsUsed = false;
-    /** Side by side: queries read most balls of a cell, and add or remove few. */
-    std::vector<Ball> Balls;
-  };
-
   /** Where a ball is. */
   struct Place
   {
@@ -59,15 +51,19 @@ private:
 
   static std::uint64_t GetKey(int level, const std::int64_t index[3]);
 
-  std::size_t FindCell(std::uint64_t key) const;
+  std::size_t FindSlot(std::uint64_t key) const;
   void Put(const Ball& ball);
-  void Resize(std::size_t numberOfBalls);
+  void Resize(std::size_t numberOfSlots);
 
   /** By number of the ball. */
   std::vector<Place> Places;
-  /** A power of two of them, at most half of them used; none before the first query. */
-  std::vector<Cell> Cells;
-  std::size_t NumberOfUsedCells = 0;
+  /** Balls side by side: queries read most balls of a cell, and add or remove few. */
+  std::vector<std::vector<Ball>> Cells;
+  /**
+   * Hash table by open addressing: key and cell, NoId in slots that are free. A power of two of
+   * them, at most half of them used; none before the first query.
+   */
+  std::vector<std::pair<std::uint64_t, Id>> Slots;
   /** Balls that wait for the first query. */
   std::vector<Ball> Waiting;
   /** How many balls there are of each level: cells are 2^level wide. */

@@ -50,6 +50,19 @@ public:
   int GetSide(const Vec3& point) const;
 
 private:
+  /**
+   * Relative error of a coefficient rounded to double and of the few operations on it: less than 16
+   * units in the last place.
+   */
+  static constexpr double RoundingBound = 0x1p-49;
+
+  /**
+   * Absolute error of the coefficients before they are rounded, and of what is made of them in twice
+   * the working precision: sums of fewer than 60 products that are below 20 in units of Size and of
+   * the point's distance, each off by less than 2^-100.
+   */
+  static constexpr double WideBound = 0x1p-88;
+
   void FindCenter();
 
   Vec3 Origin;
@@ -64,6 +77,26 @@ private:
   /** The center relative to Origin: along each axis where g is smallest. */
   Vec3 Center;
 };
+
+inline bool SphereForm::MayTouch(const Vec3& lower, const Vec3& upper) const
+{
+  double smallest = 0.0;
+  double error = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double begin = lower[axis] - this->Origin[axis];
+    const double end = upper[axis] - this->Origin[axis];
+    const double gradient = this->Gradient[axis];
+    const double lowest = std::min(std::max(this->Center[axis], begin), end);
+    smallest += lowest * (this->Curvature * lowest - gradient);
+    const double reach = std::max(std::abs(begin), std::abs(end));
+    error += reach *
+      (RoundingBound * (this->Curvature * reach + std::abs(gradient)) +
+        WideBound * (reach + this->Size));
+  }
+  // In this form a result that is not a number counts as touched.
+  return !(smallest > error);
+}
 
 class EmptySphereSearch
 {
