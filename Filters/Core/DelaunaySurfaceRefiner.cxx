@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -315,6 +316,7 @@ private:
   IdLists::Range GetEdges(Id point) const;
   bool IsAcuteCorner(Id point);
   void Saturate();
+  Status RefineEdges();
   Status Refine();
   void Process(Id t);
   bool IsGood(Id t);
@@ -340,6 +342,7 @@ private:
   void Legalize(std::vector<Id>& uses);
   Id AddPoint(const Vec3& position, const PointParents& parents, Id facet, Id inputEdge);
   void Enqueue(Id t);
+  void EnqueueEdge(Id segment);
   double GetNearestDistance(const Vec3& position, Id except = NoId) const
   {
     NearestPointVisitor visitor(position, except);
@@ -391,6 +394,10 @@ private:
   std::vector<char> IsQueued;
   std::vector<char> IsUnresolved;
   std::vector<Id> Reached;
+  /** Length and number of segments to be looked at, a heap; diametral spheres of those that were. */
+  std::vector<std::pair<double, Id>> EdgeQueue;
+  BallIndex EmptyEdges;
+  bool IsRefiningEdges = false;
   Id FlipBudget = 0;
 };
 
@@ -1008,6 +1015,15 @@ Id SurfaceRefiner::AddPoint(
     this->Proofs.Remove(t);
     this->Enqueue(t);
   }
+  if (this->IsRefiningEdges)
+  {
+    this->EmptyEdges.Find(position, this->Reached);
+    for (Id segment : this->Reached)
+    {
+      this->EmptyEdges.Remove(segment);
+      this->EnqueueEdge(segment);
+    }
+  }
   return point;
 }
 
@@ -1551,9 +1567,67 @@ void SurfaceRefiner::Process(Id t)
   this->IsUnresolved[t] = 1;
 }
 
+void SurfaceRefiner::EnqueueEdge(Id segment)
+{
+  const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
+  this->EdgeQueue.emplace_back(Distance(this->Points[ends[0]], this->Points[ends[1]]), segment);
+  std::push_heap(this->EdgeQueue.begin(), this->EdgeQueue.end(), std::greater<>());
+}
+
+/**
+ * Edges whose diametral spheres have to be empty are made so before any triangle is looked at: facets
+ * are refined from a fine enough outline. The shortest first: what it needs is given by the surface
+ * around, and the partners of its points are the points that longer edges need.
+ */
+Status SurfaceRefiner::RefineEdges()
+{
+  const ExecutionContext part = this->Context.Part(0.05, 0.3);
+  this->CollectIncidences();
+  this->IsRefiningEdges = true;
+  for (Id segment = 0; segment < this->Surface->GetNumberOfSegments(); ++segment)
+  {
+    this->EnqueueEdge(segment);
+  }
+  for (std::size_t steps = 0; !this->EdgeQueue.empty(); ++steps)
+  {
+    const double done = static_cast<double>(steps);
+    const double left = static_cast<double>(this->EdgeQueue.size());
+    if (steps % ReportInterval == 0 && !part.Continue(done / (done + left), "Refining edges"))
+    {
+      return Status::Aborted();
+    }
+    std::pop_heap(this->EdgeQueue.begin(), this->EdgeQueue.end(), std::greater<>());
+    const auto [length, segment] = this->EdgeQueue.back();
+    this->EdgeQueue.pop_back();
+    const EdgeIds ends = this->Surface->GetSegment(segment).Points;
+    const Vec3 a = this->Points[ends[0]];
+    const Vec3 b = this->Points[ends[1]];
+    if (length != Distance(a, b))
+    {
+      // It has been split since, and both pieces are in the queue.
+      continue;
+    }
+    DiametralSphereVisitor visitor(this->Points, ends);
+    this->Octree.Visit(visitor);
+    if (visitor.Found == NoId)
+    {
+      this->EmptyEdges.Set(segment, 0.5 * (a + b), 0.5 * length * (1.0 + 1e-6));
+    }
+    else if (static_cast<Id>(this->Output.NewPoints.size()) < this->MaximumNewPoints &&
+      this->SplitSegment(segment, visitor.Found))
+    {
+      this->EnqueueEdge(segment);
+      this->EnqueueEdge(this->Surface->GetNumberOfSegments() - 1);
+    }
+  }
+  this->EmptyEdges = BallIndex();
+  this->IsRefiningEdges = false;
+  return Status();
+}
+
 Status SurfaceRefiner::Refine()
 {
-  const ExecutionContext part = this->Context.Part(0.1, 0.95);
+  const ExecutionContext part = this->Context.Part(0.3, 0.95);
   std::size_t steps = 0;
   while (!this->Queue.empty())
   {
@@ -1652,7 +1726,14 @@ Status SurfaceRefiner::Run()
   }
   this->FlipBudget = 100000 + 50 * this->Surface->GetNumberOfTriangles();
   this->Saturate();
-  status = this->Refine();
+  if (this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges)
+  {
+    status = this->RefineEdges();
+  }
+  if (status.IsOk())
+  {
+    status = this->Refine();
+  }
   return status.IsOk() ? this->Finish() : status;
 }
 } // namespace
