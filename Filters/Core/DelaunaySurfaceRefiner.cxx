@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -316,9 +315,13 @@ private:
   IdLists::Range GetEdges(Id point) const;
   bool IsAcuteCorner(Id point);
   void Saturate();
-  Status RefineEdges();
   Status Refine();
   void Process(Id t);
+  void ProcessEdge();
+  bool AreEdgesTested() const
+  {
+    return this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges;
+  }
   bool IsGood(Id t);
   bool IsCocircularFacet(Id t) const;
   bool FindTooCoarse(Id t, Id& segment) const;
@@ -348,6 +351,10 @@ private:
     NearestPointVisitor visitor(position, except);
     this->Octree.Visit(visitor);
     return std::sqrt(visitor.SquaredDistance);
+  }
+  bool IsFull() const
+  {
+    return static_cast<Id>(this->Output.NewPoints.size()) >= this->MaximumNewPoints;
   }
   Status Finish();
 
@@ -390,14 +397,17 @@ private:
   std::vector<signed char> AcuteCorners;
 
   BallIndex Proofs;
-  std::deque<Id> Queue;
+  /** Triangles to be looked at, a heap by their order. */
+  std::vector<std::pair<double, Id>> Queue;
+  std::int64_t NumberOfEnqueued = 0;
   std::vector<char> IsQueued;
   std::vector<char> IsUnresolved;
   std::vector<Id> Reached;
   /** Length and number of segments to be looked at, a heap; diametral spheres of those that were. */
   std::vector<std::pair<double, Id>> EdgeQueue;
   BallIndex EmptyEdges;
-  bool IsRefiningEdges = false;
+  /** Segments that are disturbed and cannot be split. */
+  std::vector<char> IsDisturbed;
   Id FlipBudget = 0;
 };
 
@@ -695,7 +705,14 @@ void SurfaceRefiner::Enqueue(Id t)
   if (!this->IsQueued[t])
   {
     this->IsQueued[t] = 1;
-    this->Queue.push_back(t);
+    // Once the edges are fine enough, small triangles first: what large ones need depends on them.
+    // Without, in order: of almost flat surfaces that would be refined down to the smallest.
+    const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+    const double order = this->AreEdgesTested() ? Norm(GetCircumcenterOffset(this->Points[ids[0]],
+                                                    this->Points[ids[1]], this->Points[ids[2]]))
+                                                : static_cast<double>(this->NumberOfEnqueued++);
+    this->Queue.emplace_back(order, t);
+    std::push_heap(this->Queue.begin(), this->Queue.end(), std::greater<>());
   }
 }
 
@@ -1015,7 +1032,7 @@ Id SurfaceRefiner::AddPoint(
     this->Proofs.Remove(t);
     this->Enqueue(t);
   }
-  if (this->IsRefiningEdges)
+  if (this->AreEdgesTested())
   {
     this->EmptyEdges.Find(position, this->Reached);
     for (Id segment : this->Reached)
@@ -1046,6 +1063,12 @@ bool SurfaceRefiner::SplitSegment(Id segment, Id disturbing)
       ++this->Output.Report.EdgePoints;
       std::vector<Id> uses;
       this->Surface->SplitSegment(segment, point, uses);
+      if (this->AreEdgesTested())
+      {
+        this->EmptyEdges.Remove(segment);
+        this->EnqueueEdge(segment);
+        this->EnqueueEdge(this->Surface->GetNumberOfSegments() - 1);
+      }
       this->Legalize(uses);
       return true;
     }
@@ -1491,39 +1514,6 @@ void SurfaceRefiner::Process(Id t)
   if (this->IsGood(t))
   {
     this->Proofs.Set(t, this->Found.ProofCenter, this->Found.ProofRadius);
-    if (this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges)
-    {
-      for (int i = 0; i < 3; ++i)
-      {
-        segment = this->Surface->GetSegmentAt(t, i);
-        if (segment == NoId)
-        {
-          continue;
-        }
-        const EdgeIds ends = this->Surface->GetSegment(segment).Points;
-        DiametralSphereVisitor visitor(this->Points, ends);
-        this->Octree.Visit(visitor);
-        if (visitor.Found != NoId)
-        {
-          this->CollectIncidences();
-          if (this->SplitSegment(segment, visitor.Found))
-          {
-            this->Enqueue(t);
-          }
-          else
-          {
-            this->IsUnresolved[t] = 1;
-          }
-          return;
-        }
-        // The proof has to cover the spheres of the edges as well.
-        const Vec3 middle = 0.5 * (this->Points[ends[0]] + this->Points[ends[1]]);
-        this->Found.ProofRadius = std::max(this->Found.ProofRadius,
-          Distance(middle, this->Found.ProofCenter) +
-            0.5 * Distance(this->Points[ends[0]], this->Points[ends[1]]) * (1.0 + 1e-6));
-      }
-      this->Proofs.Set(t, this->Found.ProofCenter, this->Found.ProofRadius);
-    }
     if (this->FindTooCoarse(t, segment))
     {
       this->CollectIncidences();
@@ -1575,75 +1565,67 @@ void SurfaceRefiner::EnqueueEdge(Id segment)
 }
 
 /**
- * Edges whose diametral spheres have to be empty are made so before any triangle is looked at: facets
- * are refined from a fine enough outline. The shortest first: what it needs is given by the surface
- * around, and the partners of its points are the points that longer edges need.
+ * Edges whose diametral spheres have to be empty come before any triangle: facets are refined from a
+ * fine enough outline. The shortest first: what it needs is given by the surface around it, and the
+ * partners of its points are the points that longer edges need.
  */
-Status SurfaceRefiner::RefineEdges()
+void SurfaceRefiner::ProcessEdge()
 {
-  const ExecutionContext part = this->Context.Part(0.05, 0.3);
+  std::pop_heap(this->EdgeQueue.begin(), this->EdgeQueue.end(), std::greater<>());
+  const auto [length, segment] = this->EdgeQueue.back();
+  this->EdgeQueue.pop_back();
+  const EdgeIds ends = this->Surface->GetSegment(segment).Points;
+  const Vec3 a = this->Points[ends[0]];
+  const Vec3 b = this->Points[ends[1]];
+  if (length != Distance(a, b))
+  {
+    // It has been split since, and both pieces are in the queue.
+    return;
+  }
+  DiametralSphereVisitor visitor(this->Points, ends);
+  this->Octree.Visit(visitor);
+  if (visitor.Found == NoId)
+  {
+    this->EmptyEdges.Set(segment, 0.5 * (a + b), 0.5 * length * (1.0 + 1e-6));
+    return;
+  }
   this->CollectIncidences();
-  this->IsRefiningEdges = true;
-  for (Id segment = 0; segment < this->Surface->GetNumberOfSegments(); ++segment)
+  if (this->IsFull() || !this->SplitSegment(segment, visitor.Found))
   {
-    this->EnqueueEdge(segment);
+    this->IsDisturbed.resize(this->Surface->GetNumberOfSegments(), 0);
+    this->IsDisturbed[segment] = 1;
   }
-  for (std::size_t steps = 0; !this->EdgeQueue.empty(); ++steps)
-  {
-    const double done = static_cast<double>(steps);
-    const double left = static_cast<double>(this->EdgeQueue.size());
-    if (steps % ReportInterval == 0 && !part.Continue(done / (done + left), "Refining edges"))
-    {
-      return Status::Aborted();
-    }
-    std::pop_heap(this->EdgeQueue.begin(), this->EdgeQueue.end(), std::greater<>());
-    const auto [length, segment] = this->EdgeQueue.back();
-    this->EdgeQueue.pop_back();
-    const EdgeIds ends = this->Surface->GetSegment(segment).Points;
-    const Vec3 a = this->Points[ends[0]];
-    const Vec3 b = this->Points[ends[1]];
-    if (length != Distance(a, b))
-    {
-      // It has been split since, and both pieces are in the queue.
-      continue;
-    }
-    DiametralSphereVisitor visitor(this->Points, ends);
-    this->Octree.Visit(visitor);
-    if (visitor.Found == NoId)
-    {
-      this->EmptyEdges.Set(segment, 0.5 * (a + b), 0.5 * length * (1.0 + 1e-6));
-    }
-    else if (static_cast<Id>(this->Output.NewPoints.size()) < this->MaximumNewPoints &&
-      this->SplitSegment(segment, visitor.Found))
-    {
-      this->EnqueueEdge(segment);
-      this->EnqueueEdge(this->Surface->GetNumberOfSegments() - 1);
-    }
-  }
-  this->EmptyEdges = BallIndex();
-  this->IsRefiningEdges = false;
-  return Status();
 }
 
 Status SurfaceRefiner::Refine()
 {
-  const ExecutionContext part = this->Context.Part(0.3, 0.95);
-  std::size_t steps = 0;
-  while (!this->Queue.empty())
+  const ExecutionContext part = this->Context.Part(0.1, 0.95);
+  for (Id segment = 0; this->AreEdgesTested() && segment < this->Surface->GetNumberOfSegments();
+       ++segment)
   {
-    if (steps++ % ReportInterval == 0)
+    this->EnqueueEdge(segment);
+  }
+  for (std::size_t steps = 0; !this->EdgeQueue.empty() || !this->Queue.empty(); ++steps)
+  {
+    if (steps % ReportInterval == 0)
     {
       const double done = static_cast<double>(steps);
-      const double left = static_cast<double>(this->Queue.size());
+      const double left = static_cast<double>(this->EdgeQueue.size() + this->Queue.size());
       if (!part.Continue(done / (done + left), "Refining the surface"))
       {
         return Status::Aborted();
       }
     }
-    const Id t = this->Queue.front();
-    this->Queue.pop_front();
+    if (!this->EdgeQueue.empty())
+    {
+      this->ProcessEdge();
+      continue;
+    }
+    std::pop_heap(this->Queue.begin(), this->Queue.end(), std::greater<>());
+    const Id t = this->Queue.back().second;
+    this->Queue.pop_back();
     this->IsQueued[t] = 0;
-    if (static_cast<Id>(this->Output.NewPoints.size()) >= this->MaximumNewPoints)
+    if (this->IsFull())
     {
       this->IsUnresolved[t] = !this->IsGood(t);
       continue;
@@ -1707,9 +1689,16 @@ Status SurfaceRefiner::Finish()
   std::sort(this->Output.StructuralEdges.begin(), this->Output.StructuralEdges.end(),
     [](const StructuralEdge& x, const StructuralEdge& y)
     { return x.Points[0] != y.Points[0] ? x.Points[0] < y.Points[0] : x.Points[1] < y.Points[1]; });
+  this->IsDisturbed.resize(this->Surface->GetNumberOfSegments(), 0);
   for (Id t = 0; t < static_cast<Id>(this->IsUnresolved.size()); ++t)
   {
-    if (this->IsUnresolved[t])
+    bool isUnresolved = this->IsUnresolved[t] != 0;
+    for (int i = 0; i < 3; ++i)
+    {
+      const Id segment = this->Surface->GetSegmentAt(t, i);
+      isUnresolved = isUnresolved || (segment != NoId && this->IsDisturbed[segment] != 0);
+    }
+    if (isUnresolved)
     {
       this->Output.UnresolvedTriangles.push_back(t);
     }
@@ -1726,14 +1715,7 @@ Status SurfaceRefiner::Run()
   }
   this->FlipBudget = 100000 + 50 * this->Surface->GetNumberOfTriangles();
   this->Saturate();
-  if (this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges)
-  {
-    status = this->RefineEdges();
-  }
-  if (status.IsOk())
-  {
-    status = this->Refine();
-  }
+  status = this->Refine();
   return status.IsOk() ? this->Finish() : status;
 }
 } // namespace
