@@ -40,6 +40,9 @@ constexpr double CloseEndRatio = 0.25;
 /** Another point on an edge, closer to the match than this part of the disturbing point's distance,
  * is matched instead. */
 constexpr double CloseMatchRatio = 0.5;
+/** Among the edges around so many triangles one is looked for that a new point would disturb. */
+constexpr std::size_t LargestCavity = 1000;
+
 /** Distance from a position to the nearest point other than one. */
 class NearestPointVisitor
 {
@@ -330,6 +333,7 @@ private:
   bool ResolveByFlip(Id t);
   bool ResolveByEdge(Id t);
   bool ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMirrored);
+  Id FindEncroachedSegment(Id t, const Vec3& position);
   Vec3 MatchAcross(Id t, Id disturbing, const Vec3& position, double radius) const;
   bool MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) const;
   bool RotateAboutAxis(Id t, Id disturbing, Vec3& target) const;
@@ -403,6 +407,8 @@ private:
   std::vector<char> IsQueued;
   std::vector<char> IsUnresolved;
   std::vector<Id> Reached;
+  /** Marks of FindEncroachedSegment(), all zero outside of it. */
+  std::vector<char> IsInCavity;
   /** Length and number of segments to be looked at, a heap; diametral spheres of those that were. */
   std::vector<std::pair<double, Id>> EdgeQueue;
   BallIndex EmptyEdges;
@@ -481,11 +487,14 @@ Status SurfaceRefiner::Prepare()
   }
   this->DropCloseMeshPoints();
   this->NumberOfGivenPoints = static_cast<Id>(this->Points.size());
-  // Without a limit of the user's, one that only a runaway refinement reaches.
+  // Without a limit of the user's, one that only a runaway refinement reaches: sheets a hair apart.
+  const bool isSizeWanted = this->Input.Sizing || this->Options.MaximumEdgeLength > 0.0 ||
+    this->Options.MaximumArea > 0.0 || this->Options.MinimumAngle > 0.0;
   this->MaximumNewPoints = this->Options.MaximumNewPoints > 0
     ? this->Options.MaximumNewPoints
-    : static_cast<Id>(std::min<std::size_t>(
-        1000000 + 50 * surface.Triangles.size(), std::numeric_limits<Id>::max() / 8));
+    : static_cast<Id>(std::min<std::size_t>((isSizeWanted ? 1000000 : 100000) +
+          50 * surface.Triangles.size() + this->Output.KeptMeshPoints.size(),
+        std::numeric_limits<Id>::max() / 8));
   this->Octree.Insert(this->Points);
   this->Surface = std::make_unique<RefinableSurface>(surface, edges.Edges, this->Points);
   return Status();
@@ -1082,18 +1091,23 @@ bool SurfaceRefiner::ResolveByEdge(Id t)
   Id bestSegment = NoId;
   Id bestPoint = NoId;
   double bestDepth = Infinity;
-  const auto consider = [&](Id segment, Id point)
+  const auto consider = [&](Id segment, const std::vector<Id>& points)
   {
     const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
     const Vec3& a = this->Points[ends[0]];
     const Vec3& b = this->Points[ends[1]];
-    const double depth = Distance(this->Points[point], 0.5 * (a + b)) / Distance(a, b);
-    if (point != ends[0] && point != ends[1] && depth < bestDepth &&
-      InDiametralSphere(a, b, this->Points[point]) >= 0)
+    const Vec3 middle = 0.5 * (a + b);
+    const double unit = 1.0 / SquaredNorm(b - a);
+    for (Id point : points)
     {
-      bestSegment = segment;
-      bestPoint = point;
-      bestDepth = depth;
+      const double depth = unit * SquaredNorm(this->Points[point] - middle);
+      if (point != ends[0] && point != ends[1] && depth < bestDepth &&
+        InDiametralSphere(a, b, this->Points[point]) >= 0)
+      {
+        bestSegment = segment;
+        bestPoint = point;
+        bestDepth = depth;
+      }
     }
   };
   for (int i = 0; i < 3; ++i)
@@ -1101,18 +1115,9 @@ bool SurfaceRefiner::ResolveByEdge(Id t)
     const Id segment = this->Surface->GetSegmentAt(t, i);
     if (segment != NoId)
     {
-      for (Id point : this->Found.InsideSmallestSphere)
-      {
-        consider(segment, point);
-      }
-      for (Id point : this->Found.OnSmallestSphere)
-      {
-        consider(segment, point);
-      }
-      for (Id point : this->Found.Cocircular)
-      {
-        consider(segment, point);
-      }
+      consider(segment, this->Found.InsideSmallestSphere);
+      consider(segment, this->Found.OnSmallestSphere);
+      consider(segment, this->Found.Cocircular);
     }
   }
   if (bestSegment == NoId)
@@ -1122,7 +1127,7 @@ bool SurfaceRefiner::ResolveByEdge(Id t)
       const Id segment = this->Surface->GetSegmentAt(t, i);
       if (segment != NoId)
       {
-        consider(segment, this->Surface->GetApex(3 * t + i));
+        consider(segment, { this->Surface->GetApex(3 * t + i) });
       }
     }
   }
@@ -1278,6 +1283,48 @@ Vec3 SurfaceRefiner::MatchAcross(Id t, Id disturbing, const Vec3& position, doub
     });
 }
 
+/**
+ * A segment whose diametral sphere holds a position, among those around the triangles whose smallest
+ * spheres hold it, too: these are the triangles that a point there would replace.
+ */
+Id SurfaceRefiner::FindEncroachedSegment(Id t, const Vec3& position)
+{
+  const RefinableSurface& surface = *this->Surface;
+  this->IsInCavity.resize(surface.GetNumberOfTriangles(), 0);
+  std::vector<Id> cavity(1, t);
+  this->IsInCavity[t] = 1;
+  Id found = NoId;
+  for (std::size_t i = 0; i < cavity.size() && found == NoId && cavity.size() < LargestCavity; ++i)
+  {
+    for (Id adjacent : surface.GetTriangle(cavity[i]).Adjacent)
+    {
+      if (adjacent < 0)
+      {
+        const EdgeIds& ends = surface.GetSegment(-1 - adjacent).Points;
+        if (InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], position) >= 0)
+        {
+          found = -1 - adjacent;
+          break;
+        }
+        continue;
+      }
+      const TriangleIds& ids = surface.GetTriangle(adjacent / 3).Points;
+      if (!this->IsInCavity[adjacent / 3] &&
+        InEquatorialSphere(
+          this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]], position) >= 0)
+      {
+        this->IsInCavity[adjacent / 3] = 1;
+        cavity.push_back(adjacent / 3);
+      }
+    }
+  }
+  for (Id triangle : cavity)
+  {
+    this->IsInCavity[triangle] = 0;
+  }
+  return found;
+}
+
 bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMirrored)
 {
   const RefinableSurface& surface = *this->Surface;
@@ -1369,29 +1416,10 @@ bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMir
   }
 
   // A point that would disturb an edge of the facet must not be made: split the edge instead.
-  std::vector<Id> cavity(1, current);
-  for (std::size_t i = 0; i < cavity.size() && cavity.size() < 1000; ++i)
+  const Id encroached = this->FindEncroachedSegment(current, position);
+  if (encroached != NoId)
   {
-    for (int e = 0; e < 3; ++e)
-    {
-      const Id adjacent = surface.GetTriangle(cavity[i]).Adjacent[e];
-      if (adjacent < 0)
-      {
-        const EdgeIds& ends = surface.GetSegment(-1 - adjacent).Points;
-        if (InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], position) >= 0)
-        {
-          return this->SplitSegment(-1 - adjacent, isMirrored ? disturbing : NoId);
-        }
-        continue;
-      }
-      const TriangleIds& ids = surface.GetTriangle(adjacent / 3).Points;
-      if (std::find(cavity.begin(), cavity.end(), adjacent / 3) == cavity.end() &&
-        InEquatorialSphere(
-          this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]], position) >= 0)
-      {
-        cavity.push_back(adjacent / 3);
-      }
-    }
+    return this->SplitSegment(encroached, isMirrored ? disturbing : NoId);
   }
 
   const TriangleIds ids = surface.GetTriangle(current).Points;

@@ -66,7 +66,11 @@ struct DelaunaySurfaceRefinerOptions
   double MeshPointClearanceRatio = 1e-3;
   /** No edge is made shorter than this ratio of the diagonal. >= 0. */
   double MinimumEdgeRatio = 1e-9;
-  /** The refinement stops when it has made so many points. 0: no limit. */
+  /**
+   * The refinement stops when it has made so many points. 0: 100000, or 1000000 where sizes or angles
+   * are asked for, and 50 for each triangle and one for each mesh point: only what would never end
+   * in practice makes more.
+   */
   Id MaximumNewPoints = 0;
 };
 

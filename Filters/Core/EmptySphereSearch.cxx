@@ -181,9 +181,11 @@ void SphereForm::FindCenter()
 
 int SphereForm::GetSide(const Vec3& point) const
 {
-  if (!this->MayTouch(point, point))
+  double roundedError;
+  const double rounded = this->GetSmallest(point, point, roundedError);
+  if (std::abs(rounded) > roundedError)
   {
-    return -1;
+    return rounded > 0.0 ? -1 : 1;
   }
   const WideVec3 offset = SubtractExactly(point, this->Origin, 1.0);
   const WideVec3 gradient{ { this->Gradient.X, this->GradientRest.X },

@@ -64,6 +64,8 @@ private:
   static constexpr double WideBound = 0x1p-88;
 
   void FindCenter();
+  /** The smallest value of g in a box, and how far off it may be. */
+  double GetSmallest(const Vec3& lower, const Vec3& upper, double& error) const;
 
   Vec3 Origin;
   /** Length by which the polynomials are scaled: a power of two near the size of the simplex. */
@@ -78,10 +80,10 @@ private:
   Vec3 Center;
 };
 
-inline bool SphereForm::MayTouch(const Vec3& lower, const Vec3& upper) const
+inline double SphereForm::GetSmallest(const Vec3& lower, const Vec3& upper, double& error) const
 {
   double smallest = 0.0;
-  double error = 0.0;
+  error = 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
     const double begin = lower[axis] - this->Origin[axis];
@@ -94,6 +96,13 @@ inline bool SphereForm::MayTouch(const Vec3& lower, const Vec3& upper) const
       (RoundingBound * (this->Curvature * reach + std::abs(gradient)) +
         WideBound * (reach + this->Size));
   }
+  return smallest;
+}
+
+inline bool SphereForm::MayTouch(const Vec3& lower, const Vec3& upper) const
+{
+  double error;
+  const double smallest = this->GetSmallest(lower, upper, error);
   // In this form a result that is not a number counts as touched.
   return !(smallest > error);
 }
