@@ -492,8 +492,9 @@ Status SurfaceRefiner::Prepare()
     this->Options.MaximumArea > 0.0 || this->Options.MinimumAngle > 0.0;
   this->MaximumNewPoints = this->Options.MaximumNewPoints > 0
     ? this->Options.MaximumNewPoints
-    : static_cast<Id>(std::min<std::size_t>((isSizeWanted ? 1000000 : 100000) +
-          50 * surface.Triangles.size() + this->Output.KeptMeshPoints.size(),
+    : static_cast<Id>(std::min<std::size_t>(
+        std::max<std::size_t>(isSizeWanted ? 1000000 : 20000, 50 * surface.Triangles.size()) +
+          this->Output.KeptMeshPoints.size(),
         std::numeric_limits<Id>::max() / 8));
   this->Octree.Insert(this->Points);
   this->Surface = std::make_unique<RefinableSurface>(surface, edges.Edges, this->Points);
