@@ -8,6 +8,7 @@ namespace cdm
 {
 namespace
 {
+/** Infinite balls have a level of their own, of one cell. */
 constexpr int InfiniteLevel = 1 << 20;
 
 std::int64_t GetIndex(double coordinate, double width)
@@ -16,9 +17,15 @@ std::int64_t GetIndex(double coordinate, double width)
   const double index = std::floor(coordinate / width);
   return static_cast<std::int64_t>(std::min(std::max(index, -4e18), 4e18));
 }
-}
 
-std::uint64_t BallIndex::GetCell(int level, const std::int64_t index[3])
+int GetLevel(double radius)
+{
+  // Powers of four: half of the levels of powers of two cost less than the larger cells.
+  return std::isfinite(radius) ? (std::ilogb(std::max(radius, 1e-300)) & ~1) + 3 : InfiniteLevel;
+}
+} // namespace
+
+std::uint64_t BallIndex::GetKey(int level, const std::int64_t index[3])
 {
   std::uint64_t hash = static_cast<std::uint64_t>(level);
   for (int axis = 0; axis < 3; ++axis)
@@ -29,64 +36,132 @@ std::uint64_t BallIndex::GetCell(int level, const std::int64_t index[3])
   return hash;
 }
 
+/** The slot of a cell, or the free one where it belongs. */
+std::size_t BallIndex::FindSlot(std::uint64_t key) const
+{
+  const std::size_t mask = this->Slots.size() - 1;
+  std::size_t slot = key & mask;
+  while (this->Slots[slot].second != NoId && this->Slots[slot].first != key)
+  {
+    slot = (slot + 1) & mask;
+  }
+  return slot;
+}
+
+void BallIndex::Resize(std::size_t numberOfSlots)
+{
+  std::vector<std::pair<std::uint64_t, Id>> former(numberOfSlots, { 0, NoId });
+  former.swap(this->Slots);
+  for (const auto& [key, cell] : former)
+  {
+    if (cell != NoId)
+    {
+      this->Slots[this->FindSlot(key)] = { key, cell };
+    }
+  }
+}
+
+void BallIndex::Put(const Ball& ball)
+{
+  std::int64_t index[3] = { 0, 0, 0 };
+  if (ball.Level != InfiniteLevel)
+  {
+    const double width = std::ldexp(1.0, ball.Level);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      index[axis] = GetIndex(ball.Center[axis], width);
+    }
+  }
+  const std::uint64_t key = GetKey(ball.Level, index);
+  auto& slot = this->Slots[this->FindSlot(key)];
+  if (slot.second == NoId)
+  {
+    slot = { key, static_cast<Id>(this->Cells.size()) };
+    this->Cells.emplace_back();
+  }
+  std::vector<Ball>& balls = this->Cells[slot.second];
+  this->Places[ball.Number] = { slot.second, static_cast<Id>(balls.size()) };
+  balls.push_back(ball);
+  if (2 * this->Cells.size() > this->Slots.size())
+  {
+    this->Resize(2 * this->Slots.size());
+  }
+}
+
 void BallIndex::Set(Id id, const Vec3& center, double radius)
 {
   this->Remove(id);
-  if (this->Balls.size() <= static_cast<std::size_t>(id))
+  if (this->Places.size() <= static_cast<std::size_t>(id))
   {
-    this->Balls.resize(static_cast<std::size_t>(id) + 1);
+    this->Places.resize(static_cast<std::size_t>(id) + 1);
   }
-  Ball& ball = this->Balls[id];
-  ball.Center = center;
-  ball.Radius = radius;
-  ball.Level = InfiniteLevel;
-  ball.Cell = 0;
-  if (std::isfinite(radius))
+  const Ball ball{ center, radius, GetLevel(radius), id };
+  ++this->Levels[ball.Level];
+  if (this->Slots.empty())
   {
-    ball.Level = std::ilogb(std::max(radius, 1e-300)) + 2;
-    const double width = std::ldexp(1.0, ball.Level);
-    const std::int64_t index[3] = { GetIndex(center.X, width), GetIndex(center.Y, width),
-      GetIndex(center.Z, width) };
-    ball.Cell = GetCell(ball.Level, index);
+    this->Places[id].Index = static_cast<Id>(this->Waiting.size());
+    this->Waiting.push_back(ball);
+    return;
   }
-  this->Levels[ball.Level][ball.Cell].push_back(id);
+  this->Put(ball);
 }
 
 void BallIndex::Remove(Id id)
 {
-  if (static_cast<std::size_t>(id) >= this->Balls.size() || this->Balls[id].Radius < 0.0)
+  if (static_cast<std::size_t>(id) >= this->Places.size() || this->Places[id].Index == NoId)
   {
     return;
   }
-  Ball& ball = this->Balls[id];
-  const auto level = this->Levels.find(ball.Level);
-  const auto cell = level->second.find(ball.Cell);
-  cell->second.erase(std::find(cell->second.begin(), cell->second.end(), id));
-  if (cell->second.empty())
+  const Place place = this->Places[id];
+  std::vector<Ball>& balls = this->Slots.empty() ? this->Waiting : this->Cells[place.Cell];
+  const auto level = this->Levels.find(balls[place.Index].Level);
+  if (--level->second == 0)
   {
-    level->second.erase(cell);
-    if (level->second.empty())
-    {
-      this->Levels.erase(level);
-    }
+    this->Levels.erase(level);
   }
-  ball.Radius = -1.0;
+  balls[place.Index] = balls.back();
+  this->Places[balls.back().Number].Index = place.Index;
+  this->Places[id].Index = NoId;
+  balls.pop_back();
 }
 
-void BallIndex::Find(const Vec3& point, std::vector<Id>& ids) const
+void BallIndex::Find(const Vec3& point, std::vector<Id>& ids)
 {
   ids.clear();
-  for (const auto& [level, cells] : this->Levels)
+  if (this->Slots.empty())
   {
+    this->Resize(1024);
+    for (const Ball& ball : this->Waiting)
+    {
+      this->Put(ball);
+    }
+    this->Waiting = {};
+  }
+  const auto visit = [this, &point, &ids](std::uint64_t key)
+  {
+    const Id cell = this->Slots[this->FindSlot(key)].second;
+    if (cell == NoId)
+    {
+      return;
+    }
+    for (const Ball& ball : this->Cells[cell])
+    {
+      if (SquaredNorm(point - ball.Center) <= ball.Radius * ball.Radius)
+      {
+        ids.push_back(ball.Number);
+      }
+    }
+  };
+  for (const auto& [level, count] : this->Levels)
+  {
+    std::int64_t first[3] = { 0, 0, 0 };
     if (level == InfiniteLevel)
     {
-      const std::vector<Id>& all = cells.begin()->second;
-      ids.insert(ids.end(), all.begin(), all.end());
+      visit(GetKey(level, first));
       continue;
     }
     // Radii are below half the width: the center lies in the cells nearest to the point.
     const double width = std::ldexp(1.0, level);
-    std::int64_t first[3];
     for (int axis = 0; axis < 3; ++axis)
     {
       first[axis] = GetIndex(point[axis] - 0.5 * width, width);
@@ -95,23 +170,11 @@ void BallIndex::Find(const Vec3& point, std::vector<Id>& ids) const
     {
       const std::int64_t index[3] = { first[0] + (corner & 1), first[1] + ((corner >> 1) & 1),
         first[2] + (corner >> 2) };
-      const auto cell = cells.find(GetCell(level, index));
-      if (cell == cells.end())
-      {
-        continue;
-      }
-      for (Id id : cell->second)
-      {
-        const Ball& ball = this->Balls[id];
-        if (SquaredNorm(point - ball.Center) <= ball.Radius * ball.Radius)
-        {
-          ids.push_back(id);
-        }
-      }
+      visit(GetKey(level, index));
     }
   }
   // Two corners may share a cell by their hash.
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
 }
-}
+} // namespace cdm

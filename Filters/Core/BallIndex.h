@@ -5,7 +5,7 @@
  *
  * Balls of similar radius share a level, a hashed grid whose cells are as wide as its largest
  * balls; a ball lies in the cell of its center, so that at most eight cells of each level can hold
- * balls that reach a point.
+ * balls that reach a point. The cells are made by the first query: who never asks pays for a list.
  *
  * Cost: O(1) to add or remove; O(levels) cells for a query. About 100 bytes per ball.
  */
@@ -15,8 +15,9 @@
 #include "Types.h"
 #include "Vec3.h"
 
+#include <cstdint>
 #include <map>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace cdm
@@ -30,25 +31,44 @@ public:
   void Remove(Id id);
 
   /** Ids of the balls that hold the point, ascending. */
-  void Find(const Vec3& point, std::vector<Id>& ids) const;
+  void Find(const Vec3& point, std::vector<Id>& ids);
 
 private:
   struct Ball
   {
     Vec3 Center;
-    double Radius = -1.0;
-    int Level = 0;
-    std::uint64_t Cell = 0;
+    double Radius;
+    int Level;
+    Id Number;
   };
 
-  static std::uint64_t GetCell(int level, const std::int64_t index[3]);
+  /** Where a ball is. */
+  struct Place
+  {
+    Id Cell = NoId;
+    Id Index = NoId;
+  };
 
-  using Cells = std::unordered_map<std::uint64_t, std::vector<Id>>;
+  static std::uint64_t GetKey(int level, const std::int64_t index[3]);
 
-  std::vector<Ball> Balls;
-  /** By level: cells are 2^level wide. Infinite balls have a level and a cell of their own. */
-  std::map<int, Cells> Levels;
+  std::size_t FindSlot(std::uint64_t key) const;
+  void Put(const Ball& ball);
+  void Resize(std::size_t numberOfSlots);
+
+  /** By number of the ball. */
+  std::vector<Place> Places;
+  /** Balls side by side: queries read most balls of a cell, and add or remove few. */
+  std::vector<std::vector<Ball>> Cells;
+  /**
+   * Hash table by open addressing: key and cell, NoId in slots that are free. A power of two of
+   * them, at most half of them used; none before the first query.
+   */
+  std::vector<std::pair<std::uint64_t, Id>> Slots;
+  /** Balls that wait for the first query. */
+  std::vector<Ball> Waiting;
+  /** How many balls there are of each level: cells are 2^level wide. */
+  std::map<int, Id> Levels;
 };
-}
+} // namespace cdm
 
 #endif

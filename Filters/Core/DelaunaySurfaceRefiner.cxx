@@ -6,16 +6,17 @@
 #include "Measures.h"
 #include "Predicates.h"
 #include "RefinableSurface.h"
+#include "SpatialSort.h"
 #include "SurfaceDelaunayTest.h"
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
+#include <functional>
 #include <limits>
-#include <map>
 #include <memory>
 #include <numeric>
 #include <string>
+#include <utility>
 
 namespace cdm
 {
@@ -39,6 +40,9 @@ constexpr double CloseEndRatio = 0.25;
 /** Another point on an edge, closer to the match than this part of the disturbing point's distance,
  * is matched instead. */
 constexpr double CloseMatchRatio = 0.5;
+/** Among the edges around so many triangles one is looked for that a new point would disturb. */
+constexpr std::size_t LargestCavity = 1000;
+
 /** Distance from a position to the nearest point other than one. */
 class NearestPointVisitor
 {
@@ -237,6 +241,61 @@ private:
   double Deepest = Infinity;
 };
 
+/** Ids in one list, a range of it for each owner. */
+class IdLists
+{
+public:
+  struct Range
+  {
+    const Id* First = nullptr;
+    const Id* Last = nullptr;
+
+    const Id* begin() const { return this->First; }
+    const Id* end() const { return this->Last; }
+    bool empty() const { return this->First == this->Last; }
+    std::size_t size() const { return static_cast<std::size_t>(this->Last - this->First); }
+  };
+
+  /** From pairs (owner, id): a list has the order of the pairs, without repetitions in a row. */
+  void Build(Id numberOfOwners, const std::vector<std::pair<Id, Id>>& pairs)
+  {
+    std::vector<Id> next(static_cast<std::size_t>(numberOfOwners) + 1, 0);
+    for (const auto& pair : pairs)
+    {
+      ++next[pair.first + 1];
+    }
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    this->Begin = next;
+    this->End.assign(next.begin(), next.end() - 1);
+    this->Ids.resize(pairs.size());
+    for (const auto& [owner, id] : pairs)
+    {
+      Id& end = this->End[owner];
+      if (end == this->Begin[owner] || this->Ids[end - 1] != id)
+      {
+        this->Ids[end++] = id;
+      }
+    }
+  }
+
+  Range operator[](Id owner) const
+  {
+    return { this->Ids.data() + this->Begin[owner], this->Ids.data() + this->End[owner] };
+  }
+
+private:
+  std::vector<Id> Begin;
+  std::vector<Id> End;
+  std::vector<Id> Ids;
+};
+
+/** Two facets in one number, in any order. */
+std::uint64_t GetFacetPair(Id a, Id b)
+{
+  return static_cast<std::uint64_t>(std::min(a, b)) << 32 |
+    static_cast<std::uint64_t>(std::max(a, b));
+}
+
 class SurfaceRefiner
 {
 public:
@@ -252,13 +311,21 @@ public:
 private:
   Status Prepare();
   void DropCloseMeshPoints();
-  void CollectPointFacets();
+  void CollectIncidences();
   void CollectAxes();
   void CollectFacetGeometry();
+  IdLists::Range GetFacets(Id point) const;
+  IdLists::Range GetEdges(Id point) const;
+  bool IsAcuteCorner(Id point);
   void Saturate();
   Status SplitRequested();
   Status Refine();
   void Process(Id t);
+  void ProcessEdge();
+  bool AreEdgesTested() const
+  {
+    return this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges;
+  }
   bool IsGood(Id t);
   bool IsCocircularFacet(Id t) const;
   bool FindTooCoarse(Id t, Id& segment) const;
@@ -267,6 +334,7 @@ private:
   bool ResolveByFlip(Id t);
   bool ResolveByEdge(Id t);
   bool ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMirrored);
+  Id FindEncroachedSegment(Id t, const Vec3& position);
   Vec3 MatchAcross(Id t, Id disturbing, const Vec3& position, double radius) const;
   bool MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) const;
   bool RotateAboutAxis(Id t, Id disturbing, Vec3& target) const;
@@ -274,19 +342,24 @@ private:
   bool ProjectOntoFacet(Id t, Id disturbing, Vec3& target) const;
   bool SplitSegment(Id segment, Id disturbing);
   bool SplitLongestEdge(Id t);
-  Vec3 PlaceOnSegment(Id segment, Id disturbing) const;
+  Vec3 PlaceOnSegment(Id segment, Id disturbing);
   bool PlacePartner(Id segment, Id disturbing, double& way, Vec3& along) const;
 
   bool CanFlip(Id use) const;
   bool ShouldFlip(Id use) const;
   void Legalize(std::vector<Id>& uses);
-  Id AddPoint(const Vec3& position, const PointParents& parents, std::vector<Id> facets);
+  Id AddPoint(const Vec3& position, const PointParents& parents, Id facet, Id inputEdge);
   void Enqueue(Id t);
+  void EnqueueEdge(Id segment);
   double GetNearestDistance(const Vec3& position, Id except = NoId) const
   {
     NearestPointVisitor visitor(position, except);
     this->Octree.Visit(visitor);
     return std::sqrt(visitor.SquaredDistance);
+  }
+  bool IsFull() const
+  {
+    return static_cast<Id>(this->Output.NewPoints.size()) >= this->MaximumNewPoints;
   }
   Status Finish();
 
@@ -308,24 +381,40 @@ private:
   SurfaceDelaunayTest::Result Found;
   std::unique_ptr<RefinableSurface> Surface;
 
-  /** Facets that each point lies on, ascending; empty for mesh points. */
-  std::vector<std::vector<Id>> PointFacets;
-  /** Segments of the input that two facets share, by the facets, the smaller first. */
-  std::map<std::pair<Id, Id>, std::vector<EdgeIds>> Axes;
+  /** What follows is collected when the first triangle has to be refined. */
+  bool HasIncidences = false;
+  /** Facets at each point of the input, ascending. */
+  IdLists PointFacets;
+  /** Input edges at each point of the input. */
+  IdLists PointEdges;
+  /** Facets at each input edge, ascending. */
+  IdLists EdgeFacets;
+  /** For each new point the facet that it lies in, or the input edge that it lies on. */
+  std::vector<Id> NewPointFacets;
+  std::vector<Id> NewPointEdges;
+  /** Input edges that two facets share: the facets in one number, the smaller first, and the edge. */
+  std::vector<std::pair<std::uint64_t, Id>> Axes;
   /** Unit normal of each plane facet; zero for a curved one, which has no one plane. */
   std::vector<Vec3> FacetNormals;
   /** Points of each facet at which structural edges end, ascending. */
-  std::vector<std::vector<Id>> FacetCorners;
-  /** For each point of the input surface the input edges at it; for new ones on an edge, it. */
-  std::vector<std::vector<Id>> PointEdges;
-  /** Input points at which two structural edges meet at less than 90 degrees. */
-  std::vector<char> IsAcuteCorner;
+  IdLists FacetCorners;
+  /** Input points at which two structural edges meet at less than 90 degrees; -1: not known yet. */
+  std::vector<signed char> AcuteCorners;
 
   BallIndex Proofs;
-  std::deque<Id> Queue;
+  /** Triangles to be looked at, a heap by their order. */
+  std::vector<std::pair<double, Id>> Queue;
+  std::int64_t NumberOfEnqueued = 0;
   std::vector<char> IsQueued;
   std::vector<char> IsUnresolved;
   std::vector<Id> Reached;
+  /** Marks of FindEncroachedSegment(), all zero outside of it. */
+  std::vector<char> IsInCavity;
+  /** Length and number of segments to be looked at, a heap; diametral spheres of those that were. */
+  std::vector<std::pair<double, Id>> EdgeQueue;
+  BallIndex EmptyEdges;
+  /** Segments that are disturbed and cannot be split. */
+  std::vector<char> IsDisturbed;
   Id FlipBudget = 0;
 };
 
@@ -348,9 +437,7 @@ Status SurfaceRefiner::Prepare()
   }
   std::vector<Id> order(this->Points.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-    [this](Id i, Id j)
-    { return this->Points[i] != this->Points[j] ? this->Points[i] < this->Points[j] : i < j; });
+  SortAlongHilbertCurve(this->Points, order);
   std::vector<Id> coincident;
   for (std::size_t i = 1; i < order.size(); ++i)
   {
@@ -372,7 +459,12 @@ Status SurfaceRefiner::Prepare()
   for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
   {
     const TriangleIds& ids = surface.Triangles[t];
-    if (AreCollinear(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]))
+    const Vec3& a = this->Points[ids[0]];
+    const Vec3& b = this->Points[ids[1]];
+    const Vec3& c = this->Points[ids[2]];
+    // Far above the error of the cross product, and of products below the range of doubles.
+    const double certain = 1e-24 * SquaredNorm(b - a) * SquaredNorm(c - a);
+    if (!(certain > 1e-280 && SquaredNorm(Cross(b - a, c - a)) > certain) && AreCollinear(a, b, c))
     {
       degenerate.push_back(static_cast<Id>(t));
     }
@@ -396,16 +488,17 @@ Status SurfaceRefiner::Prepare()
   }
   this->DropCloseMeshPoints();
   this->NumberOfGivenPoints = static_cast<Id>(this->Points.size());
-  // Without a limit of the user's, one that only a runaway refinement reaches.
+  // Without a limit of the user's, one that only a runaway refinement reaches: sheets a hair apart.
+  const bool isSizeWanted = this->Input.Sizing || this->Options.MaximumEdgeLength > 0.0 ||
+    this->Options.MaximumArea > 0.0 || this->Options.MinimumAngle > 0.0;
   this->MaximumNewPoints = this->Options.MaximumNewPoints > 0
     ? this->Options.MaximumNewPoints
     : static_cast<Id>(std::min<std::size_t>(
-        1000000 + 50 * surface.Triangles.size(), std::numeric_limits<Id>::max() / 8));
+        std::max<std::size_t>(isSizeWanted ? 1000000 : 20000, 50 * surface.Triangles.size()) +
+          this->Output.KeptMeshPoints.size(),
+        std::numeric_limits<Id>::max() / 8));
   this->Octree.Insert(this->Points);
   this->Surface = std::make_unique<RefinableSurface>(surface, edges.Edges, this->Points);
-  this->CollectPointFacets();
-  this->CollectAxes();
-  this->CollectFacetGeometry();
   return Status();
 }
 
@@ -460,62 +553,120 @@ void SurfaceRefiner::DropCloseMeshPoints()
   }
 }
 
-void SurfaceRefiner::CollectPointFacets()
+void SurfaceRefiner::CollectIncidences()
 {
-  this->PointFacets.resize(this->Points.size());
+  if (this->HasIncidences)
+  {
+    return;
+  }
+  this->HasIncidences = true;
+  std::vector<std::pair<Id, Id>> pairs;
+  pairs.reserve(3 * this->Surface->GetNumberOfTriangles());
   for (Id t = 0; t < this->Surface->GetNumberOfTriangles(); ++t)
   {
     const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
-    for (Id id : triangle.Points)
+    for (Id point : triangle.Points)
     {
-      this->PointFacets[id].push_back(triangle.Facet);
+      pairs.emplace_back(point, triangle.Facet);
     }
   }
-  for (std::vector<Id>& facets : this->PointFacets)
+  std::stable_sort(
+    pairs.begin(), pairs.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
+  this->PointFacets.Build(this->NumberOfSurfacePoints, pairs);
+
+  pairs.clear();
+  std::vector<std::pair<Id, Id>> edgeFacets;
+  for (Id s = 0; s < this->Surface->GetNumberOfSegments(); ++s)
   {
-    std::sort(facets.begin(), facets.end());
-    facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
+    const EdgeIds& edge = this->Surface->GetSegment(s).Points;
+    pairs.emplace_back(edge[0], s);
+    pairs.emplace_back(edge[1], s);
+    for (Id facet : this->Surface->GetFacets(s))
+    {
+      edgeFacets.emplace_back(s, facet);
+    }
   }
+  this->PointEdges.Build(this->NumberOfSurfacePoints, pairs);
+  this->EdgeFacets.Build(this->Surface->GetNumberOfSegments(), edgeFacets);
+  this->AcuteCorners.assign(this->NumberOfSurfacePoints, -1);
+  this->CollectAxes();
+  this->CollectFacetGeometry();
+}
+
+/** Facets that a point lies on, ascending; none for a mesh point. */
+IdLists::Range SurfaceRefiner::GetFacets(Id point) const
+{
+  if (point < this->NumberOfSurfacePoints)
+  {
+    return this->PointFacets[point];
+  }
+  if (point < this->NumberOfGivenPoints)
+  {
+    return {};
+  }
+  const Id* const facet = &this->NewPointFacets[point - this->NumberOfGivenPoints];
+  return *facet != NoId ? IdLists::Range{ facet, facet + 1 }
+                        : this->EdgeFacets[this->NewPointEdges[point - this->NumberOfGivenPoints]];
+}
+
+/** Input edges that a point lies on. */
+IdLists::Range SurfaceRefiner::GetEdges(Id point) const
+{
+  if (point < this->NumberOfSurfacePoints)
+  {
+    return this->PointEdges[point];
+  }
+  if (point < this->NumberOfGivenPoints)
+  {
+    return {};
+  }
+  const Id* const edge = &this->NewPointEdges[point - this->NumberOfGivenPoints];
+  return { edge, edge + (*edge != NoId ? 1 : 0) };
 }
 
 void SurfaceRefiner::CollectAxes()
 {
-  this->PointEdges.resize(this->Points.size());
-  this->IsAcuteCorner.resize(this->Points.size(), 0);
-  for (Id s = 0; s < this->Surface->GetNumberOfSegments(); ++s)
+  for (Id edge = 0; edge < static_cast<Id>(this->Surface->GetInputEdges().size()); ++edge)
   {
-    const EdgeIds& edge = this->Surface->GetSegment(s).Points;
-    const std::vector<Id> facets = this->Surface->GetFacets(s);
-    for (std::size_t i = 0; i < facets.size(); ++i)
+    const IdLists::Range facets = this->EdgeFacets[edge];
+    for (const Id* i = facets.begin(); i != facets.end(); ++i)
     {
-      for (std::size_t j = i + 1; j < facets.size(); ++j)
+      for (const Id* j = i + 1; j != facets.end(); ++j)
       {
-        this->Axes[{ facets[i], facets[j] }].push_back(edge);
-      }
-    }
-    this->PointEdges[edge[0]].push_back(s);
-    this->PointEdges[edge[1]].push_back(s);
-  }
-  const std::vector<EdgeIds>& edges = this->Surface->GetInputEdges();
-  for (Id p = 0; p < this->NumberOfSurfacePoints; ++p)
-  {
-    const std::vector<Id>& incident = this->PointEdges[p];
-    for (std::size_t i = 0; i < incident.size() && !this->IsAcuteCorner[p]; ++i)
-    {
-      for (std::size_t j = i + 1; j < incident.size(); ++j)
-      {
-        const EdgeIds& e = edges[incident[i]];
-        const EdgeIds& f = edges[incident[j]];
-        const Vec3 u = this->Points[e[0] == p ? e[1] : e[0]] - this->Points[p];
-        const Vec3 v = this->Points[f[0] == p ? f[1] : f[0]] - this->Points[p];
-        if (Dot(u, v) > 1e-9 * Norm(u) * Norm(v))
-        {
-          this->IsAcuteCorner[p] = 1;
-          break;
-        }
+        this->Axes.emplace_back(GetFacetPair(*i, *j), edge);
       }
     }
   }
+  std::sort(this->Axes.begin(), this->Axes.end());
+}
+
+bool SurfaceRefiner::IsAcuteCorner(Id point)
+{
+  if (point >= this->NumberOfSurfacePoints)
+  {
+    return false;
+  }
+  signed char& isAcute = this->AcuteCorners[point];
+  if (isAcute < 0)
+  {
+    isAcute = 0;
+    const IdLists::Range incident = this->PointEdges[point];
+    const auto getArm = [this, point](Id edge)
+    {
+      const EdgeIds& ends = this->Surface->GetInputEdges()[edge];
+      return this->Points[ends[0] == point ? ends[1] : ends[0]] - this->Points[point];
+    };
+    for (const Id* i = incident.begin(); i != incident.end() && isAcute == 0; ++i)
+    {
+      const Vec3 u = getArm(*i);
+      for (const Id* j = i + 1; j != incident.end() && isAcute == 0; ++j)
+      {
+        const Vec3 v = getArm(*j);
+        isAcute = Dot(u, v) > 1e-9 * Norm(u) * Norm(v) ? 1 : 0;
+      }
+    }
+  }
+  return isAcute != 0;
 }
 
 void SurfaceRefiner::CollectFacetGeometry()
@@ -540,18 +691,18 @@ void SurfaceRefiner::CollectFacetGeometry()
     }
   }
 
+  std::vector<std::pair<Id, Id>> corners;
   for (Id p = 0; p < this->NumberOfSurfacePoints; ++p)
   {
-    for (Id facet : this->PointFacets[p])
+    if (!this->PointEdges[p].empty())
     {
-      if (!this->PointEdges[p].empty())
+      for (Id facet : this->PointFacets[p])
       {
-        this->FacetCorners.resize(
-          std::max(this->FacetCorners.size(), static_cast<std::size_t>(facet) + 1));
-        this->FacetCorners[facet].push_back(p);
+        corners.emplace_back(facet, p);
       }
     }
   }
+  this->FacetCorners.Build(static_cast<Id>(this->FacetNormals.size()), corners);
 }
 
 void SurfaceRefiner::Enqueue(Id t)
@@ -565,7 +716,14 @@ void SurfaceRefiner::Enqueue(Id t)
   if (!this->IsQueued[t])
   {
     this->IsQueued[t] = 1;
-    this->Queue.push_back(t);
+    // Once the edges are fine enough, small triangles first: what large ones need depends on them.
+    // Without, in order: of almost flat surfaces that would be refined down to the smallest.
+    const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+    const double order = this->AreEdgesTested() ? Norm(GetCircumcenterOffset(this->Points[ids[0]],
+                                                    this->Points[ids[1]], this->Points[ids[2]]))
+                                                : static_cast<double>(this->NumberOfEnqueued++);
+    this->Queue.emplace_back(order, t);
+    std::push_heap(this->Queue.begin(), this->Queue.end(), std::greater<>());
   }
 }
 
@@ -816,7 +974,7 @@ bool SurfaceRefiner::PlacePartner(Id segment, Id disturbing, double& way, Vec3& 
   const Id own = this->Surface->GetSegment(segment).InputEdge;
   // Of several edges at the point the one along this edge matters.
   double best = 0.0;
-  for (Id other : this->PointEdges[disturbing])
+  for (Id other : this->GetEdges(disturbing))
   {
     if (other == own)
     {
@@ -850,7 +1008,7 @@ bool SurfaceRefiner::PlacePartner(Id segment, Id disturbing, double& way, Vec3& 
   return best > 0.0;
 }
 
-Vec3 SurfaceRefiner::PlaceOnSegment(Id segment, Id disturbing) const
+Vec3 SurfaceRefiner::PlaceOnSegment(Id segment, Id disturbing)
 {
   const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
   const Vec3& a = this->Points[ends[0]];
@@ -890,7 +1048,7 @@ Vec3 SurfaceRefiner::PlaceOnSegment(Id segment, Id disturbing) const
       NearestPointVisitor visitor(position, NoId);
       this->Octree.Visit(visitor);
       if (attempt == 0 && visitor.Nearest != disturbing && visitor.Nearest != ends[0] &&
-        visitor.Nearest != ends[1] && !this->PointEdges[visitor.Nearest].empty() &&
+        visitor.Nearest != ends[1] && !this->GetEdges(visitor.Nearest).empty() &&
         std::sqrt(visitor.SquaredDistance) < CloseMatchRatio * height)
       {
         disturbing = visitor.Nearest;
@@ -908,8 +1066,8 @@ Vec3 SurfaceRefiner::PlaceOnSegment(Id segment, Id disturbing) const
     break;
   }
   // From an acute corner only powers of two are used, so that all edges there end up alike.
-  const bool isAcuteA = ends[0] < this->NumberOfSurfacePoints && this->IsAcuteCorner[ends[0]];
-  const bool isAcuteB = ends[1] < this->NumberOfSurfacePoints && this->IsAcuteCorner[ends[1]];
+  const bool isAcuteA = this->IsAcuteCorner(ends[0]);
+  const bool isAcuteB = this->IsAcuteCorner(ends[1]);
   if (isAcuteA != isAcuteB)
   {
     const double way = std::ldexp(1.0, std::ilogb(length * (2.0 / 3.0)));
@@ -919,19 +1077,28 @@ Vec3 SurfaceRefiner::PlaceOnSegment(Id segment, Id disturbing) const
 }
 
 Id SurfaceRefiner::AddPoint(
-  const Vec3& position, const PointParents& parents, std::vector<Id> facets)
+  const Vec3& position, const PointParents& parents, Id facet, Id inputEdge)
 {
   const Id point = static_cast<Id>(this->Points.size());
   this->Points.push_back(position);
   this->Octree.Insert(point, position);
-  this->PointFacets.push_back(std::move(facets));
-  this->PointEdges.emplace_back();
+  this->NewPointFacets.push_back(facet);
+  this->NewPointEdges.push_back(inputEdge);
   this->Output.NewPoints.push_back(parents);
   this->Proofs.Find(position, this->Reached);
   for (Id t : this->Reached)
   {
     this->Proofs.Remove(t);
     this->Enqueue(t);
+  }
+  if (this->AreEdgesTested())
+  {
+    this->EmptyEdges.Find(position, this->Reached);
+    for (Id segment : this->Reached)
+    {
+      this->EmptyEdges.Remove(segment);
+      this->EnqueueEdge(segment);
+    }
   }
   return point;
 }
@@ -950,11 +1117,17 @@ bool SurfaceRefiner::SplitSegment(Id segment, Id disturbing)
     {
       const double weight = Distance(position, a) / length;
       const PointParents parents{ { ends[0], ends[1], NoId }, { 1.0 - weight, weight, 0.0 } };
-      const Id point = this->AddPoint(position, parents, this->Surface->GetFacets(segment));
-      this->PointEdges[point].push_back(this->Surface->GetSegment(segment).InputEdge);
+      const Id point =
+        this->AddPoint(position, parents, NoId, this->Surface->GetSegment(segment).InputEdge);
       ++this->Output.Report.EdgePoints;
       std::vector<Id> uses;
       this->Surface->SplitSegment(segment, point, uses);
+      if (this->AreEdgesTested())
+      {
+        this->EmptyEdges.Remove(segment);
+        this->EnqueueEdge(segment);
+        this->EnqueueEdge(this->Surface->GetNumberOfSegments() - 1);
+      }
       this->Legalize(uses);
       return true;
     }
@@ -968,18 +1141,23 @@ bool SurfaceRefiner::ResolveByEdge(Id t)
   Id bestSegment = NoId;
   Id bestPoint = NoId;
   double bestDepth = Infinity;
-  const auto consider = [&](Id segment, Id point)
+  const auto consider = [&](Id segment, const std::vector<Id>& points)
   {
     const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
     const Vec3& a = this->Points[ends[0]];
     const Vec3& b = this->Points[ends[1]];
-    const double depth = Distance(this->Points[point], 0.5 * (a + b)) / Distance(a, b);
-    if (point != ends[0] && point != ends[1] && depth < bestDepth &&
-      InDiametralSphere(a, b, this->Points[point]) >= 0)
+    const Vec3 middle = 0.5 * (a + b);
+    const double unit = 1.0 / SquaredNorm(b - a);
+    for (Id point : points)
     {
-      bestSegment = segment;
-      bestPoint = point;
-      bestDepth = depth;
+      const double depth = unit * SquaredNorm(this->Points[point] - middle);
+      if (point != ends[0] && point != ends[1] && depth < bestDepth &&
+        InDiametralSphere(a, b, this->Points[point]) >= 0)
+      {
+        bestSegment = segment;
+        bestPoint = point;
+        bestDepth = depth;
+      }
     }
   };
   for (int i = 0; i < 3; ++i)
@@ -987,18 +1165,9 @@ bool SurfaceRefiner::ResolveByEdge(Id t)
     const Id segment = this->Surface->GetSegmentAt(t, i);
     if (segment != NoId)
     {
-      for (Id point : this->Found.InsideSmallestSphere)
-      {
-        consider(segment, point);
-      }
-      for (Id point : this->Found.OnSmallestSphere)
-      {
-        consider(segment, point);
-      }
-      for (Id point : this->Found.Cocircular)
-      {
-        consider(segment, point);
-      }
+      consider(segment, this->Found.InsideSmallestSphere);
+      consider(segment, this->Found.OnSmallestSphere);
+      consider(segment, this->Found.Cocircular);
     }
   }
   if (bestSegment == NoId)
@@ -1008,7 +1177,7 @@ bool SurfaceRefiner::ResolveByEdge(Id t)
       const Id segment = this->Surface->GetSegmentAt(t, i);
       if (segment != NoId)
       {
-        consider(segment, this->Surface->GetApex(3 * t + i));
+        consider(segment, { this->Surface->GetApex(3 * t + i) });
       }
     }
   }
@@ -1022,16 +1191,14 @@ bool SurfaceRefiner::RotateAboutAxis(Id t, Id disturbing, Vec3& target) const
   const Vec3 center = GetCircumcenter(this->Points[triangle.Points[0]],
     this->Points[triangle.Points[1]], this->Points[triangle.Points[2]]);
   double nearest = Infinity;
-  for (Id facet : this->PointFacets[disturbing])
+  for (Id facet : this->GetFacets(disturbing))
   {
-    const auto axes =
-      this->Axes.find({ std::min(facet, triangle.Facet), std::max(facet, triangle.Facet) });
-    if (facet == triangle.Facet || axes == this->Axes.end())
+    const std::uint64_t pair = GetFacetPair(facet, triangle.Facet);
+    for (auto place = std::lower_bound(
+           this->Axes.begin(), this->Axes.end(), std::pair<std::uint64_t, Id>(pair, 0));
+         place != this->Axes.end() && place->first == pair; ++place)
     {
-      continue;
-    }
-    for (const EdgeIds& axis : axes->second)
-    {
+      const EdgeIds& axis = this->Surface->GetInputEdges()[place->second];
       const Vec3& begin = this->Points[axis[0]];
       const Vec3 direction =
         (1.0 / Distance(begin, this->Points[axis[1]])) * (this->Points[axis[1]] - begin);
@@ -1051,21 +1218,13 @@ bool SurfaceRefiner::RotateAboutAxis(Id t, Id disturbing, Vec3& target) const
 bool SurfaceRefiner::RotateAboutCorner(Id t, Id disturbing, Vec3& target) const
 {
   const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
-  if (static_cast<std::size_t>(triangle.Facet) >= this->FacetCorners.size())
-  {
-    return false;
-  }
-  const std::vector<Id>& corners = this->FacetCorners[triangle.Facet];
+  const IdLists::Range corners = this->FacetCorners[triangle.Facet];
   const Vec3& p = this->Points[disturbing];
   double nearest = Infinity;
   Id corner = NoId;
-  for (Id facet : this->PointFacets[disturbing])
+  for (Id facet : this->GetFacets(disturbing))
   {
-    if (static_cast<std::size_t>(facet) >= this->FacetCorners.size())
-    {
-      continue;
-    }
-    const std::vector<Id>& others = this->FacetCorners[facet];
+    const IdLists::Range others = this->FacetCorners[facet];
     const bool isSmaller = others.size() < corners.size();
     for (Id candidate : isSmaller ? others : corners)
     {
@@ -1116,7 +1275,7 @@ bool SurfaceRefiner::ProjectOntoFacet(Id t, Id disturbing, Vec3& target) const
   target = p - height * unit;
   double best = 0.0;
   Vec3 other;
-  for (Id facet : this->PointFacets[disturbing])
+  for (Id facet : this->GetFacets(disturbing))
   {
     const Vec3& candidate = this->FacetNormals[facet];
     const double cosine = Dot(candidate, unit);
@@ -1149,7 +1308,7 @@ Vec3 SurfaceRefiner::MatchAcross(Id t, Id disturbing, const Vec3& position, doub
   const Vec3& own = this->FacetNormals[this->Surface->GetTriangle(t).Facet];
   Vec3 across;
   double best = 0.5;
-  for (Id facet : this->PointFacets[disturbing])
+  for (Id facet : this->GetFacets(disturbing))
   {
     const double cosine = Dot(this->FacetNormals[facet], own);
     if (std::abs(cosine) > best)
@@ -1172,6 +1331,48 @@ Vec3 SurfaceRefiner::MatchAcross(Id t, Id disturbing, const Vec3& position, doub
       z -= along * across.Z;
       return std::sqrt(x * x + y * y + z * z);
     });
+}
+
+/**
+ * A segment whose diametral sphere holds a position, among those around the triangles whose smallest
+ * spheres hold it, too: these are the triangles that a point there would replace.
+ */
+Id SurfaceRefiner::FindEncroachedSegment(Id t, const Vec3& position)
+{
+  const RefinableSurface& surface = *this->Surface;
+  this->IsInCavity.resize(surface.GetNumberOfTriangles(), 0);
+  std::vector<Id> cavity(1, t);
+  this->IsInCavity[t] = 1;
+  Id found = NoId;
+  for (std::size_t i = 0; i < cavity.size() && found == NoId && cavity.size() < LargestCavity; ++i)
+  {
+    for (Id adjacent : surface.GetTriangle(cavity[i]).Adjacent)
+    {
+      if (adjacent < 0)
+      {
+        const EdgeIds& ends = surface.GetSegment(-1 - adjacent).Points;
+        if (InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], position) >= 0)
+        {
+          found = -1 - adjacent;
+          break;
+        }
+        continue;
+      }
+      const TriangleIds& ids = surface.GetTriangle(adjacent / 3).Points;
+      if (!this->IsInCavity[adjacent / 3] &&
+        InEquatorialSphere(
+          this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]], position) >= 0)
+      {
+        this->IsInCavity[adjacent / 3] = 1;
+        cavity.push_back(adjacent / 3);
+      }
+    }
+  }
+  for (Id triangle : cavity)
+  {
+    this->IsInCavity[triangle] = 0;
+  }
+  return found;
 }
 
 bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMirrored)
@@ -1272,36 +1473,17 @@ bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMir
   }
 
   // A point that would disturb an edge of the facet must not be made: split the edge instead.
-  std::vector<Id> cavity(1, current);
-  for (std::size_t i = 0; i < cavity.size() && cavity.size() < 1000; ++i)
+  const Id encroached = this->FindEncroachedSegment(current, position);
+  if (encroached != NoId)
   {
-    for (int e = 0; e < 3; ++e)
-    {
-      const Id adjacent = surface.GetTriangle(cavity[i]).Adjacent[e];
-      if (adjacent < 0)
-      {
-        const EdgeIds& ends = surface.GetSegment(-1 - adjacent).Points;
-        if (InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], position) >= 0)
-        {
-          return this->SplitSegment(-1 - adjacent, isMirrored ? disturbing : NoId);
-        }
-        continue;
-      }
-      const TriangleIds& ids = surface.GetTriangle(adjacent / 3).Points;
-      if (std::find(cavity.begin(), cavity.end(), adjacent / 3) == cavity.end() &&
-        InEquatorialSphere(
-          this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]], position) >= 0)
-      {
-        cavity.push_back(adjacent / 3);
-      }
-    }
+    return this->SplitSegment(encroached, isMirrored ? disturbing : NoId);
   }
 
   const TriangleIds ids = surface.GetTriangle(current).Points;
   const Vec3 weights = GetBarycentricWeights(
     position, this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]);
   const PointParents parents{ ids, { weights.X, weights.Y, weights.Z } };
-  const Id point = this->AddPoint(position, parents, { surface.GetTriangle(current).Facet });
+  const Id point = this->AddPoint(position, parents, surface.GetTriangle(current).Facet, NoId);
   ++this->Output.Report.FacetPoints;
   std::vector<Id> uses;
   if (place.first == NoId)
@@ -1347,7 +1529,7 @@ bool SurfaceRefiner::SplitLongestEdge(Id t)
       this->Surface->CanSplitSmoothEdge(use, position))
     {
       const PointParents parents{ { ends[0], ends[1], NoId }, { 1.0 - weight, weight, 0.0 } };
-      const Id point = this->AddPoint(position, parents, { this->Surface->GetTriangle(t).Facet });
+      const Id point = this->AddPoint(position, parents, this->Surface->GetTriangle(t).Facet, NoId);
       ++this->Output.Report.FacetPoints;
       std::vector<Id> uses;
       this->Surface->SplitSmoothEdge(use, point, uses);
@@ -1417,40 +1599,9 @@ void SurfaceRefiner::Process(Id t)
   if (this->IsGood(t))
   {
     this->Proofs.Set(t, this->Found.ProofCenter, this->Found.ProofRadius);
-    if (this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges)
-    {
-      for (int i = 0; i < 3; ++i)
-      {
-        segment = this->Surface->GetSegmentAt(t, i);
-        if (segment == NoId)
-        {
-          continue;
-        }
-        const EdgeIds ends = this->Surface->GetSegment(segment).Points;
-        DiametralSphereVisitor visitor(this->Points, ends);
-        this->Octree.Visit(visitor);
-        if (visitor.Found != NoId)
-        {
-          if (this->SplitSegment(segment, visitor.Found))
-          {
-            this->Enqueue(t);
-          }
-          else
-          {
-            this->IsUnresolved[t] = 1;
-          }
-          return;
-        }
-        // The proof has to cover the spheres of the edges as well.
-        const Vec3 middle = 0.5 * (this->Points[ends[0]] + this->Points[ends[1]]);
-        this->Found.ProofRadius = std::max(this->Found.ProofRadius,
-          Distance(middle, this->Found.ProofCenter) +
-            0.5 * Distance(this->Points[ends[0]], this->Points[ends[1]]) * (1.0 + 1e-6));
-      }
-      this->Proofs.Set(t, this->Found.ProofCenter, this->Found.ProofRadius);
-    }
     if (this->FindTooCoarse(t, segment))
     {
+      this->CollectIncidences();
       // Too coarse is no fault: if a limit forbids to refine, the triangle stays as it is.
       const bool isRefined = segment != NoId
         ? this->SplitSegment(segment, NoId)
@@ -1463,6 +1614,7 @@ void SurfaceRefiner::Process(Id t)
     return;
   }
   this->Proofs.Remove(t);
+  this->CollectIncidences();
   if (this->ResolveByFlip(t))
   {
     return;
@@ -1490,25 +1642,75 @@ void SurfaceRefiner::Process(Id t)
   this->IsUnresolved[t] = 1;
 }
 
+void SurfaceRefiner::EnqueueEdge(Id segment)
+{
+  const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
+  this->EdgeQueue.emplace_back(Distance(this->Points[ends[0]], this->Points[ends[1]]), segment);
+  std::push_heap(this->EdgeQueue.begin(), this->EdgeQueue.end(), std::greater<>());
+}
+
+/**
+ * Edges whose diametral spheres have to be empty come before any triangle: facets are refined from a
+ * fine enough outline. The shortest first: what it needs is given by the surface around it, and the
+ * partners of its points are the points that longer edges need.
+ */
+void SurfaceRefiner::ProcessEdge()
+{
+  std::pop_heap(this->EdgeQueue.begin(), this->EdgeQueue.end(), std::greater<>());
+  const auto [length, segment] = this->EdgeQueue.back();
+  this->EdgeQueue.pop_back();
+  const EdgeIds ends = this->Surface->GetSegment(segment).Points;
+  const Vec3 a = this->Points[ends[0]];
+  const Vec3 b = this->Points[ends[1]];
+  if (length != Distance(a, b))
+  {
+    // It has been split since, and both pieces are in the queue.
+    return;
+  }
+  DiametralSphereVisitor visitor(this->Points, ends);
+  this->Octree.Visit(visitor);
+  if (visitor.Found == NoId)
+  {
+    this->EmptyEdges.Set(segment, 0.5 * (a + b), 0.5 * length * (1.0 + 1e-6));
+    return;
+  }
+  this->CollectIncidences();
+  if (this->IsFull() || !this->SplitSegment(segment, visitor.Found))
+  {
+    this->IsDisturbed.resize(this->Surface->GetNumberOfSegments(), 0);
+    this->IsDisturbed[segment] = 1;
+  }
+}
+
 Status SurfaceRefiner::Refine()
 {
   const ExecutionContext part = this->Context.Part(0.1, 0.95);
-  std::size_t steps = 0;
-  while (!this->Queue.empty())
+  for (Id segment = 0; this->AreEdgesTested() && segment < this->Surface->GetNumberOfSegments();
+       ++segment)
   {
-    if (steps++ % ReportInterval == 0)
+    this->EnqueueEdge(segment);
+  }
+  for (std::size_t steps = 0; !this->EdgeQueue.empty() || !this->Queue.empty(); ++steps)
+  {
+    if (steps % ReportInterval == 0)
     {
       const double done = static_cast<double>(steps);
-      const double left = static_cast<double>(this->Queue.size());
+      const double left = static_cast<double>(this->EdgeQueue.size() + this->Queue.size());
       if (!part.Continue(done / (done + left), "Refining the surface"))
       {
         return Status::Aborted();
       }
     }
-    const Id t = this->Queue.front();
-    this->Queue.pop_front();
+    if (!this->EdgeQueue.empty())
+    {
+      this->ProcessEdge();
+      continue;
+    }
+    std::pop_heap(this->Queue.begin(), this->Queue.end(), std::greater<>());
+    const Id t = this->Queue.back().second;
+    this->Queue.pop_back();
     this->IsQueued[t] = 0;
-    if (static_cast<Id>(this->Output.NewPoints.size()) >= this->MaximumNewPoints)
+    if (this->IsFull())
     {
       this->IsUnresolved[t] = !this->IsGood(t);
       continue;
@@ -1570,10 +1772,18 @@ Status SurfaceRefiner::Finish()
       { { std::min(a, b), std::max(a, b) }, segment.Kind, segment.Chain, segment.DihedralAngle });
   }
   std::sort(this->Output.StructuralEdges.begin(), this->Output.StructuralEdges.end(),
-    [](const StructuralEdge& x, const StructuralEdge& y) { return x.Points < y.Points; });
+    [](const StructuralEdge& x, const StructuralEdge& y)
+    { return x.Points[0] != y.Points[0] ? x.Points[0] < y.Points[0] : x.Points[1] < y.Points[1]; });
+  this->IsDisturbed.resize(this->Surface->GetNumberOfSegments(), 0);
   for (Id t = 0; t < static_cast<Id>(this->IsUnresolved.size()); ++t)
   {
-    if (this->IsUnresolved[t])
+    bool isUnresolved = this->IsUnresolved[t] != 0;
+    for (int i = 0; i < 3; ++i)
+    {
+      const Id segment = this->Surface->GetSegmentAt(t, i);
+      isUnresolved = isUnresolved || (segment != NoId && this->IsDisturbed[segment] != 0);
+    }
+    if (isUnresolved)
     {
       this->Output.UnresolvedTriangles.push_back(t);
     }

@@ -11,7 +11,8 @@
  * Method (thesis 6.3):
  *  1. find the structural edges (Def. 6.2), flip to saturation (recursive triangle flip, Def. 6.1);
  *  2. test each triangle by the chosen criterion, with the double sphere (Crit. 6.1) in at most two
- *     searches of the point octree, and remember the sphere that proves it;
+ *     searches of the point octree, and remember the sphere that proves it. For criterion 3.2 the
+ *     structural edges come before all triangles, the shortest first, then the smallest triangle;
  *  3. for a triangle that fails: flip; or split the structural edge that is disturbed at the foot or
  *     the partner of the disturbing point (types P and R); or mirror the disturbing point into the
  *     triangle's facet, about the edge or corner where the facets meet or along the normal; or
@@ -26,6 +27,7 @@
  * stay bad because a limit stops the refinement are listed in UnresolvedTriangles: never silently.
  * Cost: a triangle that is Delaunay takes one search of the octree, O(log n); a new point takes a few
  * searches and one query of the spheres that prove the other triangles. About 350 bytes per triangle.
+ * Measured in Testing/Benchmarks/Surface.md.
  */
 #ifndef cdmDelaunaySurfaceRefiner_h
 #define cdmDelaunaySurfaceRefiner_h
@@ -66,7 +68,11 @@ struct DelaunaySurfaceRefinerOptions
   double MeshPointClearanceRatio = 1e-3;
   /** No edge is made shorter than this ratio of the diagonal. >= 0. */
   double MinimumEdgeRatio = 1e-9;
-  /** The refinement stops when it has made so many points. 0: no limit. */
+  /**
+   * The refinement stops when it has made so many points. 0: 50 for each triangle, at least 20000,
+   * or 1000000 where sizes or angles are asked for, and one for each mesh point. Surfaces that need
+   * more are hardly meant: sheets a hair apart that run into each other.
+   */
   Id MaximumNewPoints = 0;
 };
 

@@ -190,6 +190,8 @@ private:
   const Id Infinite;
   const ExecutionContext& Context;
   DelaunayTetrahedralization& Output;
+  /** What was reported last. */
+  double Progress = 0.0;
 
   /** Determinants whose error bound is below these have no error. */
   double ExactSideBound = 0.0;
@@ -750,8 +752,10 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
   const double begin = static_cast<double>(this->Output.Tetrahedra.size()) / 6.8;
   const auto report = [&](std::size_t done)
   {
-    return this->Context.Continue(
-      std::min(0.99, (begin + static_cast<double>(done)) / this->Infinite), Activity);
+    // What a round will make is an estimate: it must not go back from what the last one has made.
+    this->Progress = std::max(
+      this->Progress, std::min(0.99, (begin + static_cast<double>(done)) / this->Infinite));
+    return this->Context.Continue(this->Progress, Activity);
   };
   std::vector<Id> left(vertices);
   // Two cuts of the curve for the threads, then all of it for one.

@@ -2,22 +2,40 @@
 #include "DuplicateTriangles.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace cdm
 {
 std::vector<DuplicateTriangle> FindDuplicateTriangles(const std::vector<TriangleIds>& triangles)
 {
+  // Into one bin for each smallest point first; few triangles are left to compare.
   std::vector<TriangleIds> sorted = triangles;
+  Id numberOfPoints = 0;
   for (TriangleIds& t : sorted)
   {
     std::sort(t.begin(), t.end());
+    numberOfPoints = std::max(numberOfPoints, t[2] + 1);
+  }
+  std::vector<Id> begin(static_cast<std::size_t>(numberOfPoints) + 1, 0);
+  for (const TriangleIds& t : sorted)
+  {
+    ++begin[t[0] + 1];
+  }
+  for (Id i = 0; i < numberOfPoints; ++i)
+  {
+    begin[i + 1] += begin[i];
   }
   std::vector<Id> order(triangles.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-    [&sorted](Id a, Id b) { return sorted[a] != sorted[b] ? sorted[a] < sorted[b] : a < b; });
+  std::vector<Id> next(begin.begin(), begin.end() - 1);
+  for (std::size_t t = 0; t < sorted.size(); ++t)
+  {
+    order[next[sorted[t][0]]++] = static_cast<Id>(t);
+  }
+  for (Id i = 0; i < numberOfPoints; ++i)
+  {
+    std::sort(order.begin() + begin[i], order.begin() + begin[i + 1],
+      [&sorted](Id a, Id b) { return sorted[a] != sorted[b] ? sorted[a] < sorted[b] : a < b; });
+  }
   std::vector<DuplicateTriangle> duplicates;
   Id first = NoId;
   for (const Id t : order)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace cdm
@@ -10,19 +11,6 @@ namespace cdm
 namespace
 {
 constexpr Id LeafSize = 8;
-
-/**
- * Relative error of a coefficient rounded to double and of the few operations on it: less than 16
- * units in the last place.
- */
-constexpr double RoundingBound = 0x1p-49;
-
-/**
- * Absolute error of the coefficients before they are rounded, and of what is made of them in twice
- * the working precision: sums of fewer than 60 products that are below 20 in units of Size and of
- * the point's distance, each off by less than 2^-100.
- */
-constexpr double WideBound = 0x1p-88;
 
 /** Unevaluated sum of two doubles (T. J. Dekker, 1971, doi:10.1007/BF01397083). */
 struct Wide
@@ -136,6 +124,7 @@ SphereForm::SphereForm(const Vec3& a, const Vec3& b)
   const WideVec3 edge = SubtractExactly(b, a, 1.0);
   this->Gradient = GetHigh(edge);
   this->GradientRest = GetLow(edge);
+  this->FindCenter();
 }
 
 SphereForm::SphereForm(const Vec3& a, const Vec3& b, const Vec3& c)
@@ -150,6 +139,7 @@ SphereForm::SphereForm(const Vec3& a, const Vec3& b, const Vec3& c)
   this->CurvatureRest = curvature.Low;
   this->Gradient = this->Size * GetHigh(gradient);
   this->GradientRest = this->Size * GetLow(gradient);
+  this->FindCenter();
 }
 
 SphereForm::SphereForm(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
@@ -174,39 +164,28 @@ SphereForm::SphereForm(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& 
   }
   this->Gradient = this->Size * GetHigh(gradient);
   this->GradientRest = this->Size * GetLow(gradient);
+  this->FindCenter();
 }
 
-bool SphereForm::MayTouch(const Vec3& lower, const Vec3& upper) const
+void SphereForm::FindCenter()
 {
-  double smallest = 0.0;
-  double error = 0.0;
+  // Without curvature the parabolas are straight lines, with their lowest point infinitely far.
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double begin = lower[axis] - this->Origin[axis];
-    const double end = upper[axis] - this->Origin[axis];
     const double gradient = this->Gradient[axis];
-    // The parabola's lowest point, or the lower end of the straight line that it is without
-    // curvature.
-    double lowest = gradient > 0.0 ? end : begin;
-    if (this->Curvature > 0.0)
-    {
-      lowest = std::min(std::max(gradient / (2.0 * this->Curvature), begin), end);
-    }
-    smallest += lowest * (this->Curvature * lowest - gradient);
-    const double reach = std::max(std::abs(begin), std::abs(end));
-    error += reach *
-      (RoundingBound * (this->Curvature * reach + std::abs(gradient)) +
-        WideBound * (reach + this->Size));
+    this->Center[axis] = this->Curvature > 0.0 ? gradient / (2.0 * this->Curvature)
+      : gradient > 0.0                         ? std::numeric_limits<double>::infinity()
+                                               : -std::numeric_limits<double>::infinity();
   }
-  // In this form a result that is not a number counts as touched.
-  return !(smallest > error);
 }
 
 int SphereForm::GetSide(const Vec3& point) const
 {
-  if (!this->MayTouch(point, point))
+  double roundedError;
+  const double rounded = this->GetSmallest(point, point, roundedError);
+  if (std::abs(rounded) > roundedError)
   {
-    return -1;
+    return rounded > 0.0 ? -1 : 1;
   }
   const WideVec3 offset = SubtractExactly(point, this->Origin, 1.0);
   const WideVec3 gradient{ { this->Gradient.X, this->GradientRest.X },

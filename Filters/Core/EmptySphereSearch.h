@@ -50,6 +50,23 @@ public:
   int GetSide(const Vec3& point) const;
 
 private:
+  /**
+   * Relative error of a coefficient rounded to double and of the few operations on it: less than 16
+   * units in the last place.
+   */
+  static constexpr double RoundingBound = 0x1p-49;
+
+  /**
+   * Absolute error of the coefficients before they are rounded, and of what is made of them in twice
+   * the working precision: sums of fewer than 60 products that are below 20 in units of Size and of
+   * the point's distance, each off by less than 2^-100.
+   */
+  static constexpr double WideBound = 0x1p-88;
+
+  void FindCenter();
+  /** The smallest value of g in a box, and how far off it may be. */
+  double GetSmallest(const Vec3& lower, const Vec3& upper, double& error) const;
+
   Vec3 Origin;
   /** Length by which the polynomials are scaled: a power of two near the size of the simplex. */
   double Size = 1.0;
@@ -59,7 +76,36 @@ private:
   /** 2 D (c - a), likewise. */
   Vec3 Gradient;
   Vec3 GradientRest;
+  /** The center relative to Origin: along each axis where g is smallest. */
+  Vec3 Center;
 };
+
+inline double SphereForm::GetSmallest(const Vec3& lower, const Vec3& upper, double& error) const
+{
+  double smallest = 0.0;
+  error = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double begin = lower[axis] - this->Origin[axis];
+    const double end = upper[axis] - this->Origin[axis];
+    const double gradient = this->Gradient[axis];
+    const double lowest = std::min(std::max(this->Center[axis], begin), end);
+    smallest += lowest * (this->Curvature * lowest - gradient);
+    const double reach = std::max(std::abs(begin), std::abs(end));
+    error += reach *
+      (RoundingBound * (this->Curvature * reach + std::abs(gradient)) +
+        WideBound * (reach + this->Size));
+  }
+  return smallest;
+}
+
+inline bool SphereForm::MayTouch(const Vec3& lower, const Vec3& upper) const
+{
+  double error;
+  const double smallest = this->GetSmallest(lower, upper, error);
+  // In this form a result that is not a number counts as touched.
+  return !(smallest > error);
+}
 
 class EmptySphereSearch
 {

@@ -11,15 +11,8 @@ RefinableSurface::RefinableSurface(const TriangleMesh& surface,
   const std::vector<StructuralEdge>& edges, const std::vector<Vec3>& points)
   : Points(points)
 {
-  struct Use
-  {
-    EdgeIds Edge;
-    Id Index;
-  };
-  std::vector<Use> uses;
   const Id count = static_cast<Id>(surface.Triangles.size());
   this->Triangles.resize(surface.Triangles.size());
-  uses.reserve(3 * surface.Triangles.size());
   for (Id t = 0; t < count; ++t)
   {
     Triangle& triangle = this->Triangles[t];
@@ -29,48 +22,52 @@ RefinableSurface::RefinableSurface(const TriangleMesh& surface,
     {
       triangle.Labels = surface.Labels[t];
     }
-    for (int i = 0; i < 3; ++i)
-    {
-      const Id a = triangle.Points[i];
-      const Id b = triangle.Points[(i + 1) % 3];
-      uses.push_back({ { std::min(a, b), std::max(a, b) }, 3 * t + i });
-    }
   }
-  std::sort(uses.begin(), uses.end(), [](const Use& x, const Use& y) {
-    return x.Edge != y.Edge ? x.Edge < y.Edge : x.Index < y.Index;
-  });
+  const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
   std::size_t next = 0;
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end)
   {
+    const EdgeIds points = uses[begin].GetPoints();
     while (end < uses.size() && uses[end].Edge == uses[begin].Edge)
     {
       ++end;
     }
-    while (next < edges.size() && edges[next].Points < uses[begin].Edge)
+    while (next < edges.size() && edges[next].Points < points)
     {
       ++next;
     }
-    if (next < edges.size() && edges[next].Points == uses[begin].Edge)
+    if (next < edges.size() && edges[next].Points == points)
     {
-      const StructuralEdge& edge = edges[next];
-      this->Segments.push_back({ edge.Points, edge.Kind, edge.Chain, edge.DihedralAngle,
-        static_cast<Id>(this->InputEdges.size()), {} });
-      this->InputEdges.push_back(edge.Points);
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        this->Segments.back().Uses.push_back(uses[i].Index);
-        this->Triangles[uses[i].Index / 3].Adjacent[uses[i].Index % 3] =
-          -static_cast<Id>(this->Segments.size());
-      }
+      this->AddInputEdge(edges[next], uses.data() + begin, static_cast<Id>(end - begin));
     }
     else
     {
-      this->Triangles[uses[begin].Index / 3].Adjacent[uses[begin].Index % 3] = uses[begin + 1].Index;
-      this->Triangles[uses[begin + 1].Index / 3].Adjacent[uses[begin + 1].Index % 3] =
-        uses[begin].Index;
+      const Id first = uses[begin].Use;
+      const Id second = uses[begin + 1].Use;
+      this->Triangles[first / 3].Adjacent[first % 3] = second;
+      this->Triangles[second / 3].Adjacent[second % 3] = first;
     }
   }
   this->MakeFacets();
+}
+
+void RefinableSurface::AddInputEdge(const StructuralEdge& edge, const EdgeUse* uses, Id count)
+{
+  this->Segments.push_back({ edge.Points, edge.Kind, edge.Chain, edge.DihedralAngle,
+    static_cast<Id>(this->InputEdges.size()), static_cast<Id>(this->SegmentUses.size()), count });
+  this->InputEdges.push_back(edge.Points);
+  for (Id i = 0; i < count; ++i)
+  {
+    const Id use = uses[i].Use;
+    this->SegmentUses.push_back(use);
+    this->Triangles[use / 3].Adjacent[use % 3] = -static_cast<Id>(this->Segments.size());
+  }
+}
+
+void RefinableSurface::ReplaceUse(Id segment, Id former, Id use)
+{
+  Id* const first = this->SegmentUses.data() + this->Segments[segment].FirstUse;
+  *std::find(first, first + this->Segments[segment].NumberOfUses, former) = use;
 }
 
 void RefinableSurface::TurnTriangle(Id t)
@@ -92,17 +89,18 @@ void RefinableSurface::TurnTriangle(Id t)
     else
     {
       // Marked, since both edges could lie at one segment.
-      std::vector<Id>& uses = this->Segments[-1 - adjacent].Uses;
-      *std::find(uses.begin(), uses.end(), formerUse) = -2 - (3 * t + i);
+      this->ReplaceUse(-1 - adjacent, formerUse, -2 - (3 * t + i));
     }
   }
   for (int i = 0; i < 3; i += 2)
   {
     if (triangle.Adjacent[i] < 0)
     {
-      for (Id& use : this->Segments[-1 - triangle.Adjacent[i]].Uses)
+      const Segment& segment = this->Segments[-1 - triangle.Adjacent[i]];
+      for (Id u = segment.FirstUse; u < segment.FirstUse + segment.NumberOfUses; ++u)
       {
-        use = use <= -2 ? -2 - use : use;
+        this->SegmentUses[u] =
+          this->SegmentUses[u] <= -2 ? -2 - this->SegmentUses[u] : this->SegmentUses[u];
       }
     }
   }
@@ -133,8 +131,7 @@ void RefinableSurface::MakeFacets()
         }
         const Id other = use / 3;
         const bool isNew = this->Triangles[other].Facet == NoId;
-        const bool isAlike =
-          this->Triangles[other].Points[use % 3] != this->Triangles[t].Points[i];
+        const bool isAlike = this->Triangles[other].Points[use % 3] != this->Triangles[t].Points[i];
         if (isNew)
         {
           this->Triangles[other].Facet = this->Triangles[t].Facet;
@@ -149,11 +146,13 @@ void RefinableSurface::MakeFacets()
           // The facet is one-sided (a Moebius strip): cut it open here.
           const Id a = this->Triangles[t].Points[i];
           const Id b = this->Triangles[t].Points[(i + 1) % 3];
-          this->Segments.push_back({ { std::min(a, b), std::max(a, b) }, StructuralEdgeKind::Sharp,
-            NoId, 180.0, static_cast<Id>(this->InputEdges.size()), { 3 * t + i, use } });
-          this->InputEdges.push_back(this->Segments.back().Points);
-          this->Triangles[t].Adjacent[i] = -static_cast<Id>(this->Segments.size());
-          this->Triangles[other].Adjacent[use % 3] = -static_cast<Id>(this->Segments.size());
+          StructuralEdge cut;
+          cut.Points = { std::min(a, b), std::max(a, b) };
+          cut.Kind = StructuralEdgeKind::Sharp;
+          cut.Chain = NoId;
+          cut.DihedralAngle = 180.0;
+          const EdgeUse uses[2] = { { 0, 3 * t + i }, { 0, use } };
+          this->AddInputEdge(cut, uses, 2);
         }
       }
     }
@@ -163,9 +162,10 @@ void RefinableSurface::MakeFacets()
 std::vector<Id> RefinableSurface::GetFacets(Id segment) const
 {
   std::vector<Id> facets;
-  for (Id use : this->Segments[segment].Uses)
+  const Segment& at = this->Segments[segment];
+  for (Id u = at.FirstUse; u < at.FirstUse + at.NumberOfUses; ++u)
   {
-    facets.push_back(this->Triangles[use / 3].Facet);
+    facets.push_back(this->Triangles[this->SegmentUses[u] / 3].Facet);
   }
   std::sort(facets.begin(), facets.end());
   facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
@@ -195,12 +195,12 @@ bool RefinableSurface::IsConvex(Id use) const
   const Vec3& c = this->Points[this->GetApex(use)];
   const Vec3& d = this->Points[this->GetApex(other)];
   // The normal of the larger triangle counts: that of a needle may be noise.
-  const bool isOtherLarger =
-    SquaredNorm(Cross(a - b, d - b)) > SquaredNorm(Cross(b - a, c - a));
+  const bool isOtherLarger = SquaredNorm(Cross(a - b, d - b)) > SquaredNorm(Cross(b - a, c - a));
   int turn = 0;
   const int axis = this->GetProjectionAxis(isOtherLarger ? other / 3 : use / 3, turn);
-  return turn != 0 && ProjectedOrientation(axis, a, b, c) == turn && ProjectedOrientation(axis, b, a, d) == turn &&
-    ProjectedOrientation(axis, a, d, c) == turn && ProjectedOrientation(axis, d, b, c) == turn;
+  return turn != 0 && ProjectedOrientation(axis, a, b, c) == turn &&
+    ProjectedOrientation(axis, b, a, d) == turn && ProjectedOrientation(axis, a, d, c) == turn &&
+    ProjectedOrientation(axis, d, b, c) == turn;
 }
 
 void RefinableSurface::Connect(Id use, Id adjacent, Id formerUse)
@@ -212,8 +212,7 @@ void RefinableSurface::Connect(Id use, Id adjacent, Id formerUse)
   }
   else
   {
-    std::vector<Id>& uses = this->Segments[-1 - adjacent].Uses;
-    *std::find(uses.begin(), uses.end(), formerUse) = use;
+    this->ReplaceUse(-1 - adjacent, formerUse, use);
   }
 }
 
@@ -247,8 +246,7 @@ void RefinableSurface::Flip(Id use)
   {
     if (beyond < 0)
     {
-      std::vector<Id>& uses = this->Segments[-1 - beyond].Uses;
-      *std::find(uses.begin(), uses.end(), former) += offset;
+      this->ReplaceUse(-1 - beyond, former, former + offset);
     }
   }
   this->Connect(3 * t + 0, beyondAD, useAD + offset);
@@ -293,8 +291,8 @@ bool RefinableSurface::CanSplitUse(Id use, const Vec3& position) const
 
 bool RefinableSurface::CanSplitSegment(Id segment, const Vec3& position) const
 {
-  const std::vector<Id>& uses = this->Segments[segment].Uses;
-  return std::all_of(uses.begin(), uses.end(),
+  const Id* const first = this->SegmentUses.data() + this->Segments[segment].FirstUse;
+  return std::all_of(first, first + this->Segments[segment].NumberOfUses,
     [this, &position](Id use) { return this->CanSplitUse(use, position); });
 }
 
@@ -310,20 +308,22 @@ void RefinableSurface::SplitSegment(Id segment, Id point, std::vector<Id>& uses)
   const Id added = this->GetNumberOfSegments();
   Segment rest = this->Segments[segment];
   const Id first = rest.Points[0];
-  const std::vector<Id> oldUses = std::move(rest.Uses);
-  rest.Uses.clear();
+  const Id nearUses = rest.FirstUse;
+  const Id farUses = static_cast<Id>(this->SegmentUses.size());
   rest.Points[0] = point;
+  rest.FirstUse = farUses;
   this->Segments.push_back(rest);
   this->Segments[segment].Points[1] = point;
-  this->Segments[segment].Uses.clear();
-  for (Id use : oldUses)
+  this->SegmentUses.resize(this->SegmentUses.size() + rest.NumberOfUses, NoId);
+  for (Id u = 0; u < rest.NumberOfUses; ++u)
   {
+    const Id use = this->SegmentUses[nearUses + u];
     const bool isForward = this->Triangles[use / 3].Points[use % 3] == first;
     const Id restUse = this->SplitUse(use, point);
     const Id near = isForward ? use : restUse;
     const Id far = isForward ? restUse : use;
-    this->Segments[segment].Uses.push_back(near);
-    this->Segments[added].Uses.push_back(far);
+    this->SegmentUses[nearUses + u] = near;
+    this->SegmentUses[farUses + u] = far;
     this->Triangles[near / 3].Adjacent[near % 3] = -1 - segment;
     this->Triangles[far / 3].Adjacent[far % 3] = -1 - added;
     // Opposite to the point: c-a of the old triangle, b-c of the new one.
@@ -381,8 +381,8 @@ void RefinableSurface::SplitSmoothEdge(Id use, Id point, std::vector<Id>& uses)
   const Id restOfOther = this->SplitUse(other, point);
   this->Connect(use, restOfOther, NoId);
   this->Connect(other, restOfUse, NoId);
-  uses = { 3 * (use / 3) + (use % 3 + 2) % 3, restOfUse + 1,
-    3 * (other / 3) + (other % 3 + 2) % 3, restOfOther + 1 };
+  uses = { 3 * (use / 3) + (use % 3 + 2) % 3, restOfUse + 1, 3 * (other / 3) + (other % 3 + 2) % 3,
+    restOfOther + 1 };
 }
 
 void RefinableSurface::Export(TriangleMesh& surface) const
@@ -401,4 +401,4 @@ void RefinableSurface::Export(TriangleMesh& surface) const
     surface.SourceCells.push_back(triangle.Source);
   }
 }
-}
+} // namespace cdm

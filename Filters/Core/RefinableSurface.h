@@ -9,12 +9,13 @@
  * its use.
  *
  * Invariants: Adjacent[i] of a triangle is the use at the other side of a smooth edge, whose
- * Adjacent points back, or -1 - s for segment s, one of whose Uses it then is. Triangles and
+ * Adjacent points back, or -1 - s for segment s, one of whose uses it then is. Triangles and
  * segments keep their index for ever: a split shrinks the old one and appends the rest.
  */
 #ifndef cdmRefinableSurface_h
 #define cdmRefinableSurface_h
 
+#include "EdgeUses.h"
 #include "StructuralEdges.h"
 #include "TriangleMesh.h"
 
@@ -46,7 +47,9 @@ public:
     double DihedralAngle;
     /** The input edge that the segment is a piece of: index into GetInputEdges(). */
     Id InputEdge;
-    std::vector<Id> Uses;
+    /** Its uses are side by side in one list of all; their number never changes. */
+    Id FirstUse;
+    Id NumberOfUses;
   };
 
   /** points is shared with the caller, who may append to it. */
@@ -107,6 +110,8 @@ public:
   void Export(TriangleMesh& surface) const;
 
 private:
+  void AddInputEdge(const StructuralEdge& edge, const EdgeUse* uses, Id count);
+  void ReplaceUse(Id segment, Id former, Id use);
   void Connect(Id use, Id adjacent, Id formerUse);
   bool CanSplitUse(Id use, const Vec3& position) const;
   Id SplitUse(Id use, Id point);
@@ -117,8 +122,9 @@ private:
   const std::vector<Vec3>& Points;
   std::vector<Triangle> Triangles;
   std::vector<Segment> Segments;
+  std::vector<Id> SegmentUses;
   std::vector<EdgeIds> InputEdges;
 };
-}
+} // namespace cdm
 
 #endif

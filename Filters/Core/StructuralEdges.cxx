@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "StructuralEdges.h"
 
+#include "EdgeUses.h"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -14,6 +16,11 @@ constexpr long double DegreesPerRadian = 57.295779513082320876798154814105L;
 
 /** Bend in degrees up to which rounded coordinates may pass for flat. */
 constexpr long double LargestRoundedBend = 1.0L;
+
+/** Normals of triangles whose sine of an angle is larger than this are good to 1e-8 in double. */
+constexpr double SmallestSafeSine = 1e-6;
+/** Far above the error of an angle between such normals. */
+constexpr double SafeAngle = 1e-5;
 
 /** How many loop steps pass between two calls of ExecutionContext::Continue(). */
 constexpr std::size_t ContinueInterval = 1 << 14;
@@ -80,22 +87,6 @@ bool IsZero(const WideVec3& a)
   return a.X == 0.0L && a.Y == 0.0L && a.Z == 0.0L;
 }
 
-/** A side of a triangle. */
-struct Side
-{
-  EdgeIds Points;
-  Id Triangle;
-  /** The triangle's vertex opposite to the side. */
-  Id Opposite;
-  /** Whether the triangle runs from the larger id to the smaller one. */
-  bool IsReversed;
-
-  friend bool operator<(const Side& a, const Side& b)
-  {
-    return a.Points != b.Points ? a.Points < b.Points : a.Triangle < b.Triangle;
-  }
-};
-
 Status CheckSurface(const TriangleMesh& surface)
 {
   const Id numberOfPoints = static_cast<Id>(surface.Points.size());
@@ -140,37 +131,25 @@ Status CheckSurface(const TriangleMesh& surface)
   return {};
 }
 
-std::vector<Side> CollectSides(const TriangleMesh& surface)
+/** The vertex of the triangle opposite to a use's edge. */
+const Vec3& GetOpposite(const TriangleMesh& surface, Id use)
 {
-  std::vector<Side> sides;
-  sides.reserve(3 * surface.Triangles.size());
-  for (Id triangle = 0; triangle < static_cast<Id>(surface.Triangles.size()); ++triangle)
-  {
-    const TriangleIds& ids = surface.Triangles[triangle];
-    for (int i = 0; i < 3; ++i)
-    {
-      const Id from = ids[i];
-      const Id to = ids[(i + 1) % 3];
-      sides.push_back(
-        { { std::min(from, to), std::max(from, to) }, triangle, ids[(i + 2) % 3], from > to });
-    }
-  }
-  std::sort(sides.begin(), sides.end());
-  return sides;
+  return surface.Points[surface.Triangles[use / 3][(use + 2) % 3]];
 }
 
 /** Smallest angle between neighbours among the triangles around one edge, in degrees. */
 double GetSmallestAngle(
-  const std::vector<Vec3>& points, const Side* begin, const Side* end, std::vector<double>& turns)
+  const TriangleMesh& surface, const EdgeUse* begin, const EdgeUse* end, std::vector<double>& turns)
 {
-  const Vec3& a = points[begin->Points[0]];
-  const Vec3& b = points[begin->Points[1]];
+  const EdgeIds ids = begin->GetPoints();
+  const Vec3& a = surface.Points[ids[0]];
+  const Vec3& b = surface.Points[ids[1]];
   const WideVec3 edge = Subtract(b, a);
-  const HalfPlane first = MakeHalfPlane(a, b, edge, points[begin->Opposite]);
-  turns.clear();
-  for (const Side* side = begin; side != end; ++side)
+  const HalfPlane first = MakeHalfPlane(a, b, edge, GetOpposite(surface, begin->Use));
+  turns.assign(1, 0.0);
+  for (const EdgeUse* use = begin + 1; use != end; ++use)
   {
-    const HalfPlane plane = MakeHalfPlane(a, b, edge, points[side->Opposite]);
+    const HalfPlane plane = MakeHalfPlane(a, b, edge, GetOpposite(surface, use->Use));
     turns.push_back(static_cast<double>(GetTurn(edge, first, plane)));
   }
   std::sort(turns.begin(), turns.end());
@@ -183,18 +162,18 @@ double GetSmallestAngle(
 }
 
 /** Whether the labels of two triangles at an edge differ, both seen in the same orientation. */
-bool HaveDifferentLabels(const TriangleMesh& surface, const Side& first, const Side& second)
+bool HaveDifferentLabels(const TriangleMesh& surface, Id first, Id second)
 {
   if (surface.Labels.empty())
   {
     return false;
   }
-  RegionPair label = surface.Labels[second.Triangle];
-  if (first.IsReversed == second.IsReversed)
+  RegionPair label = surface.Labels[second / 3];
+  if (surface.Triangles[first / 3][first % 3] == surface.Triangles[second / 3][second % 3])
   {
     std::swap(label.Front, label.Back);
   }
-  return surface.Labels[first.Triangle] != label;
+  return surface.Labels[first / 3] != label;
 }
 
 /** The points' structural edges, as one list with a range for each point. */
@@ -280,9 +259,36 @@ void TraceChains(std::size_t numberOfPoints, StructuralEdgesOutput& output)
 }
 } // namespace
 
+namespace
+{
+/** True only if the bend in degrees is larger than a limit: what double precision can tell. */
+bool IsSurelySharp(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double limit)
+{
+  const Vec3 edge = b - a;
+  const Vec3 u = c - a;
+  const Vec3 v = d - a;
+  const Vec3 first = Cross(edge, u);
+  const Vec3 second = Cross(v, edge);
+  const double square = SquaredNorm(edge);
+  const double smallest = SmallestSafeSine * SmallestSafeSine * square;
+  if (!(SquaredNorm(first) > smallest * SquaredNorm(u)) ||
+    !(SquaredNorm(second) > smallest * SquaredNorm(v)))
+  {
+    return false;
+  }
+  const double sine = Norm(Cross(first, second));
+  const double cosine = Dot(first, second);
+  return std::atan2(sine, cosine) * static_cast<double>(DegreesPerRadian) > limit + SafeAngle;
+}
+} // namespace
+
 bool IsSmoothEdge(
   const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double accuracyAngle, double flatness)
 {
+  if (IsSurelySharp(a, b, c, d, std::max(accuracyAngle, static_cast<double>(LargestRoundedBend))))
+  {
+    return false;
+  }
   const WideVec3 edge = Subtract(b, a);
   const HalfPlane first = MakeHalfPlane(a, b, edge, c);
   const HalfPlane second = MakeHalfPlane(a, b, edge, d);
@@ -340,27 +346,27 @@ Status ExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeO
     return status;
   }
   const double flatness = options.FlatnessRatio * GetBoundingBoxDiagonal(surface.Points);
-  const std::vector<Side> sides = CollectSides(surface);
+  const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
 
   std::vector<double> turns;
   std::size_t nextContinue = 0;
-  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end)
+  for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end)
   {
     if (begin >= nextContinue)
     {
       nextContinue = begin + ContinueInterval;
-      if (!context.Continue(static_cast<double>(begin) / sides.size(), "Judging edges"))
+      if (!context.Continue(static_cast<double>(begin) / uses.size(), "Judging edges"))
       {
         output = {};
         return Status::Aborted();
       }
     }
-    const Side& first = sides[begin];
-    for (end = begin + 1; end < sides.size() && sides[end].Points == first.Points; ++end)
+    const EdgeUse& first = uses[begin];
+    for (end = begin + 1; end < uses.size() && uses[end].Edge == first.Edge; ++end)
     {
     }
     StructuralEdge edge;
-    edge.Points = first.Points;
+    edge.Points = first.GetPoints();
     if (end - begin == 1)
     {
       edge.Kind = StructuralEdgeKind::Open;
@@ -368,17 +374,17 @@ Status ExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeO
     }
     else
     {
-      const Side& second = sides[begin + 1];
+      const Id second = uses[begin + 1].Use;
       if (end - begin > 2)
       {
         edge.Kind = StructuralEdgeKind::NonManifold;
       }
-      else if (HaveDifferentLabels(surface, first, second))
+      else if (HaveDifferentLabels(surface, first.Use, second))
       {
         edge.Kind = StructuralEdgeKind::LabelChange;
       }
-      else if (!IsSmoothEdge(surface.Points[first.Points[0]], surface.Points[first.Points[1]],
-                 surface.Points[first.Opposite], surface.Points[second.Opposite],
+      else if (!IsSmoothEdge(surface.Points[edge.Points[0]], surface.Points[edge.Points[1]],
+                 GetOpposite(surface, first.Use), GetOpposite(surface, second),
                  options.AccuracyAngle, flatness))
       {
         edge.Kind = StructuralEdgeKind::Sharp;
@@ -387,7 +393,7 @@ Status ExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeO
       {
         continue;
       }
-      edge.DihedralAngle = GetSmallestAngle(surface.Points, &first, sides.data() + end, turns);
+      edge.DihedralAngle = GetSmallestAngle(surface, &first, uses.data() + end, turns);
     }
     output.Edges.push_back(edge);
   }

@@ -38,7 +38,6 @@ public:
     const double reach = this->Radius + Norm(u) + Norm(v);
     const double size = std::abs(this->A.X) + std::abs(this->A.Y) + std::abs(this->A.Z);
     this->Slack = error * reach + 16.0 * Epsilon * (size + reach);
-    this->IsHopeless = !(this->Slack < 0.1 * this->Radius);
     if (!(this->Slack < 1e-6 * this->Radius))
     {
       this->Form.emplace(this->A, this->B, this->C);
@@ -54,7 +53,8 @@ public:
       const double nearest = std::min(std::max(c, box.Low[axis]), box.High[axis]) - c;
       distance += nearest * nearest;
     }
-    if (this->IsOneEnough && this->Found.InsideSmallestSphere.size() >= EnoughPoints)
+    if (this->Found.InsideSmallestSphere.size() >= EnoughPoints &&
+      (this->IsOneEnough || this->IsCoplanarInside || (this->IsFrontInside && this->IsBackInside)))
     {
       return Infinity;
     }
@@ -85,6 +85,7 @@ public:
     if (position > 0)
     {
       this->Found.InsideSmallestSphere.push_back(id);
+      this->AddSide(q, this->IsFrontInside, this->IsBackInside, this->IsCoplanarInside);
       if (distance < this->Deepest)
       {
         this->Deepest = distance;
@@ -94,7 +95,8 @@ public:
     }
     else if (position == 0)
     {
-      const bool isCoplanar = Orientation(this->A, this->B, this->C, q) == 0;
+      bool isCoplanar = false;
+      this->AddSide(q, this->IsFrontOn, this->IsBackOn, isCoplanar);
       (isCoplanar ? this->Found.Cocircular : this->Found.OnSmallestSphere).push_back(id);
     }
   }
@@ -103,10 +105,20 @@ public:
   double Radius;
   /** How far off center and radius may be. */
   double Slack;
-  /** The triangle is a needle whose sphere doubles cannot describe. */
-  bool IsHopeless;
+  /** Where the points strictly inside lie, and those on the sphere. */
+  bool IsFrontInside = false;
+  bool IsBackInside = false;
+  bool IsCoplanarInside = false;
+  bool IsFrontOn = false;
+  bool IsBackOn = false;
 
 private:
+  void AddSide(const Vec3& q, bool& isFront, bool& isBack, bool& isCoplanar) const
+  {
+    const int side = Orientation(this->A, this->B, this->C, q);
+    (side > 0 ? isFront : side < 0 ? isBack : isCoplanar) = true;
+  }
+
   /** One point inside of the sphere settles the matter. */
   bool IsOneEnough;
   TriangleIds Triangle;
@@ -118,10 +130,48 @@ private:
   double Deepest = Infinity;
   SurfaceDelaunayTest::Result& Found;
 };
+/**
+ * Whether the sphere through a triangle and a point in front of it, of smallest lambda, holds a
+ * point behind the triangle, inside or on it.
+ */
+class OtherSideVisitor
+{
+public:
+  OtherSideVisitor(const std::vector<Vec3>& points, const TriangleIds& triangle, Id front)
+    : A(points[triangle[0]]), B(points[triangle[1]]), C(points[triangle[2]]), D(points[front]),
+      Form(this->A, this->B, this->C, this->D)
+  {
+  }
+
+  double Order(const Box& box) const
+  {
+    return !this->IsFound && this->Form.MayTouch(box.Low, box.High) ? 0.0 : Infinity;
+  }
+
+  void Visit(Id, const Vec3& q)
+  {
+    if (this->IsFound)
+    {
+      return;
+    }
+    const int side = this->Form.GetSide(q);
+    this->IsFound = side >= 0 && Orientation(this->A, this->B, this->C, q) < 0 &&
+      (side > 0 || InSphere(this->A, this->B, this->C, this->D, q) >= 0);
+  }
+
+  bool IsFound = false;
+
+private:
+  Vec3 A;
+  Vec3 B;
+  Vec3 C;
+  Vec3 D;
+  SphereForm Form;
+};
 } // namespace
 
 void SurfaceDelaunayTest::Run(
-  const TriangleIds& triangle, Result& result, bool isSmallestSphereWanted)
+  const TriangleIds& triangle, Result& result, bool isSmallestSphereWanted) const
 {
   result.InsideSmallestSphere.clear();
   result.OnSmallestSphere.clear();
@@ -137,48 +187,43 @@ void SurfaceDelaunayTest::Run(
   {
     result.ProofRadius = Infinity;
   }
-  if (result.InsideSmallestSphere.empty() && result.OnSmallestSphere.empty())
+  result.IsDelaunay = !visitor.IsCoplanarInside &&
+    !(visitor.IsFrontInside && visitor.IsBackInside) &&
+    !(visitor.IsFrontInside && visitor.IsBackOn) && !(visitor.IsFrontOn && visitor.IsBackInside) &&
+    !(visitor.IsFrontOn && visitor.IsBackOn) &&
+    !(isSmallestSphereWanted && !result.InsideSmallestSphere.empty());
+  if (!result.IsDelaunay || result.InsideSmallestSphere.empty())
   {
-    result.IsDelaunay = true;
     return;
   }
 
-  if (isSmallestSphereWanted && !result.InsideSmallestSphere.empty())
+  // All disturbing points lie on one side, from now on the front.
+  const TriangleIds turned =
+    visitor.IsFrontInside ? triangle : TriangleIds{ triangle[0], triangle[2], triangle[1] };
+  const Vec3& a = this->Points[turned[0]];
+  const Vec3& b = this->Points[turned[1]];
+  const Vec3& c = this->Points[turned[2]];
+  Id best = result.InsideSmallestSphere.front();
+  for (Id candidate : result.InsideSmallestSphere)
   {
-    result.IsDelaunay = false;
-    return;
+    if (candidate != best && InSphere(a, b, c, this->Points[best], this->Points[candidate]) > 0)
+    {
+      best = candidate;
+    }
   }
-
-  // Search where the sphere is disturbed first: what is found there limits the other side, whose
-  // nearest point may be far away.
-  const Vec3& a = this->Points[triangle[0]];
-  const Vec3& b = this->Points[triangle[1]];
-  const Vec3& c = this->Points[triangle[2]];
-  const Id disturbing = !result.InsideSmallestSphere.empty() ? result.InsideSmallestSphere.front()
-                                                             : result.OnSmallestSphere.front();
-  const TriangleIds reversed{ triangle[0], triangle[2], triangle[1] };
-  const bool isFrontFirst = Orientation(a, b, c, this->Points[disturbing]) > 0;
-  FourthPoint& first = isFrontFirst ? this->Front : this->Back;
-  FourthPoint& second = isFrontFirst ? this->Back : this->Front;
-  // Rounding errors of lambda are far below this part of the radius; needles have no limit.
-  const double unit = visitor.Radius / Norm(Cross(b - a, c - a));
-  const double margin = visitor.IsHopeless ? Infinity : 1e-6 * unit;
-  this->Search.Find(isFrontFirst ? triangle : reversed, first, margin);
-  const double limit = -first.Lambda + 1e-6 * std::abs(first.Lambda) + margin;
-  this->Search.Find(isFrontFirst ? reversed : triangle, second,
-    first.Point != NoId && std::isfinite(limit) ? limit : Infinity);
-  result.IsDelaunay = this->Front.InsideCircle == NoId &&
-    (this->Front.Point == NoId || this->Back.Point == NoId ||
-      InSphere(a, b, c, this->Points[this->Front.Point], this->Points[this->Back.Point]) < 0);
+  OtherSideVisitor otherSide(this->Points, turned, best);
+  this->Octree.Visit(otherSide);
+  result.IsDelaunay = !otherSide.IsFound;
   if (result.IsDelaunay)
   {
     const Vec3 normal = Cross(b - a, c - a);
-    // The sphere through the disturbing point: in front of the triangle or behind.
-    const double lambda = this->Front.Lambda <= 0.0 ? this->Front.Lambda
-      : this->Back.Lambda <= 0.0                    ? -this->Back.Lambda
-                                                    : 0.0;
+    const Vec3 arm = this->Points[best] - a;
+    const double lambda = Dot(arm, arm - 2.0 * (visitor.Center - a)) / (2.0 * Dot(normal, arm));
     result.ProofCenter = visitor.Center + lambda * normal;
-    result.ProofRadius = Distance(result.ProofCenter, a) * Inflation;
+    result.ProofRadius =
+      std::max(Distance(result.ProofCenter, a), Distance(result.ProofCenter, this->Points[best])) *
+        Inflation +
+      2.0 * visitor.Slack;
     if (!std::isfinite(result.ProofRadius))
     {
       result.ProofCenter = visitor.Center;

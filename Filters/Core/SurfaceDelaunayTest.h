@@ -3,18 +3,25 @@
  * @file SurfaceDelaunayTest.h
  * @brief Whether a triangle is strongly Delaunay: the double sphere criterion 6.1, exactly.
  *
- * With p the point in front of the triangle whose lambda is smallest and q its like behind, the
- * triangle is strongly Delaunay if and only if q lies strictly outside of the sphere through the
- * triangle and p, and no point of its plane lies in or on its circumcircle. Points on the
- * circumcircle are handed to the caller, who knows whether they belong to the same flat facet.
+ * The spheres through a triangle form a pencil: their centers lie at H + lambda * n, H being the
+ * circumcenter and n the normal. With p the point in front of the triangle whose lambda is smallest
+ * and q its like behind, the triangle is strongly Delaunay if and only if q lies strictly outside of
+ * the sphere through the triangle and p, and no point of its plane lies in or on its circumcircle.
+ * Points on the circumcircle are handed to the caller, who knows whether they belong to the same
+ * flat facet.
  *
- * Method: if the smallest sphere holds no other point there is nothing more to do; otherwise two
- * searches of the octree and one in-sphere sign.
+ * Method: search the smallest sphere. If it is empty, the triangle is strongly Delaunay; if it holds
+ * points on both sides of the triangle, or in its plane, it is not. If it holds points on one side,
+ * p or q is among them, and the sphere through it is searched for a point of the other side.
  */
 #ifndef cdmSurfaceDelaunayTest_h
 #define cdmSurfaceDelaunayTest_h
 
-#include "FourthPointSearch.h"
+#include "PointOctree.h"
+#include "Types.h"
+#include "Vec3.h"
+
+#include <vector>
 
 namespace cdm
 {
@@ -27,7 +34,7 @@ public:
     bool IsDelaunay = false;
     /**
      * Strictly inside of the smallest sphere through the triangle, the deepest one first; if there
-     * are many, some of those near its center.
+     * are many, and the triangle is not Delaunay, some of those near its center.
      */
     std::vector<Id> InsideSmallestSphere;
     /** On that sphere, but not in the plane of the triangle. */
@@ -43,7 +50,7 @@ public:
   };
 
   SurfaceDelaunayTest(const std::vector<Vec3>& points, const PointOctree& octree)
-    : Points(points), Octree(octree), Search(points, octree)
+    : Points(points), Octree(octree)
   {
   }
 
@@ -51,14 +58,11 @@ public:
    * If the smallest sphere has to be empty and is not, nothing more is searched: the triangle counts
    * as not Delaunay.
    */
-  void Run(const TriangleIds& triangle, Result& result, bool isSmallestSphereWanted = false);
+  void Run(const TriangleIds& triangle, Result& result, bool isSmallestSphereWanted = false) const;
 
 private:
   const std::vector<Vec3>& Points;
   const PointOctree& Octree;
-  FourthPointSearch Search;
-  FourthPoint Front;
-  FourthPoint Back;
 };
 } // namespace cdm
 

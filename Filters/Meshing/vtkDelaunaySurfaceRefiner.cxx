@@ -15,7 +15,10 @@
 #include <vtkPolyData.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <iterator>
 #include <numeric>
+#include <set>
+#include <string>
 
 vtkStandardNewMacro(vtkDelaunaySurfaceRefiner);
 
@@ -34,6 +37,27 @@ cdm::DelaunaySurfaceRefinerOptions MakeOptions(vtkDelaunaySurfaceRefiner* filter
   options.MinimumEdgeRatio = filter->GetMinimumEdgeRatio();
   options.MaximumNewPoints = filter->GetMaximumNewPoints();
   return options;
+}
+
+/** Some of the input cells that the triangles come from. */
+std::string ListCells(const cdm::TriangleMesh& surface, const std::vector<cdm::Id>& triangles)
+{
+  std::set<cdm::Id> cells;
+  for (cdm::Id triangle : triangles)
+  {
+    cells.insert(surface.SourceCells[triangle]);
+  }
+  constexpr std::size_t largestNumber = 5;
+  std::string list;
+  for (auto cell = cells.begin(); cell != cells.end(); ++cell)
+  {
+    if (static_cast<std::size_t>(std::distance(cells.begin(), cell)) == largestNumber)
+    {
+      return list + " and " + std::to_string(cells.size() - largestNumber) + " others";
+    }
+    list += (list.empty() ? "" : ", ") + std::to_string(*cell);
+  }
+  return list;
 }
 
 void AddUnresolvedArray(const std::vector<cdm::Id>& triangles, vtkPolyData* output)
@@ -132,8 +156,10 @@ int vtkDelaunaySurfaceRefiner::RequestData(
     vtkWarningMacro(
       << this->NumberOfUnresolvedTriangles
       << " triangles do not fulfil the criterion within the limits "
-         "(MinimumEdgeRatio, MaximumNewPoints): see the cell array Unresolved. Sheets "
-         "that lie closer together than that can be united with a MergeTolerance of "
+         "(MinimumEdgeRatio, MaximumNewPoints): see the cell array Unresolved. They come from the "
+         "input cells "
+      << ListCells(result.Surface, result.UnresolvedTriangles)
+      << ". Sheets that lie a hair apart can be united with a MergeTolerance of "
          "vtkBoundaryTriangulator.");
   }
   if (this->NumberOfDroppedMeshPoints > 0)

@@ -127,7 +127,11 @@ public:
   ///@}
 
   ///@{
-  /** The refinement stops when it has made so many points. Default 0: no limit; range >= 0. */
+  /**
+   * The refinement stops when it has made so many points. Default 0: 50 for each triangle, at
+   * least 20000, or 1000000 where sizes or angles are asked for, and one for each mesh point;
+   * range >= 0.
+   */
   vtkSetClampMacro(MaximumNewPoints, int, 0, VTK_INT_MAX);
   vtkGetMacro(MaximumNewPoints, int);
   ///@}

@@ -423,7 +423,7 @@ TEST(SurfaceRefinerShapes, NotManyMorePointsThanNeeded)
     }
   }
   std::cout << points << " points, at least " << bound << " are needed" << std::endl;
-  EXPECT_LT(points, 3.3 * bound);
+  EXPECT_LT(points, 3.0 * bound);
 }
 
 /** Model units of atoms and of countries: the mesh is the same. */
