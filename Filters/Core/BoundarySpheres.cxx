@@ -32,7 +32,7 @@ BoundarySpheres::BoundarySpheres(
   }
 }
 
-void BoundarySpheres::Find(const Vec3& position, Disturbed& disturbed) const
+void BoundarySpheres::Find(const Vec3& position, Disturbed& disturbed)
 {
   disturbed.Triangles.clear();
   disturbed.Edges.clear();

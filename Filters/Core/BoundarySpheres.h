@@ -34,14 +34,14 @@ public:
 
     bool IsEmpty() const { return this->Triangles.empty() && this->Edges.empty(); }
   };
-  void Find(const Vec3& position, Disturbed& disturbed) const;
+  void Find(const Vec3& position, Disturbed& disturbed);
 
 private:
   const TriangleMesh& Surface;
   const std::vector<StructuralEdge>& Edges;
   /** Triangles, then edges. */
   BallIndex Balls;
-  mutable std::vector<Id> Near;
+  std::vector<Id> Near;
 };
 } // namespace cdm
 

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -821,15 +822,17 @@ void SurfaceRefiner::Saturate()
 
 Status SurfaceRefiner::SplitRequested()
 {
+  if (this->Input.EdgesToSplit.empty() && this->Input.TrianglesToSplit.empty())
+  {
+    return Status();
+  }
+  this->CollectIncidences();
   std::map<EdgeIds, Id> segments;
   const auto makeKey = [](const EdgeIds& edge)
   { return EdgeIds{ std::min(edge[0], edge[1]), std::max(edge[0], edge[1]) }; };
-  if (!this->Input.EdgesToSplit.empty())
+  for (Id s = 0; s < this->Surface->GetNumberOfSegments(); ++s)
   {
-    for (Id s = 0; s < this->Surface->GetNumberOfSegments(); ++s)
-    {
-      segments.emplace(makeKey(this->Surface->GetSegment(s).Points), s);
-    }
+    segments.emplace(makeKey(this->Surface->GetSegment(s).Points), s);
   }
   for (const EdgeIds& edge : this->Input.EdgesToSplit)
   {

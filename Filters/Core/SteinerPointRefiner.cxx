@@ -24,9 +24,13 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 /** Rounds without end would be an error of the rules; so many have never been seen. */
 constexpr Id MaximumRounds = 200;
 /** Rounds that split the boundary for slivers. */
-constexpr int MaximumSliverRounds = 12;
+constexpr int MaximumSliverRounds = 40;
 /** Edges of the boundary for a largest volume, in edges of the regular tetrahedron of that volume. */
 constexpr double BoundaryEdgeRatio = 1.15;
+/** Degrees: flatter tetrahedra at the boundary are there by rounding. */
+constexpr double FlatAngle = 1e-2;
+/** By how much a point of theirs is moved on the boundary, in radii of their circle. */
+constexpr double NudgeRatio = 1e-9;
 /** Degrees: dihedral angles of the input below this count as sharp. */
 constexpr double SharpAngle = 60.0;
 /** Plane angles of the input count as sharp if their sine is below this: a triangle with such
@@ -59,6 +63,8 @@ private:
   void CollectSurfaceSizes();
   void MeasureSizes();
   void CollectReport();
+  bool NudgeFlatBoundary();
+  Vec3 GetTangent(Id point, const Vec3& wanted) const;
   bool HasRequests() const
   {
     return !this->Round->GetRequestedTriangles().empty() ||
@@ -434,6 +440,86 @@ void Refiner::CollectReport()
   }
 }
 
+/**
+ * A direction in which a point of the surface may move and stay on it, near to the one wanted: in its
+ * facet, along its edge; zero at a corner.
+ */
+Vec3 Refiner::GetTangent(Id point, const Vec3& wanted) const
+{
+  Vec3 first;
+  Vec3 along;
+  for (const TriangleIds& ids : this->Surface.Triangles)
+  {
+    if (std::find(ids.begin(), ids.end(), point) == ids.end())
+    {
+      continue;
+    }
+    const Vec3& a = this->Surface.Points[ids[0]];
+    Vec3 normal = Cross(this->Surface.Points[ids[1]] - a, this->Surface.Points[ids[2]] - a);
+    normal = (1.0 / Norm(normal)) * normal;
+    if (SquaredNorm(first) == 0.0)
+    {
+      first = normal;
+      continue;
+    }
+    const Vec3 across = Cross(first, normal);
+    // A facet whose points are rounded is still one.
+    constexpr double smallestSine = 1e-6;
+    if (Norm(across) < smallestSine)
+    {
+      continue;
+    }
+    if (SquaredNorm(along) == 0.0)
+    {
+      along = (1.0 / Norm(across)) * across;
+    }
+    else if (std::abs(Dot(along, normal)) > smallestSine)
+    {
+      return {};
+    }
+  }
+  return SquaredNorm(along) > 0.0 ? Dot(along, wanted) * along
+                                  : wanted - Dot(first, wanted) * first;
+}
+
+/**
+ * Four points of a facet that is not across an axis lie in a plane but for rounding errors. If they
+ * lie on a circle, but for as much, they have a flat tetrahedron, on this side or on the other. It goes
+ * as soon as one of them is off the circle by more than it is off the plane. False if there are none.
+ */
+bool Refiner::NudgeFlatBoundary()
+{
+  std::vector<char> isMoved(this->Surface.Points.size(), 0);
+  bool isNudged = false;
+  for (const TetrahedronIds& ids : this->Round->FindSliversOfSurface(FlatAngle))
+  {
+    if (std::any_of(ids.begin(), ids.end(), [&](Id id) { return isMoved[id]; }))
+    {
+      continue;
+    }
+    for (int i = 0; i < 4; ++i)
+    {
+      // Points of the input stay.
+      if (ids[i] < static_cast<Id>(this->SurfaceSources.size()))
+      {
+        continue;
+      }
+      const std::vector<Vec3>& points = this->Surface.Points;
+      const Vec3 center = GetCircumcenter(
+        points[ids[(i + 1) % 4]], points[ids[(i + 2) % 4]], points[ids[(i + 3) % 4]]);
+      const Vec3 step = NudgeRatio * this->GetTangent(ids[i], points[ids[i]] - center);
+      if (Norm(step) > 0.1 * NudgeRatio * Distance(points[ids[i]], center))
+      {
+        this->Surface.Points[ids[i]] = points[ids[i]] + step;
+        isMoved[ids[i]] = 1;
+        isNudged = true;
+        break;
+      }
+    }
+  }
+  return isNudged;
+}
+
 /** Points of the surface on edges or at corners with a sharp angle. */
 std::vector<char> Refiner::FindSharpPoints() const
 {
@@ -473,8 +559,9 @@ void Refiner::FindFaults()
   const TetMesh& mesh = this->Output.Mesh;
   const std::vector<char> isSharp = this->FindSharpPoints();
   SteinerPointRefinerReport& report = this->Output.Report;
-  for (const TetrahedronIds& ids : mesh.Tetrahedra)
+  for (std::size_t t = 0; t < mesh.Tetrahedra.size(); ++t)
   {
+    const TetrahedronIds& ids = mesh.Tetrahedra[t];
     const std::array<Vec3, 4> v{ mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]],
       mesh.Points[ids[3]] };
     Vec3 target;
@@ -487,7 +574,7 @@ void Refiner::FindFaults()
       : SteinerFault::None;
     if (found == SteinerFault::Shape || found == SteinerFault::Sliver)
     {
-      const bool isInevitable = this->Round->IsAcrossLayer(ids) ||
+      const bool isInevitable = this->Round->IsAcrossLayer(ids, mesh.Regions[t]) ||
         std::any_of(ids.begin(), ids.end(),
           [&](Id id) { return id < static_cast<Id>(isSharp.size()) && isSharp[id]; });
       found = isInevitable ? SteinerFault::Inevitable : found;
@@ -589,8 +676,11 @@ Status Refiner::Run()
             sliverRounds < MaximumSliverRounds, this->GetRoundContext());
           status = status.IsOk() ? this->RefineRound(true) : status;
         }
-        isDone = this->IsStuck || sliverRounds >= MaximumSliverRounds ||
-          (!this->HasRequests() && this->Round->GetReport().InsertedPoints == inserted);
+        const bool isNudged = status.IsOk() && this->Options.DihedralAngleTarget > 0.0 &&
+          sliverRounds < MaximumSliverRounds && this->NudgeFlatBoundary();
+        isDone = !isNudged &&
+          (this->IsStuck || sliverRounds >= MaximumSliverRounds ||
+            (!this->HasRequests() && this->Round->GetReport().InsertedPoints == inserted));
       }
     }
     if (status.IsOk())

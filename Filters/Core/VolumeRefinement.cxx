@@ -22,10 +22,12 @@ constexpr double SizeRatio = 0.1;
 constexpr double SmallestGain = 0.05;
 /** Points are moved where angles are below this multiple of the target: it leaves some room. */
 constexpr double MoveRatio = 1.1;
-/** Cosine of the angle between the normals of a layer's sides and an edge across. */
+/** Cosine of the angles between the sides of a layer, and of a side's normal and an upright edge. */
 constexpr double AcrossCosine = 0.85;
-/** Length of an edge across a thin layer, in lengths of the longest edge of its tetrahedron. */
+/** Length of an upright edge across a layer, in lengths of the longest edge of its tetrahedron ... */
 constexpr double ThinRatio = 0.75;
+/** ... and thickness of the layer if the edge is not upright. */
+constexpr double VeryThinRatio = 0.35;
 /** Free points closer to others than this part of the sizing are removed. */
 constexpr double CloseRatio = 0.3;
 /** First step of the search for a better place: in distances to the nearest neighbor ... */
@@ -114,7 +116,23 @@ std::vector<InteriorPoint> VolumeRefinement::GetInterior() const
   return interior;
 }
 
-bool VolumeRefinement::IsAcrossLayer(const TetrahedronIds& ids) const
+std::vector<TetrahedronIds> VolumeRefinement::FindSliversOfSurface(double angle) const
+{
+  std::vector<TetrahedronIds> slivers;
+  for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
+  {
+    const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
+    if (!this->Mesh.IsDead(t) &&
+      *std::max_element(ids.begin(), ids.end()) < this->NumberOfSurfacePoints &&
+      this->GetAngle(t) < angle && !this->IsAcrossLayer(ids, this->GetMesh().Regions[t]))
+    {
+      slivers.push_back(ids);
+    }
+  }
+  return slivers;
+}
+
+bool VolumeRefinement::IsAcrossLayer(const TetrahedronIds& ids, Id region) const
 {
   if (*std::max_element(ids.begin(), ids.end()) >= this->NumberOfSurfacePoints)
   {
@@ -126,28 +144,46 @@ bool VolumeRefinement::IsAcrossLayer(const TetrahedronIds& ids) const
   {
     longest = std::max(longest, Distance(vertices[edge[0]], vertices[edge[1]]));
   }
-  // Whether a triangle at the point lies across the direction.
-  const auto isAcross = [&](Id point, const Vec3& direction)
+  // Normals of the boundary of the region, out of it, at each vertex.
+  std::array<std::vector<Vec3>, 4> normals;
+  for (int v = 0; v < 4; ++v)
   {
-    for (Id i = this->IncidenceBegin[point]; i < this->IncidenceBegin[point + 1]; ++i)
+    for (Id i = this->IncidenceBegin[ids[v]]; i < this->IncidenceBegin[ids[v] + 1]; ++i)
     {
       const TriangleIds& triangle = this->Surface.Triangles[this->Incidence[i]];
+      const RegionPair& labels = this->Surface.Labels[this->Incidence[i]];
       const Vec3& a = this->Surface.Points[triangle[0]];
       const Vec3 normal =
         Cross(this->Surface.Points[triangle[1]] - a, this->Surface.Points[triangle[2]] - a);
-      if (std::abs(Dot(normal, direction)) >= AcrossCosine * Norm(normal) * Norm(direction))
+      if (labels.Back == region || labels.Front == region)
       {
-        return true;
+        normals[v].push_back((labels.Back == region ? 1.0 : -1.0) / Norm(normal) * normal);
       }
     }
-    return false;
-  };
+  }
   return std::any_of(std::begin(TetrahedronEdges), std::end(TetrahedronEdges),
     [&](const int(&edge)[2])
     {
       const Vec3 direction = vertices[edge[1]] - vertices[edge[0]];
-      return Norm(direction) <= ThinRatio * longest && isAcross(ids[edge[0]], direction) &&
-        isAcross(ids[edge[1]], direction);
+      const double length = Norm(direction);
+      for (const Vec3& first : normals[edge[0]])
+      {
+        // How far it is to the other side.
+        const double height = -Dot(first, direction);
+        const bool isUpright = height >= AcrossCosine * length && length <= ThinRatio * longest;
+        if (!isUpright && !(height > 0.0 && height <= VeryThinRatio * longest))
+        {
+          continue;
+        }
+        for (const Vec3& second : normals[edge[1]])
+        {
+          if (Dot(first, second) <= -AcrossCosine)
+          {
+            return true;
+          }
+        }
+      }
+      return false;
     });
 }
 
@@ -440,7 +476,7 @@ Status VolumeRefinement::RefineByLimits(bool isShapeTested, const ExecutionConte
     const TetrahedronFault fault =
       this->Limits.Find(this->GetVertices(ids), isShapeTested, target, severity);
     if (fault == TetrahedronFault::Size ||
-      (fault == TetrahedronFault::Shape && !this->IsAcrossLayer(ids)))
+      (fault == TetrahedronFault::Shape && !this->IsAcrossLayer(ids, this->GetMesh().Regions[t])))
     {
       tasks.push({ fault, severity, t, this->Mesh.GetStamp(t) });
     }
@@ -713,7 +749,8 @@ Status VolumeRefinement::PerturbSlivers(
     for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
     {
       const double angle = this->Mesh.IsDead(t) ? 180.0 : this->GetAngle(t);
-      if (angle < MoveRatio * target && !this->IsAcrossLayer(this->GetMesh().Tetrahedra[t]))
+      if (angle < MoveRatio * target &&
+        !this->IsAcrossLayer(this->GetMesh().Tetrahedra[t], this->GetMesh().Regions[t]))
       {
         slivers.push_back({ angle, t, this->Mesh.GetStamp(t) });
       }

@@ -116,13 +116,23 @@ public:
   const std::vector<Id>& GetRequestedTriangles() const { return this->RequestedTriangles; }
   const std::vector<EdgeIds>& GetRequestedEdges() const { return this->RequestedEdges; }
 
+  /**
+   * Tetrahedra between points of the surface only, with a smaller dihedral angle (degrees), but those
+   * across a layer.
+   */
+  std::vector<TetrahedronIds> FindSliversOfSurface(double angle) const;
+
   /** The points that are in the mesh now. */
   std::vector<InteriorPoint> GetInterior() const;
   const TetMesh& GetMesh() const { return this->Mesh.GetMesh(); }
   const VolumeRefinementReport& GetReport() const { return this->Report; }
 
-  /** Whether a tetrahedron reaches from one side of a thin layer to the other. */
-  bool IsAcrossLayer(const TetrahedronIds& ids) const;
+  /**
+   * Whether a tetrahedron of a region reaches from one side of a thin layer to the other: all its
+   * points lie on the boundary, two of them on sides that face each other, close to each other for
+   * its size.
+   */
+  bool IsAcrossLayer(const TetrahedronIds& ids, Id region) const;
 
 private:
   struct Task

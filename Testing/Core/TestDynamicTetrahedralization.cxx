@@ -144,7 +144,7 @@ void ExpectMeshOfStage3(const DynamicTetrahedralization& dynamic, const Triangle
 }
 
 /** Whether the point can be inserted: found from any tetrahedron in conflict. */
-bool FindHole(DynamicTetrahedralization& mesh, const BoundarySpheres& spheres, const Vec3& position,
+bool FindHole(DynamicTetrahedralization& mesh, BoundarySpheres& spheres, const Vec3& position,
   Id number, DynamicTetrahedralization::Hole& hole)
 {
   BoundarySpheres::Disturbed disturbed;
@@ -166,7 +166,7 @@ void Exercise(const DelaunaySurfaceRefinerOutput& refined, int steps, std::mt199
 {
   const TriangleMesh& surface = refined.Surface;
   DynamicTetrahedralization mesh(Tetrahedralize(surface, {}));
-  const BoundarySpheres spheres(surface, refined.StructuralEdges);
+  BoundarySpheres spheres(surface, refined.StructuralEdges);
   DynamicTetrahedralization::Hole hole;
   std::vector<Id> inside;
   int changes[3] = { 0, 0, 0 };

@@ -3,6 +3,7 @@
 
 #include <vtkConformingDelaunayMesher.h>
 #include <vtkFieldData.h>
+#include <vtkMath.h>
 #include <vtkSphereSource.h>
 #include <vtkStringArray.h>
 
@@ -321,7 +322,7 @@ TEST(ConformingDelaunayMesherFilter, AddsSteinerPoints)
       vtkPoints* p = output->GetCell(cell)->GetPoints();
       for (int edge = 0; edge < 6; ++edge)
       {
-        const int* ends = vtkTetra::GetEdgeArray(edge);
+        const vtkIdType* ends = vtkTetra::GetEdgeArray(edge);
         EXPECT_LE(vtkMath::Distance2BetweenPoints(p->GetPoint(ends[0]), p->GetPoint(ends[1])),
           0.3 * 0.3 * (1.0 + 1e-12));
       }
