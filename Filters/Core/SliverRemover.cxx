@@ -141,7 +141,7 @@ private:
   }
   bool FindStar(Id point, Id first, std::vector<Id>& star) const;
   bool Smooth(Id tetrahedron);
-  bool FlipAndPeel(const ExecutionContext& context);
+  bool PeelAndFlip(const ExecutionContext& context);
   bool HasMovableSlivers() const;
   bool FindIntactBoundary(const ExecutionContext& context, const std::vector<Id>& sources,
     TriangleMesh& surface, std::vector<StructuralEdge>& edges) const;
@@ -922,7 +922,7 @@ bool Remover::MovePoints(const ExecutionContext& context)
 }
 
 /** Peel, flip and, if it need not stay Delaunay, smooth. False if aborted. */
-bool Remover::FlipAndPeel(const ExecutionContext& context)
+bool Remover::PeelAndFlip(const ExecutionContext& context)
 {
   const Id count = static_cast<Id>(this->Mesh.Tetrahedra.size());
   // Peel first: the tetrahedra around each point, which it asks for, change with the first flip.
@@ -978,7 +978,7 @@ Status Remover::Run(const ExecutionContext& context)
   this->Report.SmallestDihedralAngleBefore = this->MeasureSmallestAngle();
   const bool mayMove = !this->Options.IsFree.empty() && !this->Options.QualityBeforeDelaunay;
   const double share = mayMove ? 0.2 : 1.0;
-  bool isAborted = !this->FlipAndPeel(context.Part(0.0, share));
+  bool isAborted = !this->PeelAndFlip(context.Part(0.0, share));
   if (mayMove && !isAborted && this->HasMovableSlivers())
   {
     isAborted = !this->MovePoints(context.Part(share, 1.0));

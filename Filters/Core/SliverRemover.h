@@ -15,7 +15,9 @@
  *  3. one that is flat on an interface, like 1., is handed to the other region if a flip there
  *     makes it vanish;
  *  4. free points of those that are left are moved, with the Delaunay tetrahedra around them made
- *     anew (VolumeRefinement.h), so that the smallest dihedral angle of what is replaced grows.
+ *     anew (VolumeRefinement.h), so that the smallest dihedral angle of what is replaced grows; then
+ *     also those of tetrahedra below 1.1 times the target, which leaves some room. Where cospherical
+ *     sets are not split by the pulling rule, as after flips, points may have to stay.
  * With quality before Delaunay, 2. takes any flip that improves, cospherical or not, and instead of
  * 4. free points are moved within the tetrahedra around them, which stay (smoothing), in turn with
  * the flips.
@@ -29,7 +31,8 @@
  * Failure: InvalidInput names tetrahedra that are inverted, flat or have wrong neighbours; the mesh
  * is then left alone. Aborted leaves a valid mesh.
  * Cost: O(b log b) for b tetrahedra below the target, after one look at all of them; 20 bytes per
- * tetrahedron. A move costs milliseconds; 120 bytes per tetrahedron if there are any.
+ * tetrahedron. About a millisecond for a point that is tried to be moved, and 120
+ * bytes per tetrahedron if there are such points.
  * References: G. T. Klincsek, "Minimal triangulations of polygonal domains", 1980,
  * doi:10.1016/S0167-5060(08)70044-X; J. R. Shewchuk, "Two discrete optimization algorithms for the
  * topological improvement of tetrahedral meshes", 2002 (edge removal by it).

@@ -33,7 +33,7 @@
  * type, tetrahedra that are inverted, flat or overlap, an array FreePoint of the wrong size. An
  * aborted run has an empty output.
  *
- * Cost: O(n) for n tetrahedra and few flips; some milliseconds for each point that is tried to be
+ * Cost: O(n) for n tetrahedra and few flips; about a millisecond for a point that is tried to be
  * moved.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:

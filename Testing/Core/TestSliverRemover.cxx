@@ -607,6 +607,12 @@ TEST(SliverRemover, QualityBeforeDelaunayKeepsTheRegions)
     EXPECT_GT(check.NonDelaunayTetrahedra, 0);
     check.NonDelaunayTetrahedra = 0;
     EXPECT_TRUE(check.IsValid()) << check.GetSummary();
+
+    // Moves in such a mesh do no harm either.
+    RemoveWithMoves(mesh, 20.0);
+    check = Check(mesh, &boundary);
+    check.NonDelaunayTetrahedra = 0;
+    EXPECT_TRUE(check.IsValid()) << check.GetSummary();
   }
 }
 
