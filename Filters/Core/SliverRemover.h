@@ -31,8 +31,8 @@
  * Failure: InvalidInput names tetrahedra that are inverted, flat or have wrong neighbours; the mesh
  * is then left alone. Aborted leaves a valid mesh.
  * Cost: O(b log b) for b tetrahedra below the target, after one look at all of them; 20 bytes per
- * tetrahedron. About a millisecond for a point that is tried to be moved, and 120
- * bytes per tetrahedron if there are such points.
+ * tetrahedron. About a millisecond for a point that is tried to be moved, and 120 bytes per
+ * tetrahedron if there are such points.
  * References: G. T. Klincsek, "Minimal triangulations of polygonal domains", 1980,
  * doi:10.1016/S0167-5060(08)70044-X; J. R. Shewchuk, "Two discrete optimization algorithms for the
  * topological improvement of tetrahedral meshes", 2002 (edge removal by it).
