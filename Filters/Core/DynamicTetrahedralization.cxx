@@ -83,7 +83,7 @@ Id DynamicTetrahedralization::Locate(const Vec3& position, Id first) const
 {
   Id t = first;
   int from = -1;
-  for (;;)
+  for (Id step = 0; step < this->GetNumberOfTetrahedra(); ++step)
   {
     const TetrahedronIds& ids = this->Mesh.Tetrahedra[t];
     int next = -1;
@@ -109,6 +109,7 @@ Id DynamicTetrahedralization::Locate(const Vec3& position, Id first) const
     t = neighbor / 4;
     from = neighbor % 4;
   }
+  return NoId;
 }
 
 bool DynamicTetrahedralization::IsInConflict(Id tetrahedron, const Vec3& position, Id number) const
@@ -272,8 +273,9 @@ bool DynamicTetrahedralization::Remove(Id point)
     return false;
   }
   // The hole's facets and points.
-  Hole hole;
-  hole.Tetrahedra = this->Star;
+  Hole& hole = this->RemovedStar;
+  hole.Facets.clear();
+  hole.Outer.clear();
   std::vector<Id> ids;
   for (Id t : this->Star)
   {
@@ -294,7 +296,8 @@ bool DynamicTetrahedralization::Remove(Id point)
     points.push_back(this->Mesh.Points[id]);
   }
   DelaunayTetrahedralization local;
-  if (!BuildDelaunayTetrahedralization(points, ids, GridBlock(), 1, ExecutionContext(), local).IsOk())
+  if (!BuildDelaunayTetrahedralization(points, ids, GridBlock(), 1, ExecutionContext(), local)
+         .IsOk())
   {
     return false;
   }
@@ -399,6 +402,7 @@ bool DynamicTetrahedralization::Remove(Id point)
     }
   }
   this->PointTetrahedra[point] = NoId;
+  hole.Tetrahedra = this->Changed;
   return true;
 }
 } // namespace cdm

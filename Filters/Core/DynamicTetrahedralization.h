@@ -11,11 +11,13 @@
  *  - removal: the tetrahedra around the point are replaced by the Delaunay tetrahedra of its
  *    neighbors that lie within the same hole;
  *  - points on one sphere are told apart by the pulling rule of their numbers, which are their ids:
- *    the mesh is at any time the one that stage 3 makes of the same points in the same order.
+ *    a mesh that is Delaunay by this rule is at any time the one that stage 3 makes of the same
+ *    points in the same order. One whose cospherical sets are split in another way stays Delaunay
+ *    too: a new tetrahedron's sphere lies within the spheres of those on both sides of its facet.
  *
- * Requires: a mesh with the invariants of TetMesh.h that is Delaunay by the pulling rule, and whose
- * outer and interface facets have empty smallest spheres (Crit. 3.1), also of the points that are
- * inserted: then no tetrahedron beyond such a facet is in conflict with a point on this side.
+ * Requires: a Delaunay mesh with the invariants of TetMesh.h. Where a hole ends at an outer facet, the
+ * smallest sphere of that has to be empty (Crit. 3.1), also of the point: then nothing beyond it,
+ * which the mesh does not have, is in conflict with a point on this side.
  * Guarantees: these invariants; only points inside of a region are inserted, removed or moved.
  * Cost: microseconds for an insertion, a few hundred for a removal; 44 bytes per tetrahedron and 32
  * per point beside the mesh.
@@ -67,7 +69,7 @@ public:
 
   /**
    * The tetrahedron that holds a position, by a straight walk that stays in the region of the
-   * first one; NoId if a boundary is in the way.
+   * first one; NoId if a boundary is in the way, or if cospherical sets lead the walk in a circle.
    */
   Id Locate(const Vec3& position, Id first) const;
 
@@ -82,8 +84,13 @@ public:
   Id Insert(const Vec3& position, const Hole& hole);
   /** Puts a point back that was removed, to the same or another position. */
   void Restore(Id point, const Vec3& position, const Hole& hole);
-  /** False, and nothing changed, if the point lies on a boundary. The id stays reserved. */
+  /**
+   * False, and nothing changed, if the point lies on a boundary, or if cospherical neighbors are not
+   * told apart by the pulling rule. The id stays reserved.
+   */
   bool Remove(Id point);
+  /** The hole that undoes the last removal, as long as nothing else has been changed. */
+  const Hole& GetRemovedStar() const { return this->RemovedStar; }
 
   /** The tetrahedra made by the last change. */
   const std::vector<Id>& GetChanged() const { return this->Changed; }
@@ -106,6 +113,7 @@ private:
   std::uint32_t Search = 0;
   /** Work space. */
   std::vector<Id> Star;
+  Hole RemovedStar;
   std::vector<std::pair<TriangleIds, Id>> Facets;
 };
 } // namespace cdm

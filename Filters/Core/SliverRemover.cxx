@@ -2,14 +2,19 @@
 #include "SliverRemover.h"
 
 #include "Measures.h"
+#include "MeshBoundary.h"
 #include "MeshChecks.h"
+#include "PlaceSearch.h"
 #include "Predicates.h"
+#include "SphereCriteria.h"
 #include "StructuralEdges.h"
+#include "VolumeRefinement.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <queue>
 #include <string>
 #include <utility>
@@ -84,7 +89,7 @@ class Remover
 {
 public:
   Remover(TetMesh& mesh, const SliverRemoverOptions& options, SliverRemoverReport& report)
-    : Mesh(mesh), Target(options.DihedralAngleTarget),
+    : Mesh(mesh), Options(options), Target(options.DihedralAngleTarget),
       Flatness(options.FlatnessRatio * GetBoundingBoxDiagonal(mesh.Points)), Report(report)
   {
   }
@@ -130,7 +135,20 @@ private:
   void Kill(Id tetrahedron);
   void Compact();
 
+  bool IsFree(Id point) const
+  {
+    return !this->Options.IsFree.empty() && this->Options.IsFree[point];
+  }
+  bool FindStar(Id point, Id first, std::vector<Id>& star) const;
+  bool Smooth(Id tetrahedron);
+  bool PeelAndFlip(const ExecutionContext& context);
+  bool HasMovableSlivers() const;
+  bool FindIntactBoundary(const ExecutionContext& context, const std::vector<Id>& sources,
+    TriangleMesh& surface, std::vector<StructuralEdge>& edges) const;
+  bool MovePoints(const ExecutionContext& context);
+
   TetMesh& Mesh;
+  const SliverRemoverOptions& Options;
   const double Target;
   const double Flatness;
   SliverRemoverReport& Report;
@@ -398,7 +416,7 @@ AngleKey Remover::Rate(
   const bool isAllowed = key >= required &&
     Orientation(this->GetPoint(ids[0]), this->GetPoint(ids[1]), this->GetPoint(ids[2]),
       this->GetPoint(ids[3])) > 0 &&
-    this->IsDelaunay(ids, old);
+    (this->Options.QualityBeforeDelaunay || this->IsDelaunay(ids, old));
   return isAllowed ? key : -1;
 }
 
@@ -673,17 +691,240 @@ void Remover::Compact()
   }
 }
 
-Status Remover::Run(const ExecutionContext& context)
+/** All tetrahedra at a point; false if it lies on a border. */
+bool Remover::FindStar(Id point, Id first, std::vector<Id>& star) const
+{
+  star.assign(1, first);
+  for (std::size_t i = 0; i < star.size(); ++i)
+  {
+    for (int facet = 0; facet < 4; ++facet)
+    {
+      if (this->Mesh.Tetrahedra[star[i]][facet] == point)
+      {
+        continue;
+      }
+      const Id neighbor = this->Mesh.Neighbors[star[i]][facet];
+      if (neighbor == NoId || this->Mesh.Regions[neighbor / 4] != this->Mesh.Regions[first])
+      {
+        return false;
+      }
+      if (std::find(star.begin(), star.end(), neighbor / 4) == star.end())
+      {
+        star.push_back(neighbor / 4);
+      }
+    }
+  }
+  return true;
+}
+
+/** Move a free point within the tetrahedra around it, which stay. */
+bool Remover::Smooth(Id tetrahedron)
+{
+  std::vector<Id> star;
+  for (const Id point : this->Mesh.Tetrahedra[tetrahedron])
+  {
+    if (!this->IsFree(point) || !this->FindStar(point, tetrahedron, star))
+    {
+      continue;
+    }
+    const Vec3 old = this->GetPoint(point);
+    double smallest = 180.0;
+    double nearest = std::numeric_limits<double>::infinity();
+    Vec3 sum;
+    for (const Id other : star)
+    {
+      smallest = std::min(smallest, this->Angles[other]);
+      for (const Id id : this->Mesh.Tetrahedra[other])
+      {
+        if (id != point)
+        {
+          nearest = std::min(nearest, Distance(old, this->GetPoint(id)));
+          sum = sum + this->GetPoint(id);
+        }
+      }
+    }
+    const auto rate = [&](const Vec3& position, double required)
+    {
+      double angle = 180.0;
+      for (const Id other : star)
+      {
+        std::array<Vec3, 4> v;
+        for (int i = 0; i < 4; ++i)
+        {
+          const Id id = this->Mesh.Tetrahedra[other][i];
+          v[i] = id == point ? position : this->GetPoint(id);
+        }
+        angle = std::min(angle, GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]));
+        if (angle <= required || Orientation(v[0], v[1], v[2], v[3]) <= 0)
+        {
+          return 0.0;
+        }
+      }
+      return angle;
+    };
+    Place best{ old, smallest + SmallestGain, false };
+    const Vec3 mean = (1.0 / (3.0 * static_cast<double>(star.size()))) * sum;
+    SearchMove(old, mean, nearest, this->Target, rate, best);
+    if (!best.IsFound)
+    {
+      continue;
+    }
+    this->Mesh.Points[point] = best.Position;
+    for (const Id other : star)
+    {
+      this->Angles[other] = this->MeasureAngle(this->Mesh.Tetrahedra[other]);
+      ++this->Stamps[other];
+    }
+    for (const Id other : star)
+    {
+      this->Schedule(other);
+      // For their neighbours flips may have become possible.
+      for (const Id facet : this->Mesh.Neighbors[other])
+      {
+        if (facet != NoId && std::find(star.begin(), star.end(), facet / 4) == star.end())
+        {
+          this->Schedule(facet / 4);
+        }
+      }
+    }
+    ++this->Report.MovedPoints;
+    return true;
+  }
+  return false;
+}
+
+bool Remover::HasMovableSlivers() const
+{
+  for (std::size_t t = 0; t < this->Angles.size(); ++t)
+  {
+    const TetrahedronIds& ids = this->Mesh.Tetrahedra[t];
+    if (this->Angles[t] < this->Target &&
+      std::any_of(ids.begin(), ids.end(), [&](Id point) { return this->IsFree(point); }))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/**
+ * Leave those triangles of the boundary, and find those edges, whose smallest spheres are empty of all
+ * points. False if aborted.
+ * @param sources the mesh's points of the boundary's
+ */
+bool Remover::FindIntactBoundary(const ExecutionContext& context, const std::vector<Id>& sources,
+  TriangleMesh& surface, std::vector<StructuralEdge>& edges) const
+{
+  const SphereCriteria criteria(this->Mesh.Points);
+  std::vector<EdgeIds> all;
+  std::vector<TriangleIds> intact;
+  for (const TriangleIds& ids : surface.Triangles)
+  {
+    if (all.size() % ContinueInterval == 0 && !context.Continue(0.0, "Checking the boundary"))
+    {
+      return false;
+    }
+    if (criteria.HasEmptySmallestSphere(
+          TriangleIds{ sources[ids[0]], sources[ids[1]], sources[ids[2]] }))
+    {
+      intact.push_back(ids);
+    }
+    for (int i = 0; i < 3; ++i)
+    {
+      all.push_back({ std::min(ids[i], ids[(i + 1) % 3]), std::max(ids[i], ids[(i + 1) % 3]) });
+    }
+  }
+  surface.Triangles = std::move(intact);
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  for (std::size_t e = 0; e < all.size(); ++e)
+  {
+    if (e % ContinueInterval == 0 && !context.Continue(0.5, "Checking the boundary"))
+    {
+      return false;
+    }
+    if (criteria.HasEmptySmallestSphere(EdgeIds{ sources[all[e][0]], sources[all[e][1]] }))
+    {
+      edges.emplace_back();
+      edges.back().Points = all[e];
+    }
+  }
+  return true;
+}
+
+/** Move free points, with the mesh around them made anew. False if aborted. */
+bool Remover::MovePoints(const ExecutionContext& context)
+{
+  TriangleMesh surface = ExtractBoundary(this->Mesh);
+  // The refinement wants the boundary's points first; points without tetrahedra are left out.
+  std::vector<Id> sources = RemoveUnusedPoints(surface);
+  std::vector<StructuralEdge> edges;
+  if (!this->FindIntactBoundary(context.Part(0.0, 0.1), sources, surface, edges))
+  {
+    return false;
+  }
+  TetMesh mesh = this->Mesh;
+  mesh.Points = surface.Points;
+  constexpr Id unused = -2;
+  std::vector<Id> newIds(this->Mesh.Points.size(), unused);
+  for (const TetrahedronIds& ids : mesh.Tetrahedra)
+  {
+    for (const Id id : ids)
+    {
+      newIds[id] = NoId;
+    }
+  }
+  for (std::size_t i = 0; i < sources.size(); ++i)
+  {
+    newIds[sources[i]] = static_cast<Id>(i);
+  }
+  SliverMemory memory;
+  std::vector<InteriorPoint> interior;
+  for (Id p = 0; p < static_cast<Id>(newIds.size()); ++p)
+  {
+    if (newIds[p] == NoId)
+    {
+      newIds[p] = static_cast<Id>(sources.size());
+      sources.push_back(p);
+      mesh.Points.push_back(this->GetPoint(p));
+      interior.push_back({ this->GetPoint(p), 0.0, this->IsFree(p), p, memory.MakeName() });
+    }
+  }
+  for (TetrahedronIds& ids : mesh.Tetrahedra)
+  {
+    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]], newIds[ids[3]] };
+  }
+
+  const TetrahedronLimits limits;
+  VolumeRefinement refinement(std::move(mesh), surface, edges, {}, interior, limits, 0, memory);
+  const Status status =
+    refinement.PerturbSlivers(this->Target, SliverMeans::Moves, context.Part(0.1, 1.0));
+  const TetMesh& moved = refinement.GetMesh();
+  for (std::size_t i = 0; i < sources.size(); ++i)
+  {
+    this->Mesh.Points[sources[i]] = moved.Points[i];
+  }
+  this->Mesh.Tetrahedra = moved.Tetrahedra;
+  this->Mesh.Regions = moved.Regions;
+  this->Mesh.Neighbors = moved.Neighbors;
+  this->Angles.clear();
+  for (TetrahedronIds& ids : this->Mesh.Tetrahedra)
+  {
+    if (ids[0] != NoId)
+    {
+      ids = { sources[ids[0]], sources[ids[1]], sources[ids[2]], sources[ids[3]] };
+    }
+    this->Angles.push_back(ids[0] != NoId ? this->MeasureAngle(ids) : 180.0);
+  }
+  this->Compact();
+  this->Report.MovedPoints += refinement.GetReport().MovedPoints;
+  return status.IsOk();
+}
+
+/** Peel, flip and, if it need not stay Delaunay, smooth. False if aborted. */
+bool Remover::PeelAndFlip(const ExecutionContext& context)
 {
   const Id count = static_cast<Id>(this->Mesh.Tetrahedra.size());
-  this->Angles.reserve(count);
-  this->Stamps.assign(count, 0);
-  for (const TetrahedronIds& ids : this->Mesh.Tetrahedra)
-  {
-    this->Angles.push_back(this->MeasureAngle(ids));
-  }
-  this->Report.SmallestDihedralAngleBefore = this->MeasureSmallestAngle();
-
   // Peel first: the tetrahedra around each point, which it asks for, change with the first flip.
   bool isAborted = false;
   for (const bool isPeeling : { true, false })
@@ -714,13 +955,34 @@ Status Remover::Run(const ExecutionContext& context)
       {
         this->PeelOff(task.Tetrahedron);
       }
-      else if (!this->Improve(task.Tetrahedron))
+      else if (!this->Improve(task.Tetrahedron) && !this->HandOver(task.Tetrahedron) &&
+        this->Options.QualityBeforeDelaunay)
       {
-        this->HandOver(task.Tetrahedron);
+        this->Smooth(task.Tetrahedron);
       }
     }
   }
   this->Compact();
+  return !isAborted;
+}
+
+Status Remover::Run(const ExecutionContext& context)
+{
+  const std::size_t count = this->Mesh.Tetrahedra.size();
+  this->Angles.reserve(count);
+  this->Stamps.assign(count, 0);
+  for (const TetrahedronIds& ids : this->Mesh.Tetrahedra)
+  {
+    this->Angles.push_back(this->MeasureAngle(ids));
+  }
+  this->Report.SmallestDihedralAngleBefore = this->MeasureSmallestAngle();
+  const bool mayMove = !this->Options.IsFree.empty() && !this->Options.QualityBeforeDelaunay;
+  const double share = mayMove ? 0.2 : 1.0;
+  bool isAborted = !this->PeelAndFlip(context.Part(0.0, share));
+  if (mayMove && !isAborted && this->HasMovableSlivers())
+  {
+    isAborted = !this->MovePoints(context.Part(share, 1.0));
+  }
   this->Report.SmallestDihedralAngleAfter = this->MeasureSmallestAngle();
   return isAborted ? Status::Aborted() : Status{};
 }
@@ -732,6 +994,11 @@ Status RemoveSlivers(TetMesh& mesh, const SliverRemoverOptions& options,
 {
   report = {};
   const Status status = CheckMeshInvariants(mesh);
+  if (status.IsOk() && !options.IsFree.empty() && options.IsFree.size() != mesh.Points.size())
+  {
+    return Status::InvalidInput(
+      "Which points are free has to be said for each point, or for none.");
+  }
   return status.IsOk() ? Remover(mesh, options, report).Run(context) : status;
 }
 } // namespace cdm

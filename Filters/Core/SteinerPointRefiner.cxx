@@ -673,7 +673,8 @@ Status Refiner::Run()
         {
           ++sliverRounds;
           status = this->Round->PerturbSlivers(this->Options.DihedralAngleTarget,
-            sliverRounds < MaximumSliverRounds, this->GetRoundContext());
+            sliverRounds < MaximumSliverRounds ? SliverMeans::Requests : SliverMeans::Points,
+            this->GetRoundContext());
           status = status.IsOk() ? this->RefineRound(true) : status;
         }
         const bool isNudged = status.IsOk() && this->Options.DihedralAngleTarget > 0.0 &&

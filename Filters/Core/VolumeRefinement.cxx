@@ -2,6 +2,7 @@
 #include "VolumeRefinement.h"
 
 #include "Measures.h"
+#include "PlaceSearch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +19,6 @@ constexpr std::size_t ReportInterval = 256;
 
 /** What is left of a point's size between it and a new one. */
 constexpr double SizeRatio = 0.1;
-/** Degrees that a change has to gain. */
-constexpr double SmallestGain = 0.05;
 /** Points are moved where angles are below this multiple of the target: it leaves some room. */
 constexpr double MoveRatio = 1.1;
 /** Cosine of the angles between the sides of a layer, and of a side's normal and an upright edge. */
@@ -30,12 +29,8 @@ constexpr double ThinRatio = 0.75;
 constexpr double VeryThinRatio = 0.35;
 /** Free points closer to others than this part of the sizing are removed. */
 constexpr double CloseRatio = 0.3;
-/** First step of the search for a better place: in distances to the nearest neighbor ... */
-constexpr double FirstMove = 0.3;
-/** ... for a move, and in radii of the sphere that it destroys for a new point; ... */
+/** First step of the search for a new point's place, in radii of the sphere that it destroys. */
 constexpr double FirstInsertion = 0.3;
-/** ... and how often the step is halved. */
-constexpr int NumberOfSteps = 5;
 /** Passes over the slivers that are left. */
 constexpr int MaximumPasses = 20;
 } // namespace
@@ -265,7 +260,32 @@ bool VolumeRefinement::DisturbsBoundary(const Vec3& position)
     return false;
   }
   this->Spheres.Find(position, this->Disturbed);
-  return !this->Disturbed.IsEmpty();
+  return !this->Disturbed.IsEmpty() || this->TouchesOpenFacet();
+}
+
+/**
+ * Whether the hole ends at an outer facet that is no triangle of the surface: its smallest sphere is
+ * not known to be empty, so a point on this side may be in conflict with what lies beyond, which the
+ * mesh does not have.
+ */
+bool VolumeRefinement::TouchesOpenFacet() const
+{
+  for (std::size_t i = 0; i < this->Hole.Facets.size(); ++i)
+  {
+    const TriangleIds& facet = this->Hole.Facets[i];
+    const auto isSame = [&](Id t)
+    {
+      const TriangleIds& triangle = this->Surface.Triangles[t];
+      return std::is_permutation(facet.begin(), facet.end(), triangle.begin());
+    };
+    if (this->Hole.Outer[i] == NoId &&
+      std::none_of(this->Incidence.begin() + this->IncidenceBegin[facet[0]],
+        this->Incidence.begin() + this->IncidenceBegin[facet[0] + 1], isSame))
+    {
+      return true;
+    }
+  }
+  return false;
 }
 
 /** Sorted. */
@@ -530,38 +550,6 @@ Status VolumeRefinement::RefineByLimits(bool isShapeTested, const ExecutionConte
   return Status();
 }
 
-/**
- * Pattern search: the 26 directions of a cube around the best place so far, in steps that become
- * shorter where none helps.
- * @param rate the angle at a position, if it is larger than required; otherwise less than that
- */
-template <typename Rate>
-void VolumeRefinement::Search(
-  const Vec3& start, double step, double target, Rate&& rate, Place& best)
-{
-  for (int i = 0; i < NumberOfSteps && best.Angle < target; ++i)
-  {
-    const Vec3 base = best.IsFound ? best.Position : start;
-    bool isBetter = false;
-    for (int direction = 0; direction < 27; ++direction)
-    {
-      const Vec3 offset{ direction % 3 - 1.0, direction / 3 % 3 - 1.0, direction / 9 - 1.0 };
-      if (direction == 13)
-      {
-        continue;
-      }
-      const Vec3 position = base + (step / Norm(offset)) * offset;
-      const double angle = rate(position, best.Angle);
-      if (angle > best.Angle)
-      {
-        best = { position, angle, true };
-        isBetter = true;
-      }
-    }
-    step *= isBetter ? 1.0 : 0.5;
-  }
-}
-
 bool VolumeRefinement::Move(Id point, double target)
 {
   std::vector<Id> star;
@@ -627,35 +615,28 @@ bool VolumeRefinement::Move(Id point, double target)
       : 0.0;
   };
   Place best{ old, smallest + SmallestGain, false };
-  // Lloyd's place first, or half the way there.
-  const Vec3 mean = (1.0 / count) * sum;
-  for (const Vec3& position : { mean, 0.5 * (old + mean) })
-  {
-    const double angle = rate(position, best.Angle);
-    if (angle > best.Angle)
-    {
-      best = { position, angle, true };
-    }
-  }
-  this->Search(old, FirstMove * nearest, target, rate, best);
+  SearchMove(old, (1.0 / count) * sum, nearest, target, rate, best);
 
-  if ((isKeptWithout || !isKept) && *std::min_element(angles.begin(), angles.end()) > best.Angle)
+  if (this->Means != SliverMeans::Moves && (isKeptWithout || !isKept) &&
+    *std::min_element(angles.begin(), angles.end()) > best.Angle)
   {
     ++this->Report.RemovedPoints;
     this->NoteChanges();
     return true;
   }
+  if (!best.IsFound)
+  {
+    this->Mesh.Restore(point, old, this->Mesh.GetRemovedStar());
+    return false;
+  }
   const Id first = this->Mesh.Locate(best.Position, filled.front());
   this->Mesh.FindHole(best.Position, point, first, this->Hole);
   this->Mesh.Restore(point, best.Position, this->Hole);
-  if (best.IsFound)
-  {
-    this->Points[point].Position = best.Position;
-    this->Points[point].Source = NoId;
-    ++this->Report.MovedPoints;
-    this->NoteChanges();
-  }
-  return best.IsFound;
+  this->Points[point].Position = best.Position;
+  this->Points[point].Source = NoId;
+  ++this->Report.MovedPoints;
+  this->NoteChanges();
+  return true;
 }
 
 bool VolumeRefinement::InsertBest(Id tetrahedron, double target)
@@ -680,12 +661,8 @@ bool VolumeRefinement::InsertBest(Id tetrahedron, double target)
       : 0.0;
   };
   Place best{ center, this->GetAngle(tetrahedron) + SmallestGain, false };
-  const double angle = rate(center, best.Angle);
-  if (angle > best.Angle)
-  {
-    best = { center, angle, true };
-  }
-  this->Search(center, FirstInsertion * Distance(center, vertices[0]), target, rate, best);
+  TryPlace(center, rate, best);
+  SearchPlace(center, FirstInsertion * Distance(center, vertices[0]), target, rate, best);
   if (!best.IsFound || !this->Mesh.FindHole(best.Position, number, tetrahedron, this->Hole))
   {
     return false;
@@ -732,8 +709,9 @@ bool VolumeRefinement::Mend(
 }
 
 Status VolumeRefinement::PerturbSlivers(
-  double target, bool mayRequest, const ExecutionContext& context)
+  double target, SliverMeans means, const ExecutionContext& context)
 {
+  this->Means = means;
   struct Sliver
   {
     double Angle;
@@ -785,7 +763,7 @@ Status VolumeRefinement::PerturbSlivers(
         continue;
       }
       this->Memory.SetHopeless(names, isBad && mayInsert);
-      if (isBad && isLast && mayRequest && !this->RequestEdge(ids))
+      if (isBad && isLast && means == SliverMeans::Requests && !this->RequestEdge(ids))
       {
         const std::array<Vec3, 4> v = this->GetVertices(ids);
         const Vec3 center = GetCircumcenter(v[0], v[1], v[2], v[3]);
@@ -795,12 +773,13 @@ Status VolumeRefinement::PerturbSlivers(
         }
       }
     }
-    if (isLast || slivers.empty())
+    const bool isMoving = means == SliverMeans::Moves;
+    if (isLast || slivers.empty() || (isMoving && !isMended))
     {
       break;
     }
     isLast = mayInsert && !isMended;
-    mayInsert = true;
+    mayInsert = !isMoving;
   }
   return Status();
 }

@@ -80,6 +80,17 @@ private:
   std::map<TetrahedronIds, Failure> Failures;
 };
 
+/** What may be done about slivers; each also what is above it. */
+enum class SliverMeans
+{
+  /** Free points are moved. */
+  Moves,
+  /** They are also taken out, and new ones put in. */
+  Points,
+  /** What is in the way in the boundary is requested to be split. */
+  Requests
+};
+
 struct VolumeRefinementReport
 {
   Id InsertedPoints = 0;
@@ -91,8 +102,10 @@ class VolumeRefinement
 {
 public:
   /**
-   * The mesh has the points of the surface, then the interior points; the surface's triangles are
-   * its outer and interface facets, with empty smallest spheres.
+   * The mesh has the points of the surface, then the interior points. It is Delaunay; by the pulling
+   * rule it stays if it is. The surface's triangles are those of its outer and interface facets
+   * whose smallest spheres are empty, and stay so; points are put in only where no other outer
+   * facet is near.
    * @param surfaceSizes as InteriorPoint::Size, one for each point of the surface, or empty
    * @param memory is kept from one boundary to the next, which has more points
    */
@@ -109,8 +122,8 @@ public:
   void RemoveClosePoints(double smallest, const SizingField& sizing);
   /** Until no tetrahedron breaks a limit, but for those that need the boundary split. */
   Status RefineByLimits(bool isShapeTested, const ExecutionContext& context);
-  /** Until no move and no point inside makes angles below the target (degrees) larger. */
-  Status PerturbSlivers(double target, bool mayRequest, const ExecutionContext& context);
+  /** Until nothing of what may be done makes angles below the target (degrees) larger. */
+  Status PerturbSlivers(double target, SliverMeans means, const ExecutionContext& context);
 
   /** What is to be split in the boundary. */
   const std::vector<Id>& GetRequestedTriangles() const { return this->RequestedTriangles; }
@@ -150,14 +163,6 @@ private:
                                    : a.Tetrahedron > b.Tetrahedron;
     }
   };
-  /** The best place found for a point. */
-  struct Place
-  {
-    Vec3 Position;
-    double Angle = 0.0;
-    bool IsFound = false;
-  };
-
   bool IsFree(Id point) const;
   bool IsFull() const;
   std::array<Vec3, 4> GetVertices(const TetrahedronIds& ids) const;
@@ -166,10 +171,9 @@ private:
   bool KeepsLimits(const Vec3& position) const;
   bool IsClear(const Vec3& position) const;
   bool DisturbsBoundary(const Vec3& position);
+  bool TouchesOpenFacet() const;
   void AddPoint(const Vec3& position);
   bool Request(const Vec3& position, bool isSizeKept);
-  template <typename Rate>
-  void Search(const Vec3& start, double step, double target, Rate&& rate, Place& best);
   bool Move(Id point, double target);
   bool InsertBest(Id tetrahedron, double target);
   TetrahedronIds GetNames(const TetrahedronIds& ids) const;
@@ -190,6 +194,7 @@ private:
   /** One for each point of the mesh. */
   std::vector<InteriorPoint> Points;
   VolumeRefinementReport Report;
+  SliverMeans Means = SliverMeans::Moves;
 
   /** Triangles at each point of the surface. */
   std::vector<Id> IncidenceBegin;

@@ -665,6 +665,27 @@ cdm::Status ToPoints(vtkPointSet* input, const char* name, std::vector<cdm::Vec3
 }
 
 //--------------------------------------------------------------------------------------------------
+cdm::Status ToFlags(vtkUnstructuredGrid* input, const char* name, std::vector<char>& flags)
+{
+  vtkDataArray* array = input->GetPointData()->GetArray(name);
+  if (!array)
+  {
+    return {};
+  }
+  if (array->GetNumberOfComponents() != 1 ||
+    array->GetNumberOfTuples() != input->GetNumberOfPoints())
+  {
+    return cdm::Status::InvalidInput(std::string("The point array ") + name +
+      " needs one component and one value for each point: correct or remove it.");
+  }
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    flags.push_back(array->GetComponent(i, 0) != 0.0);
+  }
+  return {};
+}
+
+//--------------------------------------------------------------------------------------------------
 cdm::Status ToSeeds(vtkPointSet* input, std::vector<cdm::RegionSeed>& seeds)
 {
   std::vector<cdm::Vec3> points;

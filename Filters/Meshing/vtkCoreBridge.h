@@ -46,6 +46,8 @@ constexpr const char* BoundaryLabelsName = "BoundaryLabels";
 constexpr const char* RegionIdName = "RegionId";
 /** Point array of the sizing input: a length, one for each axis, or a tensor. */
 constexpr const char* SizingName = "Sizing";
+/** Point array of tetrahedra: not 0 for points inside that may be moved. */
+constexpr const char* FreePointName = "FreePoint";
 /** Point array of structural edges: ids of the surface's points. */
 constexpr const char* SurfacePointIdName = "SurfacePointId";
 /**
@@ -91,6 +93,9 @@ cdm::Status ToTriangleMesh(vtkPolyData* input, cdm::TriangleMesh& surface);
 
 /** Finite points; name says in messages which input they are. */
 cdm::Status ToPoints(vtkPointSet* input, const char* name, std::vector<cdm::Vec3>& points);
+
+/** Where a point array is not zero; empty without the array. */
+cdm::Status ToFlags(vtkUnstructuredGrid* input, const char* name, std::vector<char>& flags);
 
 /** Points as seeds; regions from the point array RegionId, or from 0 on by order. */
 cdm::Status ToSeeds(vtkPointSet* input, std::vector<cdm::RegionSeed>& seeds);

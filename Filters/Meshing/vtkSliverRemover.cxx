@@ -6,6 +6,7 @@
 #include "Core/SliverRemover.h"
 
 #include <vtkCellData.h>
+#include <vtkDataArray.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkIntArray.h>
@@ -59,6 +60,23 @@ std::vector<vtkIdType> FindSurvivors(const cdm::RawVector<cdm::TetrahedronIds>& 
   }
   return sources;
 }
+
+/** For each point itself, or NoId if it has moved. */
+std::vector<cdm::Id> FindStayingPoints(
+  vtkUnstructuredGrid* input, const std::vector<cdm::Vec3>& points)
+{
+  std::vector<cdm::Id> sources(points.size(), cdm::NoId);
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    double x[3];
+    input->GetPoint(static_cast<vtkIdType>(i), x);
+    if (points[i] == cdm::Vec3{ x[0], x[1], x[2] })
+    {
+      sources[i] = static_cast<cdm::Id>(i);
+    }
+  }
+  return sources;
+}
 } // namespace
 
 //--------------------------------------------------------------------------------------------------
@@ -91,12 +109,23 @@ int vtkSliverRemover::RequestData(
         cdm::SliverRemoverOptions options;
         options.DihedralAngleTarget = this->DihedralAngleTarget;
         options.FlatnessRatio = this->FlatnessRatio;
+        options.QualityBeforeDelaunay = this->QualityBeforeDelaunay;
+        step = vtkCoreBridge::ToFlags(input, vtkCoreBridge::FreePointName, options.IsFree);
+        if (!step.IsOk())
+        {
+          return step;
+        }
+        if (this->FreeInteriorPoints)
+        {
+          options.IsFree.assign(mesh.Points.size(), 1);
+        }
         step = cdm::RemoveSlivers(mesh, options, vtkCoreBridge::MakeContext(this), report);
       }
       return step;
     });
   this->NumberOfPeeledTetrahedra = report.PeeledTetrahedra;
   this->NumberOfFlips = report.Flips;
+  this->NumberOfMovedPoints = report.MovedPoints;
   this->SmallestDihedralAngleBefore = report.SmallestDihedralAngleBefore;
   this->SmallestDihedralAngleAfter = report.SmallestDihedralAngleAfter;
   if (!status.IsOk())
@@ -108,7 +137,17 @@ int vtkSliverRemover::RequestData(
   vtkCoreBridge::CopyTuples(input->GetCellData(), FindSurvivors(before, mesh.Tetrahedra),
     output->GetCellData(), { vtkCoreBridge::RegionIdName });
   vtkCoreBridge::FromTetMesh(mesh, output);
-  output->GetPointData()->PassData(input->GetPointData());
+  if (report.MovedPoints == 0)
+  {
+    output->GetPointData()->PassData(input->GetPointData());
+    return 1;
+  }
+  vtkCoreBridge::InterpolateTuplesInCells(input, FindStayingPoints(input, mesh.Points), output);
+  if (vtkDataArray* isFree = input->GetPointData()->GetArray(vtkCoreBridge::FreePointName))
+  {
+    // A property of the points, wherever they are.
+    output->GetPointData()->AddArray(isFree);
+  }
   return 1;
 }
 
@@ -118,8 +157,11 @@ void vtkSliverRemover::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "DihedralAngleTarget: " << this->DihedralAngleTarget << "\n";
   os << indent << "FlatnessRatio: " << this->FlatnessRatio << "\n";
+  os << indent << "FreeInteriorPoints: " << this->FreeInteriorPoints << "\n";
+  os << indent << "QualityBeforeDelaunay: " << this->QualityBeforeDelaunay << "\n";
   os << indent << "NumberOfPeeledTetrahedra: " << this->NumberOfPeeledTetrahedra << "\n";
   os << indent << "NumberOfFlips: " << this->NumberOfFlips << "\n";
+  os << indent << "NumberOfMovedPoints: " << this->NumberOfMovedPoints << "\n";
   os << indent << "SmallestDihedralAngleBefore: " << this->SmallestDihedralAngleBefore << "\n";
   os << indent << "SmallestDihedralAngleAfter: " << this->SmallestDihedralAngleAfter << "\n";
 }

@@ -3,29 +3,42 @@
  * @class   vtkSliverRemover
  * @brief   Stage 4: better tetrahedra from the same points, with every tetrahedron still Delaunay.
  *
- * Method (Fleischmann 1999, sections 3.4.7, 5.7 and 6.4.3):
+ * Method (Fleischmann 1999, sections 3.4.6, 3.4.7, 5.7 and 6.4.3):
  *  1. tetrahedra that are numerically flat on a boundary or interface are peeled off: removed at the
  *     outside, handed to the other region at an interface;
  *  2. 2-3, 3-2 and 4-4 flips within exactly cospherical sets, where any tetrahedralization is
- *     Delaunay, as long as the smallest dihedral angle of the tetrahedra involved grows.
+ *     Delaunay, as long as the smallest dihedral angle of the tetrahedra involved grows;
+ *  3. free points of those that are left are moved, each with a local update of the Delaunay mesh,
+ *     and only if the smallest dihedral angle around it grows.
+ * With QualityBeforeDelaunay, 2. takes all flips that make the smallest dihedral angle larger, also
+ * removals of edges with up to eight tetrahedra, and instead of 3. free points are moved within the
+ * tetrahedra around them (smoothing), in turn with the flips. The mesh is then no longer Delaunay.
  *
  * Inputs: port 0: vtkUnstructuredGrid of VTK_TETRA only, from any source. Cell array RegionId
- * (whole numbers from 0 on) where there are several regions; without it all is region 0.
+ * (whole numbers from 0 on) where there are several regions; without it all is region 0. Point array
+ * FreePoint (optional, one component): points inside with a value other than 0 may be moved.
  *
  * Outputs: port 0: the tetrahedra, with the cell array RegionId (int). Other cell data are kept
  * where a tetrahedron survives (the same four points), and zero for a new one. Points and point data
- * are those of the input, coordinates in double precision.
+ * are those of the input, coordinates in double precision; at moved points point data but FreePoint
+ * are interpolated in the input mesh (arrays of ids excepted: they are dropped if a point moves).
  *
- * Guarantees: points are neither moved nor removed; no tetrahedron is inverted or flat; a mesh that
- * was Delaunay is so still. Deterministic.
+ * Guarantees: no point is added or removed; those on the boundary and interfaces, and those inside
+ * that are not free, keep their coordinates. No tetrahedron is inverted or flat. Unless
+ * QualityBeforeDelaunay is on: a mesh that was Delaunay is so still, and boundary triangles that
+ * fulfilled criterion 3.1 or 3.2 still do. Regions and boundaries keep their shape, but for what is
+ * peeled off. Deterministic.
  *
  * Failure: an error that names the cells, and an empty output, for an empty input, cells of another
- * type, tetrahedra that are inverted, flat or overlap. An aborted run has an empty output.
+ * type, tetrahedra that are inverted, flat or overlap, an array FreePoint of the wrong size. An
+ * aborted run has an empty output.
  *
- * Cost: O(n) for n tetrahedra and few flips.
+ * Cost: O(n) for n tetrahedra and few flips; about a millisecond for a point that is tried to be
+ * moved.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
- * local transformations. Filters/Core/SliverRemover.h is the engine.
+ * local transformations; J. Tournois et al., "Perturbing slivers in 3D Delaunay meshes", 2009: moved
+ * points. Filters/Core/SliverRemover.h is the engine.
  */
 #ifndef vtkSliverRemover_h
 #define vtkSliverRemover_h
@@ -59,9 +72,30 @@ public:
   ///@}
 
   ///@{
-  /** Of the last run; angles in degrees. */
+  /**
+   * Whether all points inside of regions are free, to be moved where that makes better tetrahedra;
+   * otherwise those only that the point array FreePoint says. Default off.
+   */
+  vtkSetMacro(FreeInteriorPoints, bool);
+  vtkGetMacro(FreeInteriorPoints, bool);
+  vtkBooleanMacro(FreeInteriorPoints, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether flips and smoothing may leave tetrahedra that are not Delaunay: for finite elements.
+   * Control volumes and their coupling coefficients need a Delaunay mesh. Default off.
+   */
+  vtkSetMacro(QualityBeforeDelaunay, bool);
+  vtkGetMacro(QualityBeforeDelaunay, bool);
+  vtkBooleanMacro(QualityBeforeDelaunay, bool);
+  ///@}
+
+  ///@{
+  /** Of the last run; angles in degrees; a point counts as often as it is moved. */
   vtkGetMacro(NumberOfPeeledTetrahedra, vtkIdType);
   vtkGetMacro(NumberOfFlips, vtkIdType);
+  vtkGetMacro(NumberOfMovedPoints, vtkIdType);
   vtkGetMacro(SmallestDihedralAngleBefore, double);
   vtkGetMacro(SmallestDihedralAngleAfter, double);
   ///@}
@@ -75,9 +109,12 @@ protected:
 
   double DihedralAngleTarget = 15.0;
   double FlatnessRatio = 1e-9;
+  bool FreeInteriorPoints = false;
+  bool QualityBeforeDelaunay = false;
 
   vtkIdType NumberOfPeeledTetrahedra = 0;
   vtkIdType NumberOfFlips = 0;
+  vtkIdType NumberOfMovedPoints = 0;
   double SmallestDihedralAngleBefore = 0.0;
   double SmallestDihedralAngleAfter = 0.0;
 

@@ -6,7 +6,6 @@
 #include "Core/SteinerPointRefiner.h"
 
 #include <vtkCellData.h>
-#include <vtkDataArray.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkNew.h>
@@ -24,30 +23,8 @@ vtkStandardNewMacro(vtkSteinerPointRefiner);
 
 namespace
 {
-constexpr const char* FreePointName = "FreePoint";
 constexpr const char* RemovePointName = "RemovePoint";
 constexpr const char* FaultName = "RefinementFault";
-
-/** Where a point array is not zero; empty without the array. */
-cdm::Status ToFlags(vtkUnstructuredGrid* input, const char* name, std::vector<char>& flags)
-{
-  vtkDataArray* array = input->GetPointData()->GetArray(name);
-  if (!array)
-  {
-    return {};
-  }
-  if (array->GetNumberOfComponents() != 1 ||
-    array->GetNumberOfTuples() != input->GetNumberOfPoints())
-  {
-    return cdm::Status::InvalidInput(std::string("The point array ") + name +
-      " needs one component and one value for each point: correct or remove it.");
-  }
-  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
-  {
-    flags.push_back(array->GetComponent(i, 0) != 0.0);
-  }
-  return {};
-}
 
 template <typename T>
 void AddFlags(vtkDataSetAttributes* data, const char* name, const std::vector<T>& flags)
@@ -137,11 +114,11 @@ int vtkSteinerPointRefiner::RequestData(
       }
       if (step.IsOk())
       {
-        step = ToFlags(input, FreePointName, engineInput.IsFree);
+        step = vtkCoreBridge::ToFlags(input, vtkCoreBridge::FreePointName, engineInput.IsFree);
       }
       if (step.IsOk())
       {
-        step = ToFlags(input, RemovePointName, engineInput.IsRemoved);
+        step = vtkCoreBridge::ToFlags(input, RemovePointName, engineInput.IsRemoved);
       }
       if (step.IsOk() && pointInput)
       {
@@ -199,7 +176,7 @@ int vtkSteinerPointRefiner::RequestData(
   vtkCoreBridge::FromTetMesh(result.Mesh, output);
   vtkCoreBridge::InterpolateTuplesInCells(input, result.PointSources, output);
   output->GetPointData()->RemoveArray(RemovePointName);
-  AddFlags(output->GetPointData(), FreePointName, result.IsFree);
+  AddFlags(output->GetPointData(), vtkCoreBridge::FreePointName, result.IsFree);
   vtkPolyData* boundaryOutput = vtkPolyData::GetData(outputVector, 1);
   vtkCoreBridge::FromTriangleMesh(result.Boundary, boundaryOutput);
   boundaryOutput->GetPointData()->PassData(output->GetPointData());

@@ -282,4 +282,7 @@ TEST(DynamicTetrahedralization, TakesNothingOnOrBeyondABoundary)
   ExpectMeshOfStage3(mesh, refined.Surface);
   EXPECT_TRUE(mesh.Remove(center));
   ExpectMeshOfStage3(mesh, refined.Surface);
+  // A removal is undone.
+  mesh.Restore(center, { 0.5, 0.5, 0.5 }, mesh.GetRemovedStar());
+  ExpectMeshOfStage3(mesh, refined.Surface);
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "AdvancingFrontTetrahedralizer.h"
 #include "Measures.h"
+#include "MeshBoundary.h"
 #include "MeshChecks.h"
 #include "Predicates.h"
 #include "SliverRemover.h"
@@ -97,27 +99,6 @@ TetMesh MakeGrid(int size, Numbering numbering)
   return mesh;
 }
 
-/** The outer and interface facets of a mesh, with labels. */
-TriangleMesh MakeBoundary(const TetMesh& mesh)
-{
-  TriangleMesh boundary;
-  boundary.Points = mesh.Points;
-  for (Id tetrahedron = 0; tetrahedron < static_cast<Id>(mesh.Tetrahedra.size()); ++tetrahedron)
-  {
-    for (int facet = 0; facet < 4; ++facet)
-    {
-      const Id neighbor = mesh.Neighbors[tetrahedron][facet];
-      const Id front = neighbor == NoId ? OutsideRegion : mesh.Regions[neighbor / 4];
-      if (front < mesh.Regions[tetrahedron])
-      {
-        boundary.Triangles.push_back(GetFacet(mesh.Tetrahedra[tetrahedron], facet));
-        boundary.Labels.push_back({ front, mesh.Regions[tetrahedron] });
-      }
-    }
-  }
-  return boundary;
-}
-
 MeshCheckReport Check(const TetMesh& mesh, const TriangleMesh* boundary = nullptr)
 {
   MeshCheckReport report;
@@ -156,6 +137,82 @@ TetMesh MakeInterfaceSliver()
   EXPECT_TRUE(BuildNeighbors(mesh).IsOk());
   return mesh;
 }
+/** All points are free; those of the boundary stay none the less. */
+SliverRemoverReport RemoveWithMoves(TetMesh& mesh, double target, bool isQualityFirst = false)
+{
+  SliverRemoverOptions options;
+  options.DihedralAngleTarget = target;
+  options.IsFree.assign(mesh.Points.size(), 1);
+  options.QualityBeforeDelaunay = isQualityFirst;
+  SliverRemoverReport report;
+  const Status status = RemoveSlivers(mesh, options, {}, report);
+  EXPECT_TRUE(status.IsOk()) << status.Message;
+  return report;
+}
+
+/**
+ * The Delaunay mesh of random points in the unit cube, with a hole in the middle and two regions:
+ * its boundaries are ragged, their facets Delaunay and no more.
+ */
+TetMesh MakeRaggedMesh(std::mt19937& random, int size, bool isOnGrid)
+{
+  std::vector<Vec3> points;
+  const auto draw = [&]
+  { return isOnGrid ? double(random() % 9) : double(random()) / 536870912.0; };
+  for (int i = 0; i < size; ++i)
+  {
+    const double x = draw();
+    const double y = draw();
+    points.push_back({ x, y, draw() });
+  }
+  AdvancingFrontTetrahedralizerInput input;
+  input.MeshPoints = &points;
+  AdvancingFrontTetrahedralizerOptions options;
+  options.CloseOpenBoundary = true;
+  AdvancingFrontTetrahedralizerOutput output;
+  EXPECT_TRUE(TetrahedralizeByAdvancingFront(input, options, {}, output).IsOk());
+  TetMesh mesh;
+  mesh.Points = output.Mesh.Points;
+  for (const TetrahedronIds& ids : output.Mesh.Tetrahedra)
+  {
+    const Vec3 center = 0.25 *
+      (mesh.Points[ids[0]] + mesh.Points[ids[1]] + mesh.Points[ids[2]] + mesh.Points[ids[3]]);
+    if (Distance(center, { 4.0, 4.0, 4.0 }) > 1.8)
+    {
+      mesh.Tetrahedra.push_back(ids);
+      mesh.Regions.push_back(center.X < 4.0 ? 0 : 1);
+    }
+  }
+  EXPECT_TRUE(BuildNeighbors(mesh).IsOk());
+  return mesh;
+}
+
+std::vector<char> FindBoundaryPoints(const TetMesh& mesh, const TriangleMesh& boundary)
+{
+  std::vector<char> isOnBoundary(mesh.Points.size(), 0);
+  for (const TriangleIds& ids : boundary.Triangles)
+  {
+    for (const Id id : ids)
+    {
+      isOnBoundary[id] = 1;
+    }
+  }
+  return isOnBoundary;
+}
+
+/** A regular octahedron around a point that is not in its center. */
+TetMesh MakeOctahedron()
+{
+  TetMesh mesh;
+  mesh.Points = { { 1, 0, 0 }, { -1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 }, { 0, 0, 1 }, { 0, 0, -1 },
+    { 0.4, 0.3, 0.25 } };
+  for (Id i = 0; i < 8; ++i)
+  {
+    AddTetrahedron(mesh, { i & 1, 2 + (i >> 1 & 1), 4 + (i >> 2), 6 }, 0);
+  }
+  EXPECT_TRUE(BuildNeighbors(mesh).IsOk());
+  return mesh;
+}
 } // namespace
 
 TEST(SliverRemover, GridOfT6BecomesT5)
@@ -163,7 +220,7 @@ TEST(SliverRemover, GridOfT6BecomesT5)
   for (const int size : { 1, 2, 5 })
   {
     TetMesh mesh = MakeGrid(size, Numbering::Parity);
-    const TriangleMesh boundary = MakeBoundary(mesh);
+    const TriangleMesh boundary = ExtractBoundary(mesh);
     const MeshCheckReport before = Check(mesh, &boundary);
     ASSERT_TRUE(before.IsValid()) << before.GetSummary();
     ASSERT_EQ(6 * size * size * size, before.Tetrahedra);
@@ -194,7 +251,7 @@ TEST(SliverRemover, GridOfT6BecomesT5)
 TEST(SliverRemover, MixedCellsImproveAndStayDelaunay)
 {
   TetMesh mesh = MakeGrid(6, Numbering::Random);
-  const TriangleMesh boundary = MakeBoundary(mesh);
+  const TriangleMesh boundary = ExtractBoundary(mesh);
   const MeshCheckReport before = Check(mesh, &boundary);
   ASSERT_TRUE(before.IsValid()) << before.GetSummary();
   const auto countBad = [](const TetMesh& m)
@@ -256,12 +313,18 @@ TEST(SliverRemover, OnlyCosphericalSetsAreFlipped)
     AddTetrahedron(mesh, { 0, 1, 3, 4 }, 0);
     AddTetrahedron(mesh, { 0, 1, 4, 2 }, 0);
     ASSERT_TRUE(BuildNeighbors(mesh).IsOk());
-    const TriangleMesh boundary = MakeBoundary(mesh);
+    const TriangleMesh boundary = ExtractBoundary(mesh);
     ASSERT_TRUE(Check(mesh, &boundary).IsValid());
     const SliverRemoverReport report = Remove(mesh, 70.0);
     EXPECT_EQ(z == -3.0 ? 1 : 0, report.Flips);
     EXPECT_EQ(z == -3.0 ? 2u : 3u, mesh.Tetrahedra.size());
     EXPECT_TRUE(Check(mesh, &boundary).IsValid());
+
+    // Unless quality comes first.
+    const SliverRemoverReport next = RemoveWithMoves(mesh, 70.0, true);
+    EXPECT_EQ(z == -3.0 ? 0 : 1, next.Flips);
+    EXPECT_EQ(2u, mesh.Tetrahedra.size());
+    EXPECT_GT(next.SmallestDihedralAngleAfter, next.SmallestDihedralAngleBefore - 1e-9);
   }
 }
 
@@ -283,7 +346,7 @@ TEST(SliverRemover, DiagonalOfCocircularPointsIsTurnedBetweenTwoSpheres)
       AddTetrahedron(mesh, { circle[i], circle[(i + 2) % 4], circle[(i + 3) % 4], apex }, 0);
     }
     ASSERT_TRUE(BuildNeighbors(mesh).IsOk());
-    const TriangleMesh boundary = MakeBoundary(mesh);
+    const TriangleMesh boundary = ExtractBoundary(mesh);
     ASSERT_TRUE(Check(mesh, &boundary).IsValid());
     const SliverRemoverReport report = Remove(mesh, 70.0);
     flips += report.Flips;
@@ -373,6 +436,186 @@ TEST(SliverRemover, FlatTetrahedronOnAnInterfaceVanishesInTheOtherRegion)
   EXPECT_EQ(same.Tetrahedra, mesh.Tetrahedra);
 }
 
+TEST(SliverRemover, FreePointIsSmoothedToTheBestPlace)
+{
+  // The angle between a facet of an octahedron and the plane through its center and an edge.
+  const double best = std::atan(std::sqrt(2.0)) * Degrees;
+  TetMesh mesh = MakeOctahedron();
+  const TriangleMesh boundary = ExtractBoundary(mesh);
+  ASSERT_TRUE(Check(mesh, &boundary).IsValid());
+  TetMesh same = mesh;
+  const SliverRemoverReport report = RemoveWithMoves(mesh, 50.0, true);
+  EXPECT_LT(report.SmallestDihedralAngleBefore, 35.0);
+  EXPECT_EQ(1, report.MovedPoints);
+  EXPECT_EQ(0, report.Flips);
+  EXPECT_NEAR(best, report.SmallestDihedralAngleAfter, 1e-6);
+  EXPECT_LT(Norm(mesh.Points[6]), 1e-12);
+  EXPECT_TRUE(Check(mesh, &boundary).IsValid());
+
+  // There it lies in the smallest spheres of all facets: Delaunay meshes keep those that are empty.
+  const MeshCheckReport before = Check(same, &boundary);
+  RemoveWithMoves(same, 50.0);
+  EXPECT_LE(Check(same, &boundary).SmallestSphereViolations, before.SmallestSphereViolations);
+}
+
+TEST(SliverRemover, SliversOfDisturbedGridsVanishByMoves)
+{
+  // A block of cubes, whose inner points are a little off: nearly cospherical sets everywhere.
+  constexpr int size = 5;
+  TetMesh block = MakeGrid(size, Numbering::Parity);
+  block.Regions.assign(block.Regions.size(), 0);
+  TriangleMesh surface = ExtractBoundary(block);
+  RemoveUnusedPoints(surface);
+  for (unsigned int seed = 1; seed <= 3; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    const auto draw = [&] { return 0.1 * (double(random()) / 2147483648.0 - 1.0); };
+    std::vector<Vec3> points;
+    for (int i = 0; i < (size - 1) * (size - 1) * (size - 1); ++i)
+    {
+      const double x = 1 + i % (size - 1) + draw();
+      const double y = 1 + i / (size - 1) % (size - 1) + draw();
+      points.push_back({ x, y, 1 + i / (size - 1) / (size - 1) + draw() });
+    }
+    AdvancingFrontTetrahedralizerInput input;
+    input.Surface = &surface;
+    input.MeshPoints = &points;
+    AdvancingFrontTetrahedralizerOutput output;
+    ASSERT_TRUE(TetrahedralizeByAdvancingFront(input, {}, {}, output).IsOk());
+    TetMesh& mesh = output.Mesh;
+    const SliverRemoverReport report = RemoveWithMoves(mesh, 12.0);
+    EXPECT_LT(report.SmallestDihedralAngleBefore, 2.0);
+    EXPECT_GT(report.SmallestDihedralAngleAfter, 12.0);
+    EXPECT_GT(report.MovedPoints, 0);
+    const MeshCheckReport check = Check(mesh, &output.Boundary);
+    EXPECT_TRUE(check.IsValid()) << check.GetSummary();
+    EXPECT_EQ(0, check.SmallestSphereViolations + check.EdgeSphereViolations);
+  }
+}
+
+TEST(SliverRemover, MovesKeepAnyBoundaryAndTheDelaunayProperty)
+{
+  std::array<Id, 2> moved{ 0, 0 };
+  for (unsigned int seed = 1; seed <= 4; ++seed)
+  {
+    // Whole coordinates: many cospherical sets, some of which have been flipped before.
+    for (const bool isOnGrid : { false, true })
+    {
+      SCOPED_TRACE("seed " + std::to_string(seed) + (isOnGrid ? ", whole coordinates" : ""));
+      std::mt19937 random(seed);
+      TetMesh mesh = MakeRaggedMesh(random, 400, isOnGrid);
+      if (isOnGrid)
+      {
+        EXPECT_GT(Remove(mesh, 40.0, 0.0).Flips, 0);
+      }
+      TetMesh again = mesh;
+      const TriangleMesh boundary = ExtractBoundary(mesh);
+      const MeshCheckReport before = Check(mesh, &boundary);
+      ASSERT_TRUE(before.IsValid()) << before.GetSummary();
+      EXPECT_GT(before.SmallestSphereViolations, 0);
+      const std::vector<Vec3> points = mesh.Points;
+
+      const double target = isOnGrid ? 25.0 : 15.0;
+      const SliverRemoverReport report = RemoveWithMoves(mesh, target);
+      moved[isOnGrid] += report.MovedPoints;
+      EXPECT_EQ(0, report.PeeledTetrahedra);
+      const MeshCheckReport after = Check(mesh, &boundary);
+      EXPECT_TRUE(after.IsValid()) << after.GetSummary();
+      EXPECT_LE(after.SmallestSphereViolations, before.SmallestSphereViolations);
+      EXPECT_LE(after.EdgeSphereViolations, before.EdgeSphereViolations);
+      EXPECT_EQ(before.UnusedPoints, after.UnusedPoints);
+      EXPECT_GE(after.SmallestDihedralAngle, before.SmallestDihedralAngle);
+      const std::vector<char> isOnBoundary = FindBoundaryPoints(mesh, boundary);
+      for (std::size_t p = 0; p < points.size(); ++p)
+      {
+        EXPECT_TRUE(!isOnBoundary[p] || points[p] == mesh.Points[p]);
+      }
+
+      // The same input gives the same mesh.
+      RemoveWithMoves(again, target);
+      EXPECT_EQ(again.Points, mesh.Points);
+      EXPECT_EQ(again.Tetrahedra, mesh.Tetrahedra);
+      EXPECT_EQ(again.Neighbors, mesh.Neighbors);
+    }
+  }
+  EXPECT_GT(moved[0], 100);
+  EXPECT_GT(moved[1], 10);
+}
+
+TEST(SliverRemover, OnlyFreePointsAreMoved)
+{
+  std::mt19937 random(7);
+  TetMesh mesh = MakeRaggedMesh(random, 400, false);
+  const TetMesh before = mesh;
+  SliverRemoverOptions options;
+  options.IsFree.assign(mesh.Points.size(), 0);
+  SliverRemoverReport report;
+  ASSERT_TRUE(RemoveSlivers(mesh, options, {}, report).IsOk());
+  EXPECT_EQ(0, report.MovedPoints);
+  EXPECT_EQ(before.Points, mesh.Points);
+  EXPECT_EQ(before.Tetrahedra, mesh.Tetrahedra);
+
+  for (std::size_t p = 0; p < mesh.Points.size(); p += 2)
+  {
+    options.IsFree[p] = 1;
+  }
+  for (const bool isQualityFirst : { false, true })
+  {
+    mesh = before;
+    options.QualityBeforeDelaunay = isQualityFirst;
+    ASSERT_TRUE(RemoveSlivers(mesh, options, {}, report).IsOk());
+    EXPECT_GT(report.MovedPoints, 0);
+    for (std::size_t p = 1; p < mesh.Points.size(); p += 2)
+    {
+      EXPECT_EQ(before.Points[p], mesh.Points[p]);
+    }
+  }
+
+  options.IsFree.pop_back();
+  EXPECT_EQ(StatusCode::InvalidInput, RemoveSlivers(mesh, options, {}, report).Code);
+}
+
+TEST(SliverRemover, QualityBeforeDelaunayKeepsTheRegions)
+{
+  for (unsigned int seed = 1; seed <= 4; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    const TetMesh input = MakeRaggedMesh(random, 400, false);
+    const TriangleMesh boundary = ExtractBoundary(input);
+    const auto countSlivers = [](const TetMesh& mesh)
+    {
+      return std::count_if(mesh.Tetrahedra.begin(), mesh.Tetrahedra.end(),
+        [&](const TetrahedronIds& ids)
+        {
+          return GetSmallestDihedralAngle(mesh.Points[ids[0]], mesh.Points[ids[1]],
+                   mesh.Points[ids[2]], mesh.Points[ids[3]]) < 15.0;
+        });
+    };
+    TetMesh delaunay = input;
+    RemoveWithMoves(delaunay, 15.0);
+    TetMesh mesh = input;
+    const SliverRemoverReport report = RemoveWithMoves(mesh, 15.0, true);
+    EXPECT_GT(report.Flips, 0);
+    EXPECT_GT(report.MovedPoints, 0);
+    EXPECT_GE(report.SmallestDihedralAngleAfter, report.SmallestDihedralAngleBefore);
+    EXPECT_LT(countSlivers(mesh), countSlivers(input) / 2);
+
+    // All is as it was but the empty spheres.
+    MeshCheckReport check = Check(mesh, &boundary);
+    EXPECT_GT(check.NonDelaunayTetrahedra, 0);
+    check.NonDelaunayTetrahedra = 0;
+    EXPECT_TRUE(check.IsValid()) << check.GetSummary();
+
+    // Moves in such a mesh do no harm either.
+    RemoveWithMoves(mesh, 20.0);
+    check = Check(mesh, &boundary);
+    check.NonDelaunayTetrahedra = 0;
+    EXPECT_TRUE(check.IsValid()) << check.GetSummary();
+  }
+}
+
 TEST(SliverRemover, BadInputIsNamedAndLeftAlone)
 {
   TetMesh mesh = MakeGrid(1, Numbering::Parity);
@@ -402,7 +645,7 @@ TEST(SliverRemover, EmptyMeshAndAbort)
   EXPECT_EQ(0.0, empty.SmallestDihedralAngleAfter);
 
   mesh = MakeGrid(8, Numbering::Parity);
-  const TriangleMesh boundary = MakeBoundary(mesh);
+  const TriangleMesh boundary = ExtractBoundary(mesh);
   SliverRemoverOptions options;
   options.DihedralAngleTarget = 70.0;
   for (int patience = 0; patience < 5; ++patience)
@@ -413,4 +656,23 @@ TEST(SliverRemover, EmptyMeshAndAbort)
     EXPECT_TRUE(RemoveSlivers(mesh, options, context, report).IsAborted());
     EXPECT_TRUE(Check(mesh, &boundary).IsValid());
   }
+
+  // Also while points are moved.
+  std::mt19937 random(3);
+  const TetMesh ragged = MakeRaggedMesh(random, 400, false);
+  const TriangleMesh raggedBoundary = ExtractBoundary(ragged);
+  options.DihedralAngleTarget = 15.0;
+  options.IsFree.assign(ragged.Points.size(), 1);
+  Id moved = 0;
+  for (int patience = 0; patience < 12; ++patience)
+  {
+    mesh = ragged;
+    int calls = 0;
+    SliverRemoverReport report;
+    const ExecutionContext context({}, [&] { return calls++ >= patience; });
+    EXPECT_TRUE(RemoveSlivers(mesh, options, context, report).IsAborted());
+    EXPECT_TRUE(Check(mesh, &raggedBoundary).IsValid());
+    moved += report.MovedPoints;
+  }
+  EXPECT_GT(moved, 0);
 }

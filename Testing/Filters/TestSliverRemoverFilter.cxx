@@ -3,17 +3,24 @@
 
 #include <vtkAdvancingFrontTetrahedralizer.h>
 #include <vtkBoundaryTriangulator.h>
+#include <vtkDelaunayMeshCriteria.h>
 #include <vtkDelaunaySurfaceRefiner.h>
 #include <vtkSliverRemover.h>
 
+#include <vtkUnsignedCharArray.h>
+
 #include <algorithm>
+#include <cmath>
 
 using namespace testing_filters;
 
 namespace
 {
-/** A block of n x n x n unit cubes of mesh points inside of a box, meshed up to stage 3. */
-vtkSmartPointer<vtkUnstructuredGrid> MakeGridMesh(int n)
+/**
+ * A block of n x n x n unit cubes of mesh points inside of a box, meshed up to stage 3. With noise,
+ * the points are off by up to that, and nearly cospherical sets make slivers.
+ */
+vtkSmartPointer<vtkUnstructuredGrid> MakeGridMesh(int n, double noise = 0.0)
 {
   SurfaceBuilder builder;
   builder.AddBox({ 0, 0, 0 }, { double(n), double(n), double(n) });
@@ -24,7 +31,8 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeGridMesh(int n)
     {
       for (int k = 1; k < n; ++k)
       {
-        points.push_back({ double(i), double(j), double(k) });
+        const auto draw = [&](double a) { return noise * std::sin(a * (i + 7.3 * j + 41.7 * k)); };
+        points.push_back({ i + draw(11.0), j + draw(17.0), k + draw(23.0) });
       }
     }
   }
@@ -120,6 +128,68 @@ TEST(SliverRemoverFilter, TakesMeshesFromOutside)
   EXPECT_NEAR(GetVolume(output, 0), 1.0 / 3.0, 1e-15);
 }
 
+TEST(SliverRemoverFilter, MovesFreePoints)
+{
+  auto input = MakeGridMesh(5, 0.1);
+  const vtkIdType count = input->GetNumberOfPoints();
+  vtkNew<vtkSliverRemover> filter;
+  filter->SetInputData(input);
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfMovedPoints(), 0);
+  const double before = filter->GetSmallestDihedralAngleAfter();
+
+  // All inside, or those with the array: here one half of the points.
+  vtkNew<vtkUnsignedCharArray> flags;
+  flags->SetName("FreePoint");
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    flags->InsertNextValue(i % 2);
+  }
+  for (const bool isAll : { true, false })
+  {
+    filter->SetFreeInteriorPoints(isAll);
+    if (!isAll)
+    {
+      input->GetPointData()->AddArray(flags);
+    }
+    for (const bool isQualityFirst : { false, true })
+    {
+      filter->SetQualityBeforeDelaunay(isQualityFirst);
+      filter->Update();
+      EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+      EXPECT_GT(filter->GetNumberOfMovedPoints(), 0);
+      EXPECT_GE(filter->GetSmallestDihedralAngleAfter(), before);
+      vtkUnstructuredGrid* output = filter->GetOutput();
+      ASSERT_EQ(output->GetNumberOfPoints(), count);
+      EXPECT_NEAR(GetVolume(output, 0), 125.0, 1e-10);
+      ExpectLinear(output);
+      vtkDataArray* kept = output->GetPointData()->GetArray("FreePoint");
+      EXPECT_EQ(kept == nullptr, isAll);
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        double x[3];
+        double y[3];
+        input->GetPoint(i, x);
+        output->GetPoint(i, y);
+        const bool isInside =
+          *std::min_element(x, x + 3) > 0.0 && *std::max_element(x, x + 3) < 5.0;
+        EXPECT_TRUE((isInside && (isAll || i % 2 == 1)) || std::equal(x, x + 3, y));
+        EXPECT_TRUE(isAll || kept->GetComponent(i, 0) == i % 2);
+      }
+
+      vtkNew<vtkDelaunayMeshCriteria> criteria;
+      criteria->SetInputData(output);
+      criteria->Update();
+      vtkFieldData* summary = criteria->GetOutput()->GetFieldData();
+      vtkDataArray* faults = summary->GetArray("NonDelaunayTetrahedra");
+      ASSERT_NE(faults, nullptr);
+      EXPECT_EQ(faults->GetComponent(0, 0) > 0.0, isQualityFirst);
+    }
+  }
+}
+
 TEST(SliverRemoverFilter, RefusesBadInput)
 {
   vtkNew<vtkSliverRemover> filter;
@@ -152,6 +222,16 @@ TEST(SliverRemoverFilter, RefusesBadInput)
   wrongRegion->GetCellData()->AddArray(regions);
   filter->SetInputData(wrongRegion);
   ExpectFailure(filter, { "RegionId", "Cells: 1 (1 in all)" });
+
+  auto wrongFlags = MakeTwoTetrahedra();
+  vtkNew<vtkUnsignedCharArray> flags;
+  flags->SetName("FreePoint");
+  flags->SetNumberOfComponents(2);
+  flags->SetNumberOfTuples(5);
+  flags->Fill(1);
+  wrongFlags->GetPointData()->AddArray(flags);
+  filter->SetInputData(wrongFlags);
+  ExpectFailure(filter, { "FreePoint" });
 }
 
 TEST(SliverRemoverFilter, ReportsProgressAndAborts)
