@@ -924,6 +924,7 @@ Status Builder::StartFromBlock(
         this->MakeSphere(t);
       }
     });
+  this->Progress = share;
   return isDone ? Status() : Status::Aborted();
 }
 

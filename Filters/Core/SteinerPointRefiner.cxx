@@ -25,6 +25,8 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr Id MaximumRounds = 200;
 /** Rounds that split the boundary for slivers. */
 constexpr int MaximumSliverRounds = 40;
+/** Slivers wait until no more requests than these are left from badly shaped tetrahedra. */
+constexpr std::size_t FewRequests = 16;
 /** Edges of the boundary for a largest volume, in edges of the regular tetrahedron of that volume. */
 constexpr double BoundaryEdgeRatio = 1.15;
 /** Degrees: flatter tetrahedra at the boundary are there by rounding. */
@@ -65,11 +67,11 @@ private:
   void CollectReport();
   bool NudgeFlatBoundary();
   Vec3 GetTangent(Id point, const Vec3& wanted) const;
-  bool HasRequests() const
+  std::size_t CountRequests() const
   {
-    return !this->Round->GetRequestedTriangles().empty() ||
-      !this->Round->GetRequestedEdges().empty();
+    return this->Round->GetRequestedTriangles().size() + this->Round->GetRequestedEdges().size();
   }
+  bool HasRequests() const { return this->CountRequests() > 0; }
   std::vector<char> FindSharpPoints() const;
   void FindFaults();
   void MakeOutput();
@@ -666,7 +668,7 @@ Status Refiner::Run()
     if (areSizesDone && status.IsOk())
     {
       status = this->RefineRound(true);
-      if (status.IsOk() && (this->IsStuck || !this->HasRequests()))
+      if (status.IsOk() && (this->IsStuck || this->CountRequests() <= FewRequests))
       {
         const Id inserted = this->Round->GetReport().InsertedPoints;
         if (this->Options.DihedralAngleTarget > 0.0)

@@ -179,6 +179,24 @@ TEST(SteinerPointRefiner, BoxesGetNoSliversAtAll)
   }
 }
 
+TEST(SteinerPointRefiner, TurnedBoxesGetNoFlatTetrahedra)
+{
+  // Their facets are plane but for rounding, and many of their points lie on one circle.
+  for (unsigned int seed = 1; seed <= 8; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 generator(seed);
+    const Stage3 mesh = MakeMesh(MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, 0, 0.3 * seed));
+    SteinerPointRefinerInput input;
+    input.Mesh = &mesh.Output.Mesh;
+    SteinerPointRefinerOptions options;
+    options.MaximumVolume = 5e-4;
+    const SteinerPointRefinerOutput output = Refine(input, options);
+    EXPECT_EQ(output.Report.Slivers, 0);
+    EXPECT_EQ(output.Report.TooLarge, 0);
+  }
+}
+
 TEST(SteinerPointRefiner, RandomComplexesInAnyPosition)
 {
   for (unsigned int seed = 1; seed <= 6; ++seed)
@@ -284,7 +302,6 @@ TEST(SteinerPointRefiner, GivenPointsStayUnlessTheyAreFree)
   EXPECT_LT(countKept(moved), count);
   EXPECT_GT(moved.Report.MovedPoints, 0);
   EXPECT_EQ(moved.Report.Slivers, 0);
-  EXPECT_LT(moved.Mesh.Points.size(), fixed.Mesh.Points.size());
 
   // Points put in and taken out, and nothing else: no quality is asked for.
   input.IsFree.clear();
