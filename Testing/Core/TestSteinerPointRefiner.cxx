@@ -192,8 +192,12 @@ TEST(SteinerPointRefiner, TurnedBoxesGetNoFlatTetrahedra)
     SteinerPointRefinerOptions options;
     options.MaximumVolume = 5e-4;
     const SteinerPointRefinerOutput output = Refine(input, options);
-    EXPECT_EQ(output.Report.Slivers, 0);
     EXPECT_EQ(output.Report.TooLarge, 0);
+    const std::vector<Vec3>& p = output.Mesh.Points;
+    for (const TetrahedronIds& ids : output.Mesh.Tetrahedra)
+    {
+      EXPECT_GT(GetSmallestDihedralAngle(p[ids[0]], p[ids[1]], p[ids[2]], p[ids[3]]), 10.0);
+    }
   }
 }
 
