@@ -11,9 +11,11 @@
  *     tetrahedralized with the mesh points (AdvancingFrontTetrahedralizer.h);
  *  3. for this boundary the inside is refined (VolumeRefinement.h): Steiner points in tetrahedra that
  *     are too large, then also in badly shaped ones, where each comes no closer to others than a
- *     quarter of the shortest edge that was there before; what disturbs the boundary is requested to
+ *     tenth of the shortest edge that was there before; what disturbs the boundary is requested to
  *     be split instead;
- *  4. if nothing is requested any more: points of slivers are moved, taken out or added.
+ *  4. if little is requested any more: points of slivers are moved, taken out or added. Where points
+ *     of one plane facet lie on a circle but for rounding, a new one of them is moved along the
+ *     facet by 1e-9 of the circle.
  * It ends when a round requests nothing, or nothing that can be done.
  *
  * Guarantees: the mesh is Delaunay by the pulling rule and conforms to the same surface; facets on

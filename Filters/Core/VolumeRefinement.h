@@ -16,7 +16,7 @@
  *    of what it replaces larger, and breaks no limit that was kept.
  *
  * Sharp input angles would be refined for ever. Each point has a size, the shortest edge at it before
- * any shape was refined; no point comes closer to it than a quarter of that, but for size limits.
+ * any shape was refined; no point comes closer to it than a tenth of that, but for size limits.
  * Tetrahedra across a thin layer, from one side to the other, are flat on purpose: only size counts.
  *
  * References: J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998,
@@ -43,7 +43,7 @@ namespace cdm
 struct InteriorPoint
 {
   Vec3 Position;
-  /** No other point comes closer than a quarter of this; 0: no bound. */
+  /** No other point comes closer than a tenth of this; 0: no bound. */
   double Size = 0.0;
   /** Whether it may be moved and removed. */
   bool IsFree = false;
