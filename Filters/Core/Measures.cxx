@@ -20,6 +20,40 @@ Vec3 Divide(const Vec3& vector, double divisor)
   }
   return { vector.X / divisor, vector.Y / divisor, vector.Z / divisor };
 }
+
+/** What the dihedral angles at the edges ab, ac, ad, bc, bd, cd are made of. */
+struct DihedralSides
+{
+  DihedralSides(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+  {
+    const Vec3 ab = b - a;
+    const Vec3 ac = c - a;
+    const Vec3 ad = d - a;
+    const Vec3 bc = c - b;
+    const Vec3 bd = d - b;
+    // Normals of the facets opposite to a, b, c, d, all to the same side (inside or outside).
+    const Vec3 normalA = Cross(bc, bd);
+    const Vec3 normalB = Cross(ad, ac);
+    const Vec3 normalC = Cross(ab, ad);
+    const Vec3 normalD = Cross(ac, ab);
+    this->SixVolumes = std::abs(Dot(normalD, ad));
+    this->Lengths = { Norm(ab), Norm(ac), Norm(ad), Norm(bc), Norm(bd), Norm(d - c) };
+    this->Products = { Dot(normalC, normalD), Dot(normalB, normalD), Dot(normalB, normalC),
+      Dot(normalA, normalD), Dot(normalA, normalC), Dot(normalA, normalB) };
+  }
+
+  double GetAngle(int edge) const
+  {
+    // n x m of the facets at an edge is the edge times six volumes: the sine's share.
+    return std::atan2(this->SixVolumes * this->Lengths[edge], 0.0 - this->Products[edge]) *
+      DegreesPerRadian;
+  }
+
+  double SixVolumes;
+  std::array<double, 6> Lengths;
+  /** Of the normals of the two facets at each edge. */
+  std::array<double, 6> Products;
+};
 } // namespace
 
 double GetSignedVolume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
@@ -34,53 +68,29 @@ double GetTriangleArea(const Vec3& a, const Vec3& b, const Vec3& c)
 
 std::array<double, 6> GetDihedralAngles(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
-  const Vec3 ab = b - a;
-  const Vec3 ac = c - a;
-  const Vec3 ad = d - a;
-  const Vec3 bc = c - b;
-  const Vec3 bd = d - b;
-  const Vec3 cd = d - c;
-  // Normals of the facets opposite to a, b, c, d, all to the same side (inside or outside).
-  const Vec3 normalA = Cross(bc, bd);
-  const Vec3 normalB = Cross(ad, ac);
-  const Vec3 normalC = Cross(ab, ad);
-  const Vec3 normalD = Cross(ac, ab);
-  // n x m of the facets at an edge is the edge times six volumes: the sine's share.
-  const double sixVolumes = std::abs(Dot(normalD, ad));
-  const auto angle = [sixVolumes](const Vec3& edge, const Vec3& first, const Vec3& second)
-  { return std::atan2(sixVolumes * Norm(edge), 0.0 - Dot(first, second)) * DegreesPerRadian; };
-  return { angle(ab, normalC, normalD), angle(ac, normalB, normalD), angle(ad, normalB, normalC),
-    angle(bc, normalA, normalD), angle(bd, normalA, normalC), angle(cd, normalA, normalB) };
+  const DihedralSides sides(a, b, c, d);
+  return { sides.GetAngle(0), sides.GetAngle(1), sides.GetAngle(2), sides.GetAngle(3),
+    sides.GetAngle(4), sides.GetAngle(5) };
 }
 
 double GetSmallestDihedralAngle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
-  const Vec3 ab = b - a;
-  const Vec3 ac = c - a;
-  const Vec3 ad = d - a;
-  const Vec3 bc = c - b;
-  const Vec3 bd = d - b;
-  const Vec3 normalA = Cross(bc, bd);
-  const Vec3 normalB = Cross(ad, ac);
-  const Vec3 normalC = Cross(ab, ad);
-  const Vec3 normalD = Cross(ac, ab);
-  const double sixVolumes = std::abs(Dot(normalD, ad));
-  if (sixVolumes == 0.0)
+  const DihedralSides sides(a, b, c, d);
+  if (sides.SixVolumes == 0.0)
   {
     const std::array<double, 6> angles = GetDihedralAngles(a, b, c, d);
     return *std::min_element(angles.begin(), angles.end());
   }
   // The smallest angle has the largest cotangent: one arc tangent is enough.
-  const double lengths[6] = { Norm(ab), Norm(ac), Norm(ad), Norm(bc), Norm(bd), Norm(d - c) };
-  const double products[6] = { Dot(normalC, normalD), Dot(normalB, normalD), Dot(normalB, normalC),
-    Dot(normalA, normalD), Dot(normalA, normalC), Dot(normalA, normalB) };
   int smallest = 0;
   for (int i = 1; i < 6; ++i)
   {
     smallest =
-      products[i] * lengths[smallest] < products[smallest] * lengths[i] ? i : smallest;
+      sides.Products[i] * sides.Lengths[smallest] < sides.Products[smallest] * sides.Lengths[i]
+      ? i
+      : smallest;
   }
-  return std::atan2(sixVolumes * lengths[smallest], 0.0 - products[smallest]) * DegreesPerRadian;
+  return sides.GetAngle(smallest);
 }
 
 double GetSmallestHeight(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)

@@ -51,4 +51,29 @@ std::vector<Id> RemoveUnusedPoints(TriangleMesh& surface)
   }
   return kept;
 }
+
+std::vector<Id> FindPointsInside(const TetMesh& mesh, const std::vector<Id>& boundaryPoints)
+{
+  std::vector<char> isInside(mesh.Points.size(), 0);
+  for (const TetrahedronIds& ids : mesh.Tetrahedra)
+  {
+    for (const Id id : ids)
+    {
+      isInside[id] = 1;
+    }
+  }
+  for (const Id id : boundaryPoints)
+  {
+    isInside[id] = 0;
+  }
+  std::vector<Id> points;
+  for (std::size_t p = 0; p < isInside.size(); ++p)
+  {
+    if (isInside[p])
+    {
+      points.push_back(static_cast<Id>(p));
+    }
+  }
+  return points;
+}
 } // namespace cdm

@@ -22,6 +22,9 @@ TriangleMesh ExtractBoundary(const TetMesh& mesh);
 
 /** Drops the points that no triangle uses; the others' ids before, ascending. */
 std::vector<Id> RemoveUnusedPoints(TriangleMesh& surface);
+
+/** The points of tetrahedra that are none of the boundary's, ascending. */
+std::vector<Id> FindPointsInside(const TetMesh& mesh, const std::vector<Id>& boundaryPoints);
 } // namespace cdm
 
 #endif

@@ -9,6 +9,7 @@
 #include "MeshChecks.h"
 #include "Predicates.h"
 #include "RegionLocator.h"
+#include "ShortestEdges.h"
 #include "SurfaceCoarsening.h"
 #include "SurfaceSides.h"
 #include "TriangleIntersection.h"
@@ -196,24 +197,6 @@ bool AssignRegions(const TriangleMesh& moved, const ExecutionContext& context, T
   pieces.Triangles = std::move(triangles);
   pieces.SourceCells.clear();
   return true;
-}
-
-/** The shortest edge at each point; infinite without edges. */
-std::vector<double> FindShortestEdges(const TetMesh& mesh)
-{
-  std::vector<double> lengths(mesh.Points.size(), Infinity);
-  for (const TetrahedronIds& ids : mesh.Tetrahedra)
-  {
-    for (const int(&edge)[2] : TetrahedronEdges)
-    {
-      const double length = Distance(mesh.Points[ids[edge[0]]], mesh.Points[ids[edge[1]]]);
-      for (const int end : edge)
-      {
-        lengths[ids[end]] = std::min(lengths[ids[end]], length);
-      }
-    }
-  }
-  return lengths;
 }
 
 class Remeshing

@@ -27,7 +27,7 @@ namespace cdm
  * @param getSide the exact sign of Orientation() in Predicates.h
  */
 template <typename GetSide>
-int GetPulledPosition(std::array<Vec3, 4> const& vertices, const std::array<Id, 4>& numbers,
+int GetPulledPosition(const std::array<Vec3, 4>& vertices, const std::array<Id, 4>& numbers,
   const Vec3& point, Id own, GetSide&& getSide)
 {
   // What is pulled most decides: the point comes to lie within; another one leaves the point

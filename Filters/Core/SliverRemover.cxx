@@ -864,31 +864,19 @@ bool Remover::MovePoints(const ExecutionContext& context)
     return false;
   }
   TetMesh mesh = this->Mesh;
-  mesh.Points = surface.Points;
-  constexpr Id unused = -2;
-  std::vector<Id> newIds(this->Mesh.Points.size(), unused);
-  for (const TetrahedronIds& ids : mesh.Tetrahedra)
-  {
-    for (const Id id : ids)
-    {
-      newIds[id] = NoId;
-    }
-  }
-  for (std::size_t i = 0; i < sources.size(); ++i)
-  {
-    newIds[sources[i]] = static_cast<Id>(i);
-  }
   SliverMemory memory;
   std::vector<InteriorPoint> interior;
-  for (Id p = 0; p < static_cast<Id>(newIds.size()); ++p)
+  for (const Id p : FindPointsInside(mesh, sources))
   {
-    if (newIds[p] == NoId)
-    {
-      newIds[p] = static_cast<Id>(sources.size());
-      sources.push_back(p);
-      mesh.Points.push_back(this->GetPoint(p));
-      interior.push_back({ this->GetPoint(p), 0.0, this->IsFree(p), p, memory.MakeName() });
-    }
+    sources.push_back(p);
+    interior.push_back({ this->GetPoint(p), 0.0, this->IsFree(p), p, memory.MakeName() });
+  }
+  std::vector<Id> newIds(this->Mesh.Points.size(), NoId);
+  mesh.Points.clear();
+  for (const Id p : sources)
+  {
+    newIds[p] = static_cast<Id>(mesh.Points.size());
+    mesh.Points.push_back(this->GetPoint(p));
   }
   for (TetrahedronIds& ids : mesh.Tetrahedra)
   {
@@ -986,7 +974,6 @@ Status Remover::Run(const ExecutionContext& context)
   this->Report.SmallestDihedralAngleAfter = this->MeasureSmallestAngle();
   return isAborted ? Status::Aborted() : Status{};
 }
-
 } // namespace
 
 Status RemoveSlivers(TetMesh& mesh, const SliverRemoverOptions& options,

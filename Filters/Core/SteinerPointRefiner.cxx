@@ -5,6 +5,7 @@
 #include "Measures.h"
 #include "MeshBoundary.h"
 #include "MeshChecks.h"
+#include "ShortestEdges.h"
 #include "VolumeRefinement.h"
 
 #include <algorithm>
@@ -19,8 +20,6 @@ namespace cdm
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
-
 /** Rounds without end would be an error of the rules; so many have never been seen. */
 constexpr Id MaximumRounds = 200;
 /** Rounds that split the boundary for slivers. */
@@ -220,24 +219,8 @@ void Refiner::ExtractSurface()
     std::iota(this->Surface.SourceCells.begin(), this->Surface.SourceCells.end(), 0);
   }
   this->SurfaceSources = RemoveUnusedPoints(this->Surface);
-  std::vector<char> isInside(mesh.Points.size(), 0);
-  for (const TetrahedronIds& ids : mesh.Tetrahedra)
+  for (Id p : FindPointsInside(mesh, this->SurfaceSources))
   {
-    for (Id id : ids)
-    {
-      isInside[id] = 1;
-    }
-  }
-  for (Id id : this->SurfaceSources)
-  {
-    isInside[id] = 0;
-  }
-  for (Id p = 0; p < static_cast<Id>(mesh.Points.size()); ++p)
-  {
-    if (!isInside[p])
-    {
-      continue;
-    }
     if (!this->Input.IsRemoved.empty() && this->Input.IsRemoved[p])
     {
       ++this->Output.Report.RemovedPoints;
@@ -406,21 +389,7 @@ void Refiner::CollectSurfaceSizes()
 /** The shortest edge at each point of the mesh. */
 void Refiner::MeasureSizes()
 {
-  const TetMesh& mesh = this->Round->GetMesh();
-  std::vector<double> sizes(mesh.Points.size(), Infinity);
-  for (const TetrahedronIds& ids : mesh.Tetrahedra)
-  {
-    if (ids[0] == NoId)
-    {
-      continue;
-    }
-    for (const auto& edge : TetrahedronEdges)
-    {
-      const double length = Distance(mesh.Points[ids[edge[0]]], mesh.Points[ids[edge[1]]]);
-      sizes[ids[edge[0]]] = std::min(sizes[ids[edge[0]]], length);
-      sizes[ids[edge[1]]] = std::min(sizes[ids[edge[1]]], length);
-    }
-  }
+  const std::vector<double> sizes = FindShortestEdges(this->Round->GetMesh());
   this->SurfaceSizes.assign(
     sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(this->Surface.Points.size()));
   this->Round->SetSizes(sizes);

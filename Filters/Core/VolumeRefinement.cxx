@@ -68,7 +68,6 @@ VolumeRefinement::VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
   : Mesh(std::move(mesh)), Surface(surface), Edges(edges), Limits(limits),
     NumberOfSurfacePoints(static_cast<Id>(surface.Points.size())),
     MaximumNewPoints(maximumNewPoints), Memory(memory), Spheres(surface, edges),
-    IncidenceBegin(surface.Points.size() + 1, 0), Incidence(3 * surface.Triangles.size()),
     IsTriangleRequested(surface.Triangles.size(), 0), IsEdgeRequested(edges.size(), 0)
 {
   for (std::size_t p = 0; p < surface.Points.size(); ++p)
@@ -77,25 +76,15 @@ VolumeRefinement::VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
       NoId, static_cast<Id>(p) });
   }
   this->Points.insert(this->Points.end(), interior.begin(), interior.end());
-  for (const TriangleIds& ids : surface.Triangles)
-  {
-    for (Id id : ids)
-    {
-      ++this->IncidenceBegin[id + 1];
-    }
-  }
-  for (std::size_t p = 1; p < this->IncidenceBegin.size(); ++p)
-  {
-    this->IncidenceBegin[p] += this->IncidenceBegin[p - 1];
-  }
-  std::vector<Id> next(this->IncidenceBegin.begin(), this->IncidenceBegin.end() - 1);
+  std::vector<std::pair<Id, Id>> pairs;
   for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()); ++t)
   {
     for (Id id : surface.Triangles[t])
     {
-      this->Incidence[next[id]++] = t;
+      pairs.emplace_back(id, t);
     }
   }
+  this->PointTriangles.Build(this->NumberOfSurfacePoints, pairs);
 }
 
 std::vector<InteriorPoint> VolumeRefinement::GetInterior() const
@@ -143,10 +132,10 @@ bool VolumeRefinement::IsAcrossLayer(const TetrahedronIds& ids, Id region) const
   std::array<std::vector<Vec3>, 4> normals;
   for (int v = 0; v < 4; ++v)
   {
-    for (Id i = this->IncidenceBegin[ids[v]]; i < this->IncidenceBegin[ids[v] + 1]; ++i)
+    for (Id t : this->PointTriangles[ids[v]])
     {
-      const TriangleIds& triangle = this->Surface.Triangles[this->Incidence[i]];
-      const RegionPair& labels = this->Surface.Labels[this->Incidence[i]];
+      const TriangleIds& triangle = this->Surface.Triangles[t];
+      const RegionPair& labels = this->Surface.Labels[t];
       const Vec3& a = this->Surface.Points[triangle[0]];
       const Vec3 normal =
         Cross(this->Surface.Points[triangle[1]] - a, this->Surface.Points[triangle[2]] - a);
@@ -278,9 +267,8 @@ bool VolumeRefinement::TouchesOpenFacet() const
       const TriangleIds& triangle = this->Surface.Triangles[t];
       return std::is_permutation(facet.begin(), facet.end(), triangle.begin());
     };
-    if (this->Hole.Outer[i] == NoId &&
-      std::none_of(this->Incidence.begin() + this->IncidenceBegin[facet[0]],
-        this->Incidence.begin() + this->IncidenceBegin[facet[0] + 1], isSame))
+    const IdLists::Range triangles = this->PointTriangles[facet[0]];
+    if (this->Hole.Outer[i] == NoId && std::none_of(triangles.begin(), triangles.end(), isSame))
     {
       return true;
     }
@@ -335,13 +323,20 @@ void VolumeRefinement::AddPoint(const Vec3& position)
   ++this->Report.InsertedPoints;
 }
 
+/** Whether a point at this distance from others is as far away as their sizes ask for. */
+template <typename Ids>
+bool VolumeRefinement::KeepsSizes(double distance, const Ids& ids) const
+{
+  return std::all_of(
+    ids.begin(), ids.end(), [&](Id id) { return distance >= SizeRatio * this->Points[id].Size; });
+}
+
 /** To split an edge of the boundary, if the sizes of its ends allow it. */
 bool VolumeRefinement::RequestEdge(Id edge, bool isSizeKept)
 {
   const EdgeIds& ends = this->Edges[edge].Points;
   const double half = 0.5 * Distance(this->Surface.Points[ends[0]], this->Surface.Points[ends[1]]);
-  if (isSizeKept &&
-    half < SizeRatio * std::max(this->Points[ends[0]].Size, this->Points[ends[1]].Size))
+  if (isSizeKept && !this->KeepsSizes(half, ends))
   {
     return false;
   }
@@ -373,9 +368,9 @@ bool VolumeRefinement::RequestEdge(const TetrahedronIds& ids)
       continue;
     }
     int count = 0;
-    for (Id i = this->IncidenceBegin[ends[0]]; i < this->IncidenceBegin[ends[0] + 1]; ++i)
+    for (Id t : this->PointTriangles[ends[0]])
     {
-      const TriangleIds& triangle = this->Surface.Triangles[this->Incidence[i]];
+      const TriangleIds& triangle = this->Surface.Triangles[t];
       count += std::all_of(triangle.begin(), triangle.end(),
                  [&](Id id) { return std::find(ids.begin(), ids.end(), id) != ids.end(); }) &&
         std::find(triangle.begin(), triangle.end(), ends[1]) != triangle.end();
@@ -389,55 +384,48 @@ bool VolumeRefinement::RequestEdge(const TetrahedronIds& ids)
 }
 
 /** To split what the position disturbs most; edges before triangles. */
-bool VolumeRefinement::Request(const Vec3& position, bool isSizeKept)
+void VolumeRefinement::Request(const Vec3& position, bool isSizeKept)
 {
   this->Spheres.Find(position, this->Disturbed);
-  const auto isAllowed = [&](double distance, const auto& ids)
-  {
-    return !isSizeKept ||
-      std::all_of(ids.begin(), ids.end(),
-        [&](Id id) { return distance >= SizeRatio * this->Points[id].Size; });
-  };
   double deepest = Infinity;
   Id best = NoId;
   for (Id e : this->Disturbed.Edges)
   {
     if (this->IsEdgeRequested[e])
     {
-      return true;
+      return;
     }
     const EdgeIds& ends = this->Edges[e].Points;
     const Vec3& a = this->Surface.Points[ends[0]];
     const Vec3& b = this->Surface.Points[ends[1]];
     const double radius = 0.5 * Distance(a, b);
     const double depth = Distance(position, 0.5 * (a + b)) / radius;
-    if (depth < deepest && isAllowed(radius, ends))
+    if (depth < deepest && (!isSizeKept || this->KeepsSizes(radius, ends)))
     {
       deepest = depth;
       best = e;
     }
   }
+  if (best != NoId)
+  {
+    this->RequestEdge(best, isSizeKept);
+  }
   if (!this->Disturbed.Edges.empty())
   {
-    if (best != NoId)
-    {
-      this->IsEdgeRequested[best] = 1;
-      this->RequestedEdges.push_back(this->Edges[best].Points);
-    }
-    return best != NoId;
+    return;
   }
   for (Id t : this->Disturbed.Triangles)
   {
     if (this->IsTriangleRequested[t])
     {
-      return true;
+      return;
     }
     const TriangleIds& ids = this->Surface.Triangles[t];
     const Vec3& a = this->Surface.Points[ids[0]];
     const Vec3 offset =
       GetCircumcenterOffset(a, this->Surface.Points[ids[1]], this->Surface.Points[ids[2]]);
     const double depth = Distance(position, a + offset) / Norm(offset);
-    if (depth < deepest && isAllowed(Norm(offset), ids))
+    if (depth < deepest && (!isSizeKept || this->KeepsSizes(Norm(offset), ids)))
     {
       deepest = depth;
       best = t;
@@ -448,7 +436,6 @@ bool VolumeRefinement::Request(const Vec3& position, bool isSizeKept)
     this->IsTriangleRequested[best] = 1;
     this->RequestedTriangles.push_back(best);
   }
-  return best != NoId;
 }
 
 void VolumeRefinement::SetSizes(const std::vector<double>& sizes)

@@ -30,6 +30,7 @@
 #include "BoundarySpheres.h"
 #include "DynamicTetrahedralization.h"
 #include "ExecutionContext.h"
+#include "IdLists.h"
 #include "Status.h"
 #include "TetrahedronLimits.h"
 
@@ -173,13 +174,15 @@ private:
   bool DisturbsBoundary(const Vec3& position);
   bool TouchesOpenFacet() const;
   void AddPoint(const Vec3& position);
-  bool Request(const Vec3& position, bool isSizeKept);
+  void Request(const Vec3& position, bool isSizeKept);
   bool Move(Id point, double target);
   bool InsertBest(Id tetrahedron, double target);
   TetrahedronIds GetNames(const TetrahedronIds& ids) const;
   void NoteChanges();
   bool RequestEdge(const TetrahedronIds& ids);
   bool RequestEdge(Id edge, bool isSizeKept);
+  template <typename Ids>
+  bool KeepsSizes(double distance, const Ids& ids) const;
   bool Mend(
     const TetrahedronIds& ids, Id tetrahedron, Id stamp, double target, bool mayInsert, Id& left);
 
@@ -197,8 +200,7 @@ private:
   SliverMeans Means = SliverMeans::Moves;
 
   /** Triangles at each point of the surface. */
-  std::vector<Id> IncidenceBegin;
-  std::vector<Id> Incidence;
+  IdLists PointTriangles;
 
   std::vector<Id> RequestedTriangles;
   std::vector<EdgeIds> RequestedEdges;

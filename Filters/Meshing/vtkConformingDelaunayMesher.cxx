@@ -250,7 +250,7 @@ cdm::Status Finish(vtkAlgorithm* filter, vtkUnstructuredGrid* grid, vtkPolyData*
 void SetFree(vtkPointSet* points, bool isFree)
 {
   vtkNew<vtkUnsignedCharArray> flags;
-  flags->SetName("FreePoint");
+  flags->SetName(vtkCoreBridge::FreePointName);
   flags->SetNumberOfTuples(points->GetNumberOfPoints());
   flags->FillValue(isFree ? 1 : 0);
   points->GetPointData()->AddArray(flags);

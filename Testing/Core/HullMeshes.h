@@ -7,6 +7,7 @@
 #define HullMeshes_h
 
 #include "AdvancingFrontTetrahedralizer.h"
+#include "MeshChecks.h"
 
 #include <gtest/gtest.h>
 
@@ -27,6 +28,30 @@ inline cdm::TetMesh MakeHullMesh(const std::vector<cdm::Vec3>& points)
   const cdm::Status status = cdm::TetrahedralizeByAdvancingFront(input, options, {}, output);
   EXPECT_TRUE(status.IsOk()) << status.Message;
   return output.Mesh;
+}
+
+/**
+ * Those tetrahedra of it that are given a region by their centroids; OutsideRegion leaves them out.
+ */
+template <typename GetRegion>
+cdm::TetMesh MakeRegionMesh(const std::vector<cdm::Vec3>& points, GetRegion&& getRegion)
+{
+  const cdm::TetMesh hull = MakeHullMesh(points);
+  cdm::TetMesh mesh;
+  mesh.Points = hull.Points;
+  for (const cdm::TetrahedronIds& ids : hull.Tetrahedra)
+  {
+    const cdm::Vec3 center = 0.25 *
+      (mesh.Points[ids[0]] + mesh.Points[ids[1]] + mesh.Points[ids[2]] + mesh.Points[ids[3]]);
+    const cdm::Id region = getRegion(center);
+    if (region != cdm::OutsideRegion)
+    {
+      mesh.Tetrahedra.push_back(ids);
+      mesh.Regions.push_back(region);
+    }
+  }
+  EXPECT_TRUE(cdm::BuildNeighbors(mesh).IsOk());
+  return mesh;
 }
 
 /** In the unit cube; rounding: coordinates are multiples of it. */

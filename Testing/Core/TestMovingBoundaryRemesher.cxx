@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "AdvancingFrontTetrahedralizer.h"
+#include "HullMeshes.h"
 #include "MeshBoundary.h"
 #include "MeshChecks.h"
 #include "MovingBoundaryRemesher.h"
@@ -35,27 +35,7 @@ TetMesh MakeGrid(int nx, int ny, int nz, const std::function<Id(const Vec3&)>& g
       }
     }
   }
-  AdvancingFrontTetrahedralizerInput input;
-  input.MeshPoints = &points;
-  AdvancingFrontTetrahedralizerOptions options;
-  options.CloseOpenBoundary = true;
-  AdvancingFrontTetrahedralizerOutput output;
-  EXPECT_TRUE(TetrahedralizeByAdvancingFront(input, options, {}, output).IsOk());
-  TetMesh mesh;
-  mesh.Points = output.Mesh.Points;
-  for (const TetrahedronIds& ids : output.Mesh.Tetrahedra)
-  {
-    const Vec3 center = 0.25 *
-      (mesh.Points[ids[0]] + mesh.Points[ids[1]] + mesh.Points[ids[2]] + mesh.Points[ids[3]]);
-    const Id region = getRegion(center);
-    if (region != OutsideRegion)
-    {
-      mesh.Tetrahedra.push_back(ids);
-      mesh.Regions.push_back(region);
-    }
-  }
-  EXPECT_TRUE(BuildNeighbors(mesh).IsOk());
-  return mesh;
+  return testing_core::MakeRegionMesh(points, getRegion);
 }
 
 std::vector<Vec3> MakeDisplacements(const TetMesh& mesh, const Motion& motion)

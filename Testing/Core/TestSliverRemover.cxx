@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AdvancingFrontTetrahedralizer.h"
+#include "HullMeshes.h"
 #include "Measures.h"
 #include "MeshBoundary.h"
 #include "MeshChecks.h"
@@ -165,26 +166,10 @@ TetMesh MakeRaggedMesh(std::mt19937& random, int size, bool isOnGrid)
     const double y = draw();
     points.push_back({ x, y, draw() });
   }
-  AdvancingFrontTetrahedralizerInput input;
-  input.MeshPoints = &points;
-  AdvancingFrontTetrahedralizerOptions options;
-  options.CloseOpenBoundary = true;
-  AdvancingFrontTetrahedralizerOutput output;
-  EXPECT_TRUE(TetrahedralizeByAdvancingFront(input, options, {}, output).IsOk());
-  TetMesh mesh;
-  mesh.Points = output.Mesh.Points;
-  for (const TetrahedronIds& ids : output.Mesh.Tetrahedra)
-  {
-    const Vec3 center = 0.25 *
-      (mesh.Points[ids[0]] + mesh.Points[ids[1]] + mesh.Points[ids[2]] + mesh.Points[ids[3]]);
-    if (Distance(center, { 4.0, 4.0, 4.0 }) > 1.8)
-    {
-      mesh.Tetrahedra.push_back(ids);
-      mesh.Regions.push_back(center.X < 4.0 ? 0 : 1);
-    }
-  }
-  EXPECT_TRUE(BuildNeighbors(mesh).IsOk());
-  return mesh;
+  return testing_core::MakeRegionMesh(points,
+    [](const Vec3& center) {
+      return Distance(center, { 4.0, 4.0, 4.0 }) <= 1.8 ? OutsideRegion : center.X < 4.0 ? 0 : 1;
+    });
 }
 
 std::vector<char> FindBoundaryPoints(const TetMesh& mesh, const TriangleMesh& boundary)
