@@ -3,20 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace cdm
 {
 namespace
 {
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+
 /** Infinite balls have a level of their own, of one cell. */
 constexpr int InfiniteLevel = 1 << 20;
 
-std::int64_t GetIndex(double coordinate, double width)
-{
-  // Far outside of any sensible ratio of size to radius the cells only have to be some cells.
-  const double index = std::floor(coordinate / width);
-  return static_cast<std::int64_t>(std::min(std::max(index, -4e18), 4e18));
-}
+/** Rounding to single precision moves points and centers by less than that, in widths of a cell. */
+constexpr double Rounding = 2e-6;
+
+/** Cells farther away than doubles tell apart are not used. */
+constexpr double LargestIndex = 4e15;
 
 int GetLevel(double radius)
 {
@@ -25,23 +27,28 @@ int GetLevel(double radius)
 }
 } // namespace
 
-std::uint64_t BallIndex::GetKey(int level, const std::int64_t index[3])
+bool BallIndex::CellPlace::operator==(const CellPlace& other) const
 {
-  std::uint64_t hash = static_cast<std::uint64_t>(level);
-  for (int axis = 0; axis < 3; ++axis)
+  return this->Level == other.Level && std::equal(this->Index, this->Index + 3, other.Index);
+}
+
+std::uint64_t BallIndex::CellPlace::GetHash() const
+{
+  std::uint64_t hash = static_cast<std::uint64_t>(this->Level);
+  for (std::int64_t index : this->Index)
   {
-    hash = (hash ^ static_cast<std::uint64_t>(index[axis])) * 0x9E3779B97F4A7C15ull;
+    hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x9E3779B97F4A7C15ull;
     hash ^= hash >> 29;
   }
   return hash;
 }
 
 /** The slot of a cell, or the free one where it belongs. */
-std::size_t BallIndex::FindSlot(std::uint64_t key) const
+std::size_t BallIndex::FindSlot(const CellPlace& place) const
 {
   const std::size_t mask = this->Slots.size() - 1;
-  std::size_t slot = key & mask;
-  while (this->Slots[slot].second != NoId && this->Slots[slot].first != key)
+  std::size_t slot = place.GetHash() & mask;
+  while (this->Slots[slot] != NoId && !(this->Cells[this->Slots[slot]].Place == place))
   {
     slot = (slot + 1) & mask;
   }
@@ -50,38 +57,57 @@ std::size_t BallIndex::FindSlot(std::uint64_t key) const
 
 void BallIndex::Resize(std::size_t numberOfSlots)
 {
-  std::vector<std::pair<std::uint64_t, Id>> former(numberOfSlots, { 0, NoId });
-  former.swap(this->Slots);
-  for (const auto& [key, cell] : former)
+  this->Slots.assign(numberOfSlots, NoId);
+  for (std::size_t cell = 0; cell < this->Cells.size(); ++cell)
   {
-    if (cell != NoId)
-    {
-      this->Slots[this->FindSlot(key)] = { key, cell };
-    }
+    this->Slots[this->FindSlot(this->Cells[cell].Place)] = static_cast<Id>(cell);
   }
 }
 
 void BallIndex::Put(const Ball& ball)
 {
-  std::int64_t index[3] = { 0, 0, 0 };
-  if (ball.Level != InfiniteLevel)
+  CellPlace where{ GetLevel(ball.Radius), { 0, 0, 0 } };
+  double width = where.Level == InfiniteLevel ? Infinity : std::ldexp(1.0, where.Level);
+  Vec3 corner;
+  for (int axis = 0; axis < 3 && where.Level != InfiniteLevel; ++axis)
   {
-    const double width = std::ldexp(1.0, ball.Level);
-    for (int axis = 0; axis < 3; ++axis)
+    const double index = std::floor(ball.Center[axis] / width);
+    if (std::abs(index) < LargestIndex)
     {
-      index[axis] = GetIndex(ball.Center[axis], width);
+      where.Index[axis] = static_cast<std::int64_t>(index);
+      corner[axis] = index * width;
+    }
+    else
+    {
+      where = { InfiniteLevel, { 0, 0, 0 } };
+      width = Infinity;
+      corner = Vec3();
     }
   }
-  const std::uint64_t key = GetKey(ball.Level, index);
-  auto& slot = this->Slots[this->FindSlot(key)];
-  if (slot.second == NoId)
+  Id& slot = this->Slots[this->FindSlot(where)];
+  if (slot == NoId)
   {
-    slot = { key, static_cast<Id>(this->Cells.size()) };
-    this->Cells.emplace_back();
+    slot = static_cast<Id>(this->Cells.size());
+    this->Cells.push_back({ where, corner, {}, {} });
   }
-  std::vector<Ball>& balls = this->Cells[slot.second];
-  this->Places[ball.Number] = { slot.second, static_cast<Id>(balls.size()) };
-  balls.push_back(ball);
+  Cell& cell = this->Cells[slot];
+  const std::size_t place = cell.Numbers.size();
+  this->Places[ball.Number] = { slot, static_cast<Id>(place) };
+  cell.Numbers.push_back(ball.Number);
+  if (place % BlockSize == 0)
+  {
+    cell.Blocks.emplace_back();
+  }
+  Block& block = cell.Blocks.back();
+  const std::size_t i = place % BlockSize;
+  const Vec3 center = (1.0 / width) * (ball.Center - corner);
+  const double radius = ball.Radius / width + Rounding;
+  block.X[i] = static_cast<float>(center.X);
+  block.Y[i] = static_cast<float>(center.Y);
+  block.Z[i] = static_cast<float>(center.Z);
+  block.SquaredRadius[i] = where.Level == InfiniteLevel ? std::numeric_limits<float>::infinity()
+                                                        : static_cast<float>(radius * radius);
+  ++this->Levels[where.Level];
   if (2 * this->Cells.size() > this->Slots.size())
   {
     this->Resize(2 * this->Slots.size());
@@ -95,8 +121,7 @@ void BallIndex::Set(Id id, const Vec3& center, double radius)
   {
     this->Places.resize(static_cast<std::size_t>(id) + 1);
   }
-  const Ball ball{ center, radius, GetLevel(radius), id };
-  ++this->Levels[ball.Level];
+  const Ball ball{ center, radius, id };
   if (this->Slots.empty())
   {
     this->Places[id].Index = static_cast<Id>(this->Waiting.size());
@@ -112,17 +137,74 @@ void BallIndex::Remove(Id id)
   {
     return;
   }
-  const Place place = this->Places[id];
-  std::vector<Ball>& balls = this->Slots.empty() ? this->Waiting : this->Cells[place.Cell];
-  const auto level = this->Levels.find(balls[place.Index].Level);
-  if (--level->second == 0)
+  const auto place = static_cast<std::size_t>(this->Places[id].Index);
+  if (this->Slots.empty())
   {
-    this->Levels.erase(level);
+    this->Waiting[place] = this->Waiting.back();
+    this->Places[this->Waiting[place].Number].Index = this->Places[id].Index;
+    this->Waiting.pop_back();
   }
-  balls[place.Index] = balls.back();
-  this->Places[balls.back().Number].Index = place.Index;
+  else
+  {
+    Cell& cell = this->Cells[this->Places[id].Cell];
+    const auto level = this->Levels.find(cell.Place.Level);
+    if (--level->second == 0)
+    {
+      this->Levels.erase(level);
+    }
+    const std::size_t last = cell.Numbers.size() - 1;
+    Block& to = cell.Blocks[place / BlockSize];
+    const Block& from = cell.Blocks.back();
+    to.X[place % BlockSize] = from.X[last % BlockSize];
+    to.Y[place % BlockSize] = from.Y[last % BlockSize];
+    to.Z[place % BlockSize] = from.Z[last % BlockSize];
+    to.SquaredRadius[place % BlockSize] = from.SquaredRadius[last % BlockSize];
+    cell.Numbers[place] = cell.Numbers[last];
+    this->Places[cell.Numbers[place]].Index = this->Places[id].Index;
+    cell.Numbers.pop_back();
+    if (last % BlockSize == 0)
+    {
+      cell.Blocks.pop_back();
+    }
+  }
   this->Places[id].Index = NoId;
-  balls.pop_back();
+}
+
+void BallIndex::Find(const Cell& cell, const Vec3& point, std::vector<Id>& ids)
+{
+  const int level = cell.Place.Level;
+  const double scale = level == InfiniteLevel ? 0.0 : std::ldexp(1.0, -level);
+  const Vec3 p = scale * (point - cell.Corner);
+  const float x = static_cast<float>(p.X);
+  const float y = static_cast<float>(p.Y);
+  const float z = static_cast<float>(p.Z);
+  for (std::size_t b = 0; b < cell.Blocks.size(); ++b)
+  {
+    const Block& block = cell.Blocks[b];
+    // Of constant length and without branches: compilers make vector instructions of it.
+    std::int32_t isHit[BlockSize];
+    std::int32_t isAnyHit = 0;
+    for (std::size_t i = 0; i < BlockSize; ++i)
+    {
+      const float dx = x - block.X[i];
+      const float dy = y - block.Y[i];
+      const float dz = z - block.Z[i];
+      isHit[i] = dx * dx + dy * dy + dz * dz <= block.SquaredRadius[i] ? 1 : 0;
+      isAnyHit |= isHit[i];
+    }
+    if (isAnyHit != 0)
+    {
+      const std::size_t first = b * BlockSize;
+      const std::size_t count = std::min(BlockSize, cell.Numbers.size() - first);
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        if (isHit[i] != 0)
+        {
+          ids.push_back(cell.Numbers[first + i]);
+        }
+      }
+    }
+  }
 }
 
 void BallIndex::Find(const Vec3& point, std::vector<Id>& ids)
@@ -137,44 +219,37 @@ void BallIndex::Find(const Vec3& point, std::vector<Id>& ids)
     }
     this->Waiting = {};
   }
-  const auto visit = [this, &point, &ids](std::uint64_t key)
+  const auto visit = [this, &point, &ids](const CellPlace& place)
   {
-    const Id cell = this->Slots[this->FindSlot(key)].second;
-    if (cell == NoId)
+    const Id cell = this->Slots[this->FindSlot(place)];
+    if (cell != NoId)
     {
-      return;
-    }
-    for (const Ball& ball : this->Cells[cell])
-    {
-      if (SquaredNorm(point - ball.Center) <= ball.Radius * ball.Radius)
-      {
-        ids.push_back(ball.Number);
-      }
+      BallIndex::Find(this->Cells[cell], point, ids);
     }
   };
   for (const auto& [level, count] : this->Levels)
   {
-    std::int64_t first[3] = { 0, 0, 0 };
     if (level == InfiniteLevel)
     {
-      visit(GetKey(level, first));
+      visit({ level, { 0, 0, 0 } });
       continue;
     }
     // Radii are below half the width: the center lies in the cells nearest to the point.
     const double width = std::ldexp(1.0, level);
+    std::int64_t first[3];
+    bool isInReach = true;
     for (int axis = 0; axis < 3; ++axis)
     {
-      first[axis] = GetIndex(point[axis] - 0.5 * width, width);
+      const double index = std::floor(point[axis] / width - 0.5);
+      isInReach = isInReach && std::abs(index) <= LargestIndex + 1.0;
+      first[axis] = isInReach ? static_cast<std::int64_t>(index) : 0;
     }
-    for (int corner = 0; corner < 8; ++corner)
+    for (int corner = 0; corner < 8 && isInReach; ++corner)
     {
-      const std::int64_t index[3] = { first[0] + (corner & 1), first[1] + ((corner >> 1) & 1),
-        first[2] + (corner >> 2) };
-      visit(GetKey(level, index));
+      visit({ level,
+        { first[0] + (corner & 1), first[1] + ((corner >> 1) & 1), first[2] + (corner >> 2) } });
     }
   }
-  // Two corners may share a cell by their hash.
   std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
 }
 } // namespace cdm

@@ -28,6 +28,12 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double Pi = 3.14159265358979323846;
 constexpr std::size_t ReportInterval = 256;
 
+/** In curved facets, points closer than that to others, in shortest edges of the input there. */
+constexpr double CrumplingRatio = 1.0 / 8.0;
+
+/** After so many attempts all edges of curved facets are structural. */
+constexpr int LargestNumberOfAttempts = 20;
+
 /** New points keep this distance, as a ratio of the edge, from the ends of an edge they split. */
 constexpr double SmallestPiece = 0.05;
 /** A disturbing point this close to the plane of a triangle, in units of its circumradius, is
@@ -262,6 +268,12 @@ public:
 
   Status Run();
 
+  /**
+   * Marks the triangles of the input that refinement did not come to an end with because their
+   * facet is curved. Returns whether there are any that were not marked before.
+   */
+  bool FindCrumpled(std::vector<char>& isExact) const;
+
 private:
   Status Prepare();
   void DropCloseMeshPoints();
@@ -275,6 +287,7 @@ private:
   Status SplitRequested();
   Status Refine();
   void Process(Id t);
+  void NoteCrumpling(Id t, Id newPoints);
   void ProcessEdge();
   bool AreEdgesTested() const
   {
@@ -350,6 +363,11 @@ private:
   std::vector<std::pair<std::uint64_t, Id>> Axes;
   /** Unit normal of each plane facet; zero for a curved one, which has no one plane. */
   std::vector<Vec3> FacetNormals;
+  /**
+   * Empty, or marks triangles of the input in curved facets: points there come too close, or flips
+   * have made two sheets the same.
+   */
+  std::vector<char> IsCrumpled;
   /** Points of each facet at which structural edges end, ascending. */
   IdLists FacetCorners;
   /** Input points at which two structural edges meet at less than 90 degrees; -1: not known yet. */
@@ -626,22 +644,42 @@ bool SurfaceRefiner::IsAcuteCorner(Id point)
 void SurfaceRefiner::CollectFacetGeometry()
 {
   // The normal of the largest triangle of each facet is the most accurate one.
-  std::vector<double> largest;
-  for (Id t = 0; t < this->Surface->GetNumberOfTriangles(); ++t)
+  const Id count = this->Surface->GetNumberOfTriangles();
+  const auto getNormal = [this](Id t)
+  {
+    const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+    const Vec3& a = this->Points[ids[0]];
+    return Cross(this->Points[ids[1]] - a, this->Points[ids[2]] - a);
+  };
+  std::vector<std::pair<double, Id>> largest;
+  for (Id t = 0; t < count; ++t)
   {
     const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
-    const std::size_t size =
-      std::max(this->FacetNormals.size(), static_cast<std::size_t>(triangle.Facet) + 1);
-    this->FacetNormals.resize(size);
-    largest.resize(size, 0.0);
-    const Vec3& a = this->Points[triangle.Points[0]];
-    const Vec3 normal =
-      Cross(this->Points[triangle.Points[1]] - a, this->Points[triangle.Points[2]] - a);
-    if (Norm(normal) > largest[triangle.Facet] &&
-      this->Options.StructuralEdges.AccuracyAngle == 0.0)
+    const double size = Norm(getNormal(t));
+    largest.resize(
+      std::max(largest.size(), static_cast<std::size_t>(triangle.Facet) + 1), { 0.0, NoId });
+    largest[triangle.Facet] = std::max(largest[triangle.Facet], std::make_pair(size, t));
+  }
+  this->FacetNormals.resize(largest.size());
+  for (std::size_t facet = 0; facet < largest.size(); ++facet)
+  {
+    if (largest[facet].second != NoId)
     {
-      largest[triangle.Facet] = Norm(normal);
-      this->FacetNormals[triangle.Facet] = (1.0 / Norm(normal)) * normal;
+      this->FacetNormals[facet] = (1.0 / largest[facet].first) * getNormal(largest[facet].second);
+    }
+  }
+  for (Id t = 0; t<count&& this->Options.StructuralEdges.AccuracyAngle> 0.0; ++t)
+  {
+    const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
+    const Id model = largest[triangle.Facet].second;
+    for (Id p : triangle.Points)
+    {
+      const Vec3 arm = this->Points[p] - this->Points[this->Surface->GetTriangle(model).Points[0]];
+      if (std::abs(Dot(arm, this->FacetNormals[triangle.Facet])) > this->Flatness)
+      {
+        this->FacetNormals[triangle.Facet] = Vec3();
+        break;
+      }
     }
   }
 
@@ -781,8 +819,9 @@ Status SurfaceRefiner::SplitRequested()
   }
   this->CollectIncidences();
   std::map<EdgeIds, Id> segments;
-  const auto makeKey = [](const EdgeIds& edge)
-  { return EdgeIds{ std::min(edge[0], edge[1]), std::max(edge[0], edge[1]) }; };
+  const auto makeKey = [](const EdgeIds& edge) {
+    return EdgeIds{ std::min(edge[0], edge[1]), std::max(edge[0], edge[1]) };
+  };
   for (Id s = 0; s < this->Surface->GetNumberOfSegments(); ++s)
   {
     segments.emplace(makeKey(this->Surface->GetSegment(s).Points), s);
@@ -1252,6 +1291,12 @@ bool SurfaceRefiner::ProjectOntoFacet(Id t, Id disturbing, Vec3& target) const
 
 bool SurfaceRefiner::MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) const
 {
+  // A point of the same facet, which is curved then, would be matched by ones ever closer to it.
+  const IdLists::Range facets = this->GetFacets(disturbing);
+  if (std::find(facets.begin(), facets.end(), this->Surface->GetTriangle(t).Facet) != facets.end())
+  {
+    return false;
+  }
   // However close to other points: only points that match exactly leave each other alone.
   return this->RotateAboutAxis(t, disturbing, target) ||
     this->RotateAboutCorner(t, disturbing, target) || this->ProjectOntoFacet(t, disturbing, target);
@@ -1544,6 +1589,69 @@ bool SurfaceRefiner::FindTooCoarse(Id t, Id& segment) const
   return false;
 }
 
+/**
+ * In a curved facet a point that mends one triangle may disturb its neighbors, which are bent against
+ * it, and so on with ever smaller triangles. Points much closer than the input's are a sign of that.
+ */
+void SurfaceRefiner::NoteCrumpling(Id t, Id newPoint)
+{
+  const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
+  if (newPoint >= static_cast<Id>(this->Points.size()) ||
+    this->FacetNormals[triangle.Facet] != Vec3() ||
+    this->NewPointFacets[newPoint - this->NumberOfGivenPoints] == NoId)
+  {
+    return;
+  }
+  const TriangleIds& ids = this->Input.Surface->Triangles[triangle.Source];
+  double shortest = Infinity;
+  for (int i = 0; i < 3; ++i)
+  {
+    shortest = std::min(shortest, Distance(this->Points[ids[i]], this->Points[ids[(i + 1) % 3]]));
+  }
+  if (this->GetNearestDistance(this->Points[newPoint], newPoint) < CrumplingRatio * shortest)
+  {
+    this->IsCrumpled.resize(this->Input.Surface->Triangles.size(), 0);
+    this->IsCrumpled[triangle.Source] = 1;
+  }
+}
+
+bool SurfaceRefiner::FindCrumpled(std::vector<char>& isExact) const
+{
+  bool isAnyNew = false;
+  const auto mark = [&](Id source)
+  {
+    isAnyNew = isAnyNew || isExact[source] == 0;
+    isExact[source] = 1;
+  };
+  isExact.resize(this->Input.Surface->Triangles.size(), 0);
+  for (std::size_t source = 0; source < this->IsCrumpled.size(); ++source)
+  {
+    if (this->IsCrumpled[source] != 0)
+    {
+      mark(static_cast<Id>(source));
+    }
+  }
+  std::vector<char> isUnresolved(this->FacetNormals.size(), 0);
+  for (Id t : this->Output.UnresolvedTriangles)
+  {
+    const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
+    if (!isUnresolved.empty() && this->FacetNormals[triangle.Facet] == Vec3())
+    {
+      mark(triangle.Source);
+      isUnresolved[triangle.Facet] = 1;
+    }
+  }
+  // After flips the source may be a neighbor of the triangle that is meant.
+  for (Id t = 0; t < this->Surface->GetNumberOfTriangles() && !isAnyNew; ++t)
+  {
+    if (!isUnresolved.empty() && isUnresolved[this->Surface->GetTriangle(t).Facet] != 0)
+    {
+      mark(this->Surface->GetTriangle(t).Source);
+    }
+  }
+  return isAnyNew;
+}
+
 void SurfaceRefiner::Process(Id t)
 {
   const auto getCircumcenter = [this](Id triangle)
@@ -1575,6 +1683,11 @@ void SurfaceRefiner::Process(Id t)
   {
     return;
   }
+  if (!this->IsCrumpled.empty() && this->IsCrumpled[this->Surface->GetTriangle(t).Source] != 0)
+  {
+    this->IsUnresolved[t] = 1;
+    return;
+  }
   // Whatever is done now, t is looked at again: the new point need not have changed it.
   this->IsUnresolved[t] = 0;
   if (this->ResolveByEdge(t))
@@ -1587,11 +1700,13 @@ void SurfaceRefiner::Process(Id t)
     : !this->Found.OnSmallestSphere.empty() ? this->Found.OnSmallestSphere.front()
     : !this->Found.Cocircular.empty()       ? this->Found.Cocircular.front()
                                             : NoId;
+  const Id newPoint = static_cast<Id>(this->Points.size());
   Vec3 target;
   const bool isMirrored = disturbing != NoId && this->MirrorDisturbingPoint(t, disturbing, target);
   if ((isMirrored && this->ResolveInFacet(t, disturbing, target, true)) ||
     this->ResolveInFacet(t, disturbing, getCircumcenter(t), false) || this->SplitLongestEdge(t))
   {
+    this->NoteCrumpling(t, newPoint);
     this->Enqueue(t);
     return;
   }
@@ -1695,6 +1810,11 @@ Status SurfaceRefiner::Finish()
     }
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    this->IsCrumpled.resize(this->Input.Surface->Triangles.size(), 0);
+    for (Id source : cells)
+    {
+      this->IsCrumpled[source] = 1;
+    }
     return Status::InvalidInput("Two sheets of the surface with the same points lie within "
                                 "FlatnessRatio of each other and have become one: lower "
                                 "FlatnessRatio, or unite the sheets with a MergeTolerance of "
@@ -1767,12 +1887,32 @@ Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,
   const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
   DelaunaySurfaceRefinerOutput& output)
 {
-  output = DelaunaySurfaceRefinerOutput();
-  const Status status = SurfaceRefiner(input, options, context, output).Run();
-  if (!status.IsOk())
+  // Where the facets' curvature keeps refinement from ending, the edges there become structural.
+  DelaunaySurfaceRefinerOptions current = options;
+  double begin = 0.0;
+  for (int attempt = 0;; ++attempt)
   {
     output = DelaunaySurfaceRefinerOutput();
+    const double end = options.StructuralEdges.AccuracyAngle > 0.0 ? 0.5 * (begin + 1.0) : 1.0;
+    const ExecutionContext part = context.Part(begin, end);
+    SurfaceRefiner refiner(input, current, part, output);
+    const Status status = refiner.Run();
+    const bool isFull = options.MaximumNewPoints > 0 &&
+      static_cast<Id>(output.NewPoints.size()) >= options.MaximumNewPoints;
+    if (options.StructuralEdges.AccuracyAngle == 0.0 || isFull ||
+      !refiner.FindCrumpled(current.StructuralEdges.IsExact))
+    {
+      if (!status.IsOk())
+      {
+        output = DelaunaySurfaceRefinerOutput();
+      }
+      return status;
+    }
+    if (attempt == LargestNumberOfAttempts)
+    {
+      current.StructuralEdges.IsExact.assign(input.Surface->Triangles.size(), 1);
+    }
+    begin = end;
   }
-  return status;
 }
 } // namespace cdm

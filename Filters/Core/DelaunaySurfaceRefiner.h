@@ -18,7 +18,10 @@
  *     triangle's facet, about the edge or corner where the facets meet or along the normal; or
  *     insert the projected circumcenter found by the walk (Fig. 6.10); or split the longest edge.
  *     The rules and why they end: README.md beside this file;
- *  4. test again the triangles whose proving sphere holds the new point.
+ *  4. test again the triangles whose proving sphere holds the new point;
+ *  5. with an accuracy angle, facets are curved, and points that mend one triangle may disturb its
+ *     neighbors for ever. Triangles of the input where points come much closer than the input's are
+ *     set aside; their edges become structural, and all begins anew.
  *
  * Guarantees: exact decisions; input points keep their coordinates and ids; new points follow them.
  * Deterministic.

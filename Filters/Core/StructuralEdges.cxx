@@ -347,6 +347,8 @@ Status ExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeO
   }
   const double flatness = options.FlatnessRatio * GetBoundingBoxDiagonal(surface.Points);
   const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
+  const auto isExact = [&options](Id use)
+  { return !options.IsExact.empty() && options.IsExact[use / 3] != 0; };
 
   std::vector<double> turns;
   std::size_t nextContinue = 0;
@@ -385,7 +387,7 @@ Status ExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeO
       }
       else if (!IsSmoothEdge(surface.Points[edge.Points[0]], surface.Points[edge.Points[1]],
                  GetOpposite(surface, first.Use), GetOpposite(surface, second),
-                 options.AccuracyAngle, flatness))
+                 isExact(first.Use) || isExact(second) ? 0.0 : options.AccuracyAngle, flatness))
       {
         edge.Kind = StructuralEdgeKind::Sharp;
       }

@@ -34,6 +34,8 @@
 #include "Status.h"
 #include "TriangleMesh.h"
 
+#include <vector>
+
 namespace cdm
 {
 /** In order of precedence: an edge that is several of these is the first of them. */
@@ -65,6 +67,8 @@ struct StructuralEdgeOptions
   double AccuracyAngle = 0.0;
   /** Distance, as a ratio of the bounding box diagonal, within which triangles count as flat. */
   double FlatnessRatio = 1e-9;
+  /** Marks triangles at whose edges the accuracy angle does not count; empty: none. */
+  std::vector<char> IsExact = {};
 };
 
 struct StructuralEdgesOutput

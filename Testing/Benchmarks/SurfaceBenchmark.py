@@ -3,10 +3,13 @@
 
     SurfaceBenchmark.py --program BUILD/bin/SurfaceBenchmark [--models FOLDER] [--tetgen PROGRAM]
         [--validator PROGRAM] [--time-limit SECONDS] [--growth TRIANGLES...]
+        [--accuracy-angle DEGREES] [--switches=SWITCHES,...]
 
 --models: a folder of .vtp files; those that its INDEX.csv, if there is one, marks as valid are
 taken. Without it only the growth is measured. --validator: judges TetGen's meshes (but those of the
 last run, which are large); what it refuses is marked by a star. --time-limit: of a TetGen run.
+--accuracy-angle: of our surface stage; 0.1 merges the facets that TetGen merges. --switches: the runs
+of TetGen.
 Times are processor times without reading and writing, TetGen's as it prints them.
 """
 import argparse
@@ -44,7 +47,7 @@ def run_ours(program, *arguments):
 
 def run_tetgen(arguments, switches, path, smesh):
     """Points added, tetrahedra, seconds, verdict; or why there are none."""
-    is_judged = arguments.validator and switches != TETGEN_RUNS[-1]
+    is_judged = arguments.validator and switches != arguments.switches[-1]
     output = run([arguments.tetgen, switches + ("kNEF" if is_judged else "NEF"), smesh],
                  arguments.time_limit)
     if output is None:
@@ -82,14 +85,15 @@ def describe(ratios):
 
 def compare(arguments):
     print("| model | points | ours: added | tetrahedra | refine s | mesh s |"
-          + "".join(" `%s`: added | tetrahedra | s |" % switches for switches in TETGEN_RUNS))
-    print("|---|" + "---:|" * (5 + 3 * len(TETGEN_RUNS)))
+          + "".join(" `%s`: added | tetrahedra | s |" % switches for switches in arguments.switches))
+    print("|---|" + "---:|" * (5 + 3 * len(arguments.switches)))
     ratios = []
+    added_ratios = {switches: [] for switches in arguments.switches}
     stages = []
     with tempfile.TemporaryDirectory() as folder:
         smesh = os.path.join(folder, "model.smesh")
         for path in find_models(arguments.models):
-            ours = run_ours(arguments.program, "model", path, 0, 0, 0, smesh)
+            ours = run_ours(arguments.program, "model", path, 0, arguments.accuracy_angle, 0, smesh)
             name = os.path.basename(path)[:-4]
             if "tetrahedra" not in ours:
                 print("| %s | fails |" % name, flush=True)
@@ -101,7 +105,7 @@ def compare(arguments):
                 ours["tetrahedralize"])
             if seconds >= 0.1:
                 stages.append(ours["refine"] / ours["tetrahedralize"])
-            for switches in TETGEN_RUNS:
+            for switches in arguments.switches:
                 theirs = run_tetgen(arguments, switches, path, smesh)
                 if isinstance(theirs, str):
                     line += " %s | | |" % theirs
@@ -109,6 +113,8 @@ def compare(arguments):
                 added, tetrahedra, their_seconds, verdict = theirs
                 line += " %d%s | %d | %.2f |" % (
                     added, "*" if verdict == "fail" else "", tetrahedra, their_seconds)
+                if added > 0:
+                    added_ratios[switches].append(ours["new"] / added)
                 ratios.append((switches, verdict, points / (ours["points"] + added),
                                ours["tetrahedra"] / tetrahedra,
                                seconds / max(their_seconds, 0.001)))
@@ -116,13 +122,17 @@ def compare(arguments):
     print("\nOurs divided by TetGen's, median (quartiles):\n")
     print("| TetGen run | models | points | tetrahedra | time |")
     print("|---|---:|---:|---:|---:|")
-    for switches in TETGEN_RUNS:
+    for switches in arguments.switches:
         for verdict, comment in ((None, ""), ("ok", ", its mesh passes the validator")):
             rows = [row for row in ratios
                     if row[0] == switches and (verdict is None or row[1] == verdict)]
             if rows:
                 print("| `%s`%s | %d | %s |" % (switches, comment, len(rows), " | ".join(
                     describe([row[column] for row in rows]) for column in (2, 3, 4))))
+    for switches in arguments.switches:
+        if added_ratios[switches]:
+            print("\nPoints added divided by those of `%s`, where it adds any: %s, %d models." % (
+                switches, describe(added_ratios[switches]), len(added_ratios[switches])))
     if stages:
         print("\nRefinement divided by tetrahedralization, where all takes 0.1 s or more: %s, "
               "%d models." % (describe(stages), len(stages)))
@@ -146,6 +156,8 @@ def main():
     parser.add_argument("--tetgen", default="tetgen")
     parser.add_argument("--validator")
     parser.add_argument("--time-limit", type=float, default=30.0)
+    parser.add_argument("--accuracy-angle", type=float, default=0.0)
+    parser.add_argument("--switches", type=lambda words: words.split(","), default=TETGEN_RUNS)
     parser.add_argument("--growth", type=int, nargs="*", default=[10000, 100000, 1000000])
     arguments = parser.parse_args()
     if arguments.models:
