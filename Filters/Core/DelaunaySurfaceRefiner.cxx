@@ -5,6 +5,7 @@
 #include "DuplicateTriangles.h"
 #include "IdLists.h"
 #include "Measures.h"
+#include "ParallelLoop.h"
 #include "Predicates.h"
 #include "RefinableSurface.h"
 #include "SpatialSort.h"
@@ -293,8 +294,9 @@ private:
   {
     return this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges;
   }
-  bool IsGood(Id t);
-  bool IsCocircularFacet(Id t) const;
+  bool IsGood(Id t, SurfaceDelaunayTest::Result& found) const;
+  bool TestAll(const ExecutionContext& context);
+  bool IsCocircularFacet(Id t, const SurfaceDelaunayTest::Result& found) const;
   bool FindTooCoarse(Id t, Id& segment) const;
 
   // Each returns true if it has changed the surface.
@@ -378,6 +380,9 @@ private:
   std::vector<std::pair<double, Id>> Queue;
   std::int64_t NumberOfEnqueued = 0;
   std::vector<char> IsQueued;
+  /** Whether a triangle has passed the test since it or something around it has changed. */
+  std::vector<char> IsProven;
+  bool AreAllTested = false;
   std::vector<char> IsUnresolved;
   std::vector<Id> Reached;
   /** Marks of FindEncroachedSegment(), all zero outside of it. */
@@ -702,8 +707,10 @@ void SurfaceRefiner::Enqueue(Id t)
   if (static_cast<std::size_t>(t) >= this->IsQueued.size())
   {
     this->IsQueued.resize(t + 1, 0);
+    this->IsProven.resize(t + 1, 0);
     this->IsUnresolved.resize(t + 1, 0);
   }
+  this->IsProven[t] = 0;
   this->IsUnresolved[t] = 0;
   if (!this->IsQueued[t])
   {
@@ -862,10 +869,10 @@ Status SurfaceRefiner::SplitRequested()
   return Status();
 }
 
-bool SurfaceRefiner::IsCocircularFacet(Id t) const
+bool SurfaceRefiner::IsCocircularFacet(Id t, const SurfaceDelaunayTest::Result& found) const
 {
   // All points on the circumcircle have to be reached across smooth edges of triangles on it.
-  const std::vector<Id>& cocircular = this->Found.Cocircular;
+  const std::vector<Id>& cocircular = found.Cocircular;
   std::vector<Id> triangles(1, t);
   std::vector<Id> reached;
   for (std::size_t i = 0; i < triangles.size(); ++i)
@@ -888,16 +895,51 @@ bool SurfaceRefiner::IsCocircularFacet(Id t) const
   return reached == cocircular;
 }
 
-bool SurfaceRefiner::IsGood(Id t)
+bool SurfaceRefiner::IsGood(Id t, SurfaceDelaunayTest::Result& found) const
 {
-  this->Test.Run(this->Surface->GetTriangle(t).Points, this->Found,
+  this->Test.Run(this->Surface->GetTriangle(t).Points, found,
     this->Options.Criterion != SurfaceCriterion::Delaunay);
-  if (!this->Found.IsDelaunay || (!this->Found.Cocircular.empty() && !this->IsCocircularFacet(t)))
+  if (!found.IsDelaunay || (!found.Cocircular.empty() && !this->IsCocircularFacet(t, found)))
   {
     return false;
   }
   return this->Options.Criterion == SurfaceCriterion::Delaunay ||
-    this->Found.InsideSmallestSphere.empty();
+    found.InsideSmallestSphere.empty();
+}
+
+/**
+ * Tests all triangles on all threads before the first of them is refined: most are good and stay so.
+ * False if aborted.
+ */
+bool SurfaceRefiner::TestAll(const ExecutionContext& context)
+{
+  this->AreAllTested = true;
+  const auto count = static_cast<std::size_t>(this->Surface->GetNumberOfTriangles());
+  std::vector<char> isGood(count, 0);
+  std::vector<std::pair<Vec3, double>> proofs(count);
+  const ParallelLoopOptions options{ this->Options.NumberOfThreads, 1024 };
+  if (!ParallelLoop(count, options, context, "Testing the surface",
+        [&](std::size_t begin, std::size_t end, std::size_t)
+        {
+          SurfaceDelaunayTest::Result found;
+          for (std::size_t t = begin; t < end; ++t)
+          {
+            isGood[t] = this->IsGood(static_cast<Id>(t), found);
+            proofs[t] = { found.ProofCenter, found.ProofRadius };
+          }
+        }))
+  {
+    return false;
+  }
+  for (std::size_t t = 0; t < count; ++t)
+  {
+    if (isGood[t] != 0)
+    {
+      this->Proofs.Set(static_cast<Id>(t), proofs[t].first, proofs[t].second);
+      this->IsProven[t] = 1;
+    }
+  }
+  return true;
 }
 
 bool SurfaceRefiner::ResolveByFlip(Id t)
@@ -1660,9 +1702,14 @@ void SurfaceRefiner::Process(Id t)
     return GetCircumcenter(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]);
   };
   Id segment = NoId;
-  if (this->IsGood(t))
+  const bool isProven = this->IsProven[t] != 0;
+  if (isProven || this->IsGood(t, this->Found))
   {
-    this->Proofs.Set(t, this->Found.ProofCenter, this->Found.ProofRadius);
+    if (!isProven)
+    {
+      this->Proofs.Set(t, this->Found.ProofCenter, this->Found.ProofRadius);
+      this->IsProven[t] = 1;
+    }
     if (this->FindTooCoarse(t, segment))
     {
       this->CollectIncidences();
@@ -1763,19 +1810,20 @@ Status SurfaceRefiner::Refine()
   }
   for (std::size_t steps = 0; !this->EdgeQueue.empty() || !this->Queue.empty(); ++steps)
   {
-    if (steps % ReportInterval == 0)
+    const double left = static_cast<double>(this->EdgeQueue.size() + this->Queue.size());
+    const double done = static_cast<double>(steps) / (static_cast<double>(steps) + left);
+    if (steps % ReportInterval == 0 && !part.Continue(done, "Refining the surface"))
     {
-      const double done = static_cast<double>(steps);
-      const double left = static_cast<double>(this->EdgeQueue.size() + this->Queue.size());
-      if (!part.Continue(done / (done + left), "Refining the surface"))
-      {
-        return Status::Aborted();
-      }
+      return Status::Aborted();
     }
     if (!this->EdgeQueue.empty())
     {
       this->ProcessEdge();
       continue;
+    }
+    if (!this->AreAllTested && !this->TestAll(part.Part(done, done)))
+    {
+      return Status::Aborted();
     }
     std::pop_heap(this->Queue.begin(), this->Queue.end(), std::greater<>());
     const Id t = this->Queue.back().second;
@@ -1783,7 +1831,7 @@ Status SurfaceRefiner::Refine()
     this->IsQueued[t] = 0;
     if (this->IsFull())
     {
-      this->IsUnresolved[t] = !this->IsGood(t);
+      this->IsUnresolved[t] = this->IsProven[t] == 0 && !this->IsGood(t, this->Found);
       continue;
     }
     this->Process(t);

@@ -77,6 +77,8 @@ struct DelaunaySurfaceRefinerOptions
    * more are hardly meant: sheets a hair apart that run into each other.
    */
   Id MaximumNewPoints = 0;
+  /** Threads for the first test of all triangles, at least 1; the result does not depend on it. */
+  int NumberOfThreads = 1;
 };
 
 struct DelaunaySurfaceRefinerInput

@@ -286,6 +286,7 @@ Status Refiner::StartRound()
   options.StructuralEdges = this->Options.StructuralEdges;
   options.MaximumEdgeLength = this->Options.MaximumEdgeLength;
   options.MeshPointClearanceRatio = 0.0;
+  options.NumberOfThreads = this->Options.NumberOfThreads;
   if (this->Options.MaximumVolume > 0.0)
   {
     const double edge =

@@ -13,6 +13,7 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkSMPTools.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <iterator>
@@ -36,6 +37,7 @@ cdm::DelaunaySurfaceRefinerOptions MakeOptions(vtkDelaunaySurfaceRefiner* filter
   options.MeshPointClearanceRatio = filter->GetMeshPointClearanceRatio();
   options.MinimumEdgeRatio = filter->GetMinimumEdgeRatio();
   options.MaximumNewPoints = filter->GetMaximumNewPoints();
+  options.NumberOfThreads = vtkSMPTools::GetEstimatedNumberOfThreads();
   return options;
 }
 

@@ -121,6 +121,19 @@ PolygonSoup MakeSphere(double radius, int n)
   return soup;
 }
 
+/** Moves points along their radius by up to a part of it, those at one place alike. */
+void Roughen(std::mt19937_64& generator, double part, PolygonSoup& soup)
+{
+  std::uniform_real_distribution<double> uniform(-part, part);
+  std::map<std::array<double, 3>, double> roughness;
+  for (Vec3& p : soup.Points)
+  {
+    const auto place = roughness.emplace(std::array<double, 3>{ p.X, p.Y, p.Z }, 0.0);
+    place.first->second = place.second ? uniform(generator) : place.first->second;
+    p = (1.0 + place.first->second) * p;
+  }
+}
+
 void Append(const PolygonSoup& part, PolygonSoup& soup)
 {
   const Id first = static_cast<Id>(soup.Points.size());
@@ -345,14 +358,11 @@ TEST(SurfaceRefinerShapes, CurvedFacets)
     {
       SCOPED_TRACE(seed);
       std::mt19937_64 generator(seed);
-      std::uniform_real_distribution<double> uniform(-1.0, 1.0);
       PolygonSoup soup = MakeSphere(1.0, 4 + static_cast<int>(seed % 4));
-      std::map<std::array<double, 3>, double> roughness;
+      Roughen(generator, 0.03, soup);
       for (Vec3& p : soup.Points)
       {
-        const auto place = roughness.emplace(std::array<double, 3>{ p.X, p.Y, p.Z }, 0.0);
-        place.first->second = place.second ? 0.03 * uniform(generator) : place.first->second;
-        p = (1.0 + place.first->second) * Vec3{ p.X, p.Y, p.Z * static_cast<double>(1 + seed % 3) };
+        p.Z *= static_cast<double>(1 + seed % 3);
       }
       const TriangleMesh surface = Triangulate(soup);
       DelaunaySurfaceRefinerOptions options;
@@ -464,6 +474,34 @@ TEST(SurfaceRefinerShapes, NotManyMorePointsThanNeeded)
   }
   std::cout << points << " points, at least " << bound << " are needed" << std::endl;
   EXPECT_LT(points, 3.0 * bound);
+}
+
+/** Several blocks of triangles for the threads, many of them to be refined. */
+TEST(SurfaceRefinerShapes, TheSameForAnyNumberOfThreads)
+{
+  std::mt19937_64 generator(1);
+  PolygonSoup soup = MakeSphere(1.0, 25);
+  Roughen(generator, 0.06, soup);
+  const TriangleMesh surface = Triangulate(soup);
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &surface;
+  for (const SurfaceCriterion criterion : AllCriteria)
+  {
+    SCOPED_TRACE(static_cast<int>(criterion));
+    DelaunaySurfaceRefinerOptions options;
+    options.Criterion = criterion;
+    DelaunaySurfaceRefinerOutput first;
+    ASSERT_TRUE(RefineDelaunaySurface(input, options, {}, first).IsOk());
+    EXPECT_GT(first.NewPoints.size(), 100u);
+    for (const int threads : { 2, 3, 8 })
+    {
+      options.NumberOfThreads = threads;
+      DelaunaySurfaceRefinerOutput other;
+      ASSERT_TRUE(RefineDelaunaySurface(input, options, {}, other).IsOk());
+      EXPECT_EQ(first.Surface.Points, other.Surface.Points);
+      EXPECT_EQ(first.Surface.Triangles, other.Surface.Triangles);
+    }
+  }
 }
 
 /** Model units of atoms and of countries: the mesh is the same. */
