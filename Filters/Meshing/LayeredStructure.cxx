@@ -4,6 +4,7 @@
 #include "Core/Predicates.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <set>
@@ -218,29 +219,30 @@ Loop JoinOutlines(Loop p, Loop q)
   return joined;
 }
 
-/** Whenever two pieces were joined, the seams before get another chance. */
+/** Seams that could not be taken get another chance after the others. */
 void JoinPolygons(std::vector<Polygon>& polygons, const std::vector<Vec3>& points)
 {
-  std::vector<SeamEdge> seams = FindSeams(polygons, points);
   DisjointSets pieces(polygons.size());
-  for (std::size_t i = 0; i < seams.size();)
+  std::vector<SeamEdge> seams = FindSeams(polygons, points);
+  std::size_t numberOfSeams = 0;
+  while (seams.size() != numberOfSeams)
   {
-    const auto [p, q] = std::minmax({ pieces.Find(seams[i].First), pieces.Find(seams[i].Second) });
-    if (p == q)
+    numberOfSeams = seams.size();
+    const auto isTaken = [&](const SeamEdge& seam)
     {
-      seams.erase(seams.begin() + static_cast<std::ptrdiff_t>(i));
-      continue;
-    }
-    Loop joined = JoinOutlines(polygons[p].Outline, polygons[q].Outline);
-    if (joined.empty())
-    {
-      ++i;
-      continue;
-    }
-    polygons[p].Outline = std::move(joined);
-    polygons[q].Outline.clear();
-    pieces.Unite(p, q);
-    i = 0;
+      const auto [p, q] = std::minmax({ pieces.Find(seam.First), pieces.Find(seam.Second) });
+      Loop joined = p == q ? Loop{} : JoinOutlines(polygons[p].Outline, polygons[q].Outline);
+      if (!joined.empty())
+      {
+        polygons[p].Outline = std::move(joined);
+        polygons[q].Outline.clear();
+        pieces.Unite(p, q);
+      }
+      return p == q || polygons[q].Outline.empty();
+    };
+    std::vector<SeamEdge> left;
+    std::remove_copy_if(seams.begin(), seams.end(), std::back_inserter(left), isTaken);
+    seams = std::move(left);
   }
   polygons.erase(std::remove_if(polygons.begin(), polygons.end(),
                    [](const Polygon& polygon) { return polygon.Outline.empty(); }),

@@ -60,7 +60,7 @@ void AddNames(const char* arrayName, const std::vector<std::string>& names, vtkP
   output->GetFieldData()->AddArray(array);
 }
 
-void Convert(const Device& device, vtkPolyData* output)
+void Convert(const Device& device, const std::vector<Id>& contactIds, vtkPolyData* output)
 {
   const cdm::PolygonSoup& soup = device.Boundary;
   const vtkIdType numberOfPolygons = soup.GetNumberOfPolygons();
@@ -91,7 +91,7 @@ void Convert(const Device& device, vtkPolyData* output)
   output->GetCellData()->AddArray(facets);
   vtkNew<vtkIntArray> contacts;
   contacts->SetName("ContactId");
-  for (const Id contact : device.FindContactIds())
+  for (const Id contact : contactIds)
   {
     contacts->InsertNextValue(contact);
   }
@@ -118,6 +118,8 @@ int vtkTechnologyStructureSource::RequestData(
   output->Initialize();
   Device device;
   std::string problem = this->MakeDevice(device);
+  // Their places are those of the device as it is made.
+  const std::vector<Id> contactIds = device.FindContactIds();
   if (problem.empty() && this->RotationAngle != 0.0)
   {
     problem = Rotate(this->RotationAngle, this->RotationAxis, device.Boundary.Points);
@@ -127,7 +129,7 @@ int vtkTechnologyStructureSource::RequestData(
     vtkErrorMacro("" << this->GetStructureAsString() << ": " << problem);
     return 0;
   }
-  Convert(device, output);
+  Convert(device, contactIds, output);
   return 1;
 }
 

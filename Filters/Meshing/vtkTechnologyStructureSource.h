@@ -338,8 +338,8 @@ public:
 
   ///@{
   /**
-   * DRAM interconnect: by how much the sides of conductors are slanted: lines are narrower at the
-   * top, plugs at the bottom. Degrees; default 5; range 0.1 to 45.
+   * DRAM interconnect: by how much the sides of lines are slanted; plugs are as narrow at the
+   * bottom as lines at the top. Degrees; default 5; range 0.1 to 45.
    */
   vtkSetMacro(SidewallAngle, double);
   vtkGetMacro(SidewallAngle, double);

@@ -63,21 +63,15 @@ std::string MakeDramInterconnect(const DramParameters& p, Device& device)
   const CosineSine slant = GetCosineSine(p.SidewallAngle);
   const double slope = slant.Sine / slant.Cosine;
   const double halfWidth = 0.5 * p.LineWidth;
-  // Lines are narrower at the top, plugs at the bottom.
-  const Flank line{ halfWidth - slope * p.LineThickness, halfWidth };
-  const Flank plug{ halfWidth - slope * z3, halfWidth };
-  const bool hasPlugs = p.NumberOfWordLines > 1;
+  // Lines are narrower at the top, plugs as much at the bottom, so that the masks have common edges.
+  const Flank flank{ halfWidth - slope * p.LineThickness, halfWidth };
   if (problem.empty())
   {
-    problem = CheckLess(
-      { hasPlugs ? "2 LineWidth" : "LineWidth", hasPlugs ? 2.0 * p.LineWidth : p.LineWidth },
-      { "LinePitch", p.LinePitch });
+    problem = CheckLess({ "2 LineWidth", 2.0 * p.LineWidth }, { "LinePitch", p.LinePitch });
   }
   if (problem.empty())
   {
-    problem = CheckLess({ hasPlugs ? "2 tan(SidewallAngle) (2 InsulatorThickness + LineThickness)"
-                                   : "2 tan(SidewallAngle) LineThickness",
-                          2.0 * slope * (hasPlugs ? z3 : p.LineThickness) },
+    problem = CheckLess({ "2 tan(SidewallAngle) LineThickness", 2.0 * slope * p.LineThickness },
       { "LineWidth", p.LineWidth });
   }
   if (!problem.empty())
@@ -93,18 +87,14 @@ std::string MakeDramInterconnect(const DramParameters& p, Device& device)
   std::vector<double> y{ 0.0, lengthY };
   for (int i = 0; i < p.NumberOfBitLines; ++i)
   {
-    AddFlankLines(x, bitLines.GetCenter(i), line);
-    if (hasPlugs)
-    {
-      AddFlankLines(x, bitLines.GetCenter(i), plug);
-    }
+    AddFlankLines(x, bitLines.GetCenter(i), flank);
   }
   for (int i = 0; i < p.NumberOfWordLines; ++i)
   {
-    AddFlankLines(y, wordLines.GetCenter(i), line);
+    AddFlankLines(y, wordLines.GetCenter(i), flank);
     if (i > 0)
     {
-      AddFlankLines(y, i * p.LinePitch, plug);
+      AddFlankLines(y, i * p.LinePitch, flank);
     }
   }
   problem = SortLines(x, "LinePitch, LineWidth, LineThickness and InsulatorThickness");
@@ -153,16 +143,17 @@ std::string MakeDramInterconnect(const DramParameters& p, Device& device)
     [=](double u, double v)
     {
       const double distance = getPlugDistance(u, v);
-      return distance < outline && !plug.IsInner(distance) ? z3 : 0.0;
+      return distance < outline && !flank.IsInner(distance) ? z3 : 0.0;
     },
     [](double, double) { return insulator; });
   layout.AddLayer(z1, [=](double u, double v) { return getPlugRegion(u, v, insulator); });
   layout.AddLayer([=](double, double v)
-    { return line.IsInner(wordLines.GetDistance(v)) ? z2 : z1; },
+    { return flank.IsInner(wordLines.GetDistance(v)) ? z2 : z1; },
     [=](double, double v) { return getWordLine(v); });
   layout.AddLayer(z2, [=](double u, double v) { return getPlugRegion(u, v, insulator); });
   layout.AddLayer(z3, [=](double u, double v) { return getPlugRegion(u, v, insulator); });
-  layout.AddLayer([=](double u, double) { return line.IsInner(bitLines.GetDistance(u)) ? z4 : z3; },
+  layout.AddLayer([=](double u, double)
+    { return flank.IsInner(bitLines.GetDistance(u)) ? z4 : z3; },
     [=](double u, double) { return getBitLine(u); });
   layout.AddLayer(z4, [](double, double) { return insulator; });
   layout.AddLayer(z5, [](double, double) { return insulator; });
