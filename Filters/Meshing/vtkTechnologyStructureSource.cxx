@@ -2,17 +2,11 @@
 #include "vtkTechnologyStructureSource.h"
 
 #include "Devices/Device.h"
-#include "vtkCoreBridge.h"
+#include "vtkStructureOutput.h"
 
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
-#include <vtkFieldData.h>
 #include <vtkInformationVector.h>
-#include <vtkIntArray.h>
-#include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPolyData.h>
-#include <vtkStringArray.h>
 
 #include <cmath>
 #include <string>
@@ -22,9 +16,6 @@ vtkStandardNewMacro(vtkTechnologyStructureSource);
 
 namespace
 {
-using cdm::Device;
-using cdm::Id;
-
 /** Rodrigues' formula; coordinates along an axis of the frame stay exact. */
 std::string Rotate(double angle, const double axis[3], std::vector<cdm::Vec3>& points)
 {
@@ -48,62 +39,6 @@ std::string Rotate(double angle, const double axis[3], std::vector<cdm::Vec3>& p
   }
   return {};
 }
-
-void AddNames(const char* arrayName, const std::vector<std::string>& names, vtkPolyData* output)
-{
-  vtkNew<vtkStringArray> array;
-  array->SetName(arrayName);
-  for (const std::string& name : names)
-  {
-    array->InsertNextValue(name);
-  }
-  output->GetFieldData()->AddArray(array);
-}
-
-void Convert(const Device& device, const std::vector<Id>& contactIds, vtkPolyData* output)
-{
-  const cdm::PolygonSoup& soup = device.Boundary;
-  const vtkIdType numberOfPolygons = soup.GetNumberOfPolygons();
-  vtkNew<vtkCellArray> polygons;
-  vtkNew<vtkIntArray> labels;
-  labels->SetName(vtkCoreBridge::BoundaryLabelsName);
-  labels->SetNumberOfComponents(2);
-  labels->SetComponentName(0, "front");
-  labels->SetComponentName(1, "back");
-  labels->SetNumberOfTuples(numberOfPolygons);
-  vtkNew<vtkIntArray> facets;
-  facets->SetName("FacetId");
-  facets->SetNumberOfTuples(numberOfPolygons);
-  for (Id polygon = 0; polygon < numberOfPolygons; ++polygon)
-  {
-    polygons->InsertNextCell(soup.GetPolygonSize(polygon));
-    for (Id i = 0; i < soup.GetPolygonSize(polygon); ++i)
-    {
-      polygons->InsertCellPoint(soup.GetPolygon(polygon)[i]);
-    }
-    labels->SetTypedComponent(polygon, 0, soup.Labels[polygon].Front);
-    labels->SetTypedComponent(polygon, 1, soup.Labels[polygon].Back);
-    facets->SetValue(polygon, device.FacetIds[polygon]);
-  }
-  output->SetPoints(vtkCoreBridge::FromPoints(soup.Points));
-  output->SetPolys(polygons);
-  output->GetCellData()->AddArray(labels);
-  output->GetCellData()->AddArray(facets);
-  vtkNew<vtkIntArray> contacts;
-  contacts->SetName("ContactId");
-  for (const Id contact : contactIds)
-  {
-    contacts->InsertNextValue(contact);
-  }
-  output->GetCellData()->AddArray(contacts);
-  std::vector<std::string> contactNames;
-  for (const cdm::Contact& contact : device.Contacts)
-  {
-    contactNames.push_back(contact.Name);
-  }
-  AddNames("RegionNames", device.RegionNames, output);
-  AddNames("ContactNames", contactNames, output);
-}
 } // namespace
 
 vtkTechnologyStructureSource::vtkTechnologyStructureSource()
@@ -116,10 +51,10 @@ int vtkTechnologyStructureSource::RequestData(
 {
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
   output->Initialize();
-  Device device;
+  cdm::Device device;
   std::string problem = this->MakeDevice(device);
   // Their places are those of the device as it is made.
-  const std::vector<Id> contactIds = device.FindContactIds();
+  const std::vector<cdm::Id> contactIds = device.FindContactIds();
   if (problem.empty() && this->RotationAngle != 0.0)
   {
     problem = Rotate(this->RotationAngle, this->RotationAxis, device.Boundary.Points);
@@ -129,11 +64,19 @@ int vtkTechnologyStructureSource::RequestData(
     vtkErrorMacro("" << this->GetStructureAsString() << ": " << problem);
     return 0;
   }
-  Convert(device, contactIds, output);
+  vtkStructureOutput::SetPolygons(device.Boundary, device.FacetIds, output);
+  vtkStructureOutput::AddIds("ContactId", contactIds, output);
+  vtkStructureOutput::AddNames("RegionNames", device.RegionNames, output);
+  std::vector<std::string> contactNames;
+  for (const cdm::Contact& contact : device.Contacts)
+  {
+    contactNames.push_back(contact.Name);
+  }
+  vtkStructureOutput::AddNames("ContactNames", contactNames, output);
   return 1;
 }
 
-std::string vtkTechnologyStructureSource::MakeDevice(Device& device)
+std::string vtkTechnologyStructureSource::MakeDevice(cdm::Device& device)
 {
   switch (this->Structure)
   {
