@@ -34,12 +34,13 @@ def Run(folder):
             + numpy.where(z > 0.0, 4.0 * z, z)**2)
         return numpy.minimum(0.4, 0.07 + 0.5 * distance)
 
-    mesh, _ = gallery.MakeMesh(device, sizing=gallery.MakeSizing(device, GetLength))
+    mesh = gallery.MakeMesh(device, sizing=gallery.MakeSizing(device, GetLength))
     wrong = gallery.Report("CMOS inverter", mesh, THESIS)
     gallery.Save(mesh, os.path.join(folder, "cmos_inverter.vtu"))
     gallery.Draw(os.path.join(folder, "cmos_inverter.png"),
                  ((device.GetOutput(), None, False), (mesh, COLOURS, False)), DIRECTION, 2.15)
-    gallery.Draw(os.path.join(folder, "cmos_inverter_mesh.png"), ((mesh, COLOURS, True),), DIRECTION, 2.15)
+    gallery.Draw(os.path.join(folder, "cmos_inverter_mesh.png"), ((mesh, COLOURS, True),),
+                 DIRECTION, 2.15)
     return wrong
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the scripts of the gallery share: the device, its mesh, the table beside the thesis, a picture.
+"""What the scripts of the gallery share: devices, meshes, tables beside the thesis, pictures.
 
 The scripts are locos.py, dram_interconnect.py, two_layer_interconnect.py, vapor_deposition.py,
 nmos_transistor.py and cmos_inverter.py: the devices of P. Fleischmann's thesis (TU Wien 1999). Each
@@ -62,29 +62,29 @@ def MakeSizing(device, length, side=41):
     return image
 
 
-def MakeMesh(device, length=0.0, sizing=None, prepare=None):
-    """The tetrahedra with the arrays of the certificate, and their boundary.
+def MakeMesh(device, length=0.0, sizing=None, points=None):
+    """The tetrahedra with the arrays of the certificate.
 
     Closed control volumes, no slivers, edges up to a length in micrometres (0: any) or as a sizing
-    asks for. prepare(mesher) may set more.
+    asks for; mesh points, however close to the boundary, stay where they are.
     """
     mesher = vtkConformingDelaunayMesher()
     mesher.SetInputConnection(device.GetOutputPort())
+    mesher.SetInputData(1, points)
     mesher.SetInputData(2, sizing)
+    mesher.SetMeshPointClearanceRatio(0.0)
     mesher.SetCriterionToSmallestSphereAndEdges()
     mesher.SetMaximumEdgeLength(length)
     mesher.AddSteinerPointsOn()
     mesher.SetRadiusEdgeRatio(2.0)
     mesher.SetDihedralAngleTarget(TARGET)
     mesher.RemoveSliversOff()
-    if prepare:
-        prepare(mesher)
     mesher.Update()
     criteria = vtkDelaunayMeshCriteria()
     criteria.SetInputData(0, mesher.GetOutputDataObject(0))
     criteria.SetInputData(1, mesher.GetOutputDataObject(1))
     criteria.Update()
-    return criteria.GetOutput(), mesher.GetOutputDataObject(1)
+    return criteria.GetOutput()
 
 
 def GetCells(mesh, name):
@@ -132,8 +132,8 @@ def Report(title, mesh, thesis):
     hasFaults = mesh.GetCellData().HasArray("RefinementFault")
     inevitable = (GetCells(mesh, "RefinementFault") == INEVITABLE if hasFaults
                   else numpy.zeros(len(angles), dtype=bool))
-    print("  smallest dihedral angle %.1f degrees; %d tetrahedra in thin layers and at sharp angles: "
-          "%.2f" % (angles[~inevitable].min(), inevitable.sum(), angles.min()))
+    print("  smallest dihedral angle %.1f degrees; in thin layers and at sharp angles %.2f (%d "
+          "tetrahedra)" % (angles[~inevitable].min(), angles.min(), inevitable.sum()))
     if angles[~inevitable].min() < TARGET:
         wrong.append("%d slivers" % (angles[~inevitable] < TARGET).sum())
     print("  certificate:", summary.GetAbstractArray("Certificate").GetValue(0))
@@ -167,11 +167,12 @@ def Save(data, path):
     print("wrote", path)
 
 
-def Draw(path, parts, direction, height, colour=None):
+def Draw(path, parts, direction, height):
     """A picture, seen from a direction; height: of what is seen, in micrometres.
 
-    parts: data sets with RegionId, drawn as surfaces, each with the colours of the regions by id
-    (None: only the outlines of its cells are drawn), and whether with edges. colour(display): called with the representation of the last part.
+    parts: data sets that are drawn as surfaces, each with its colours, and whether with edges.
+    Colours: those of the regions by id; or a point array and its range, (name, low, high); or
+    None: only the outlines of the cells are drawn.
     """
     from paraview.simple import (
         ColorBy, CreateView, Delete, GetColorTransferFunction, SaveScreenshot, Show,
@@ -197,6 +198,10 @@ def Draw(path, parts, direction, height, colour=None):
             display.ColorArrayName = ["CELLS", ""]
             display.AmbientColor = display.DiffuseColor = LINES
             display.LineWidth = 2.0
+        elif isinstance(colours[0], str):
+            name, low, high = colours
+            ColorBy(display, ("POINTS", name))
+            GetColorTransferFunction(name).RescaleTransferFunction(low, high)
         else:
             ColorBy(display, ("CELLS", "RegionId"), separate=True)
             table = GetColorTransferFunction("RegionId", display, separate=True)
@@ -205,9 +210,6 @@ def Draw(path, parts, direction, height, colour=None):
             table.IndexedColors = [channel for entry in colours for channel in entry]
         display.SetScalarBarVisibility(view, False)
         shown.append(producer)
-    if colour:
-        colour(display)
-        display.SetScalarBarVisibility(view, False)
     bounds = [data.GetBounds() for data, _, _ in parts]
     centre = [0.5 * (min(box[2 * i] for box in bounds) + max(box[2 * i + 1] for box in bounds))
               for i in range(3)]

@@ -19,7 +19,7 @@ def Run(folder):
     device = gallery.MakeDevice(
         "Locos", BulkLength=1.2, StepLength=0.25, ProfileSegments=4, FieldOxideThickness=0.4,
         PadOxideThickness=0.06, BulkDepth=0.6, NitrideThickness=0.12)
-    mesh, _ = gallery.MakeMesh(device)
+    mesh = gallery.MakeMesh(device)
     wrong = gallery.Report("LOCOS", mesh, THESIS)
     gallery.Save(mesh, os.path.join(folder, "locos.vtu"))
     gallery.Draw(os.path.join(folder, "locos.png"), ((mesh, COLOURS, True),), (-0.35, -1.0, 0.45),

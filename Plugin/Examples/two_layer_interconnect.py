@@ -12,7 +12,8 @@ import os
 import gallery
 import numpy
 
-THESIS = ((("Bulk",), 5139), (("LowerLine", "UpperLine"), 51682), (("Oxide",), 47203), (None, 104024))
+THESIS = ((("Bulk",), 5139), (("LowerLine", "UpperLine"), 51682), (("Oxide",), 47203),
+          (None, 104024))
 COLOURS = ((gallery.SILICON, gallery.OXIDE) + 2 * ((0.80, 0.47, 0.27),) + 2 * (gallery.ALUMINIUM,))
 DIRECTION = (-0.55, -0.85, 0.7)
 
@@ -25,13 +26,13 @@ def Run(folder):
         """As fine as the lines and the oxide on them ask for, coarser in the silicon."""
         return numpy.where(z > 0.0, numpy.maximum(0.12 - 0.25 * z, 0.07), 0.12 - 2.0 * z)
 
-    mesh, _ = gallery.MakeMesh(device, sizing=gallery.MakeSizing(device, GetLength))
+    mesh = gallery.MakeMesh(device, sizing=gallery.MakeSizing(device, GetLength))
     wrong = gallery.Report("Two-layer interconnect", mesh, THESIS)
     gallery.Save(mesh, os.path.join(folder, "two_layer_interconnect.vtu"))
     isOxide = gallery.GetCells(mesh, "RegionId") == 1
-    for name, keep in (("two_layer_interconnect", ~isOxide), ("two_layer_interconnect_oxide", isOxide)):
-        gallery.Draw(os.path.join(folder, name + ".png"),
-                     ((gallery.Extract(mesh, keep), COLOURS, True),), DIRECTION, 2.1)
+    for suffix, keep in (("", ~isOxide), ("_oxide", isOxide)):
+        gallery.Draw(os.path.join(folder, "two_layer_interconnect%s.png" % suffix),
+                     ((gallery.Extract(mesh, keep), COLOURS, True),), DIRECTION, 2.3)
     return wrong
 
 
