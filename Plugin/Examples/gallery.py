@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the scripts of the gallery share: devices, meshes, tables beside the thesis, pictures.
 
-The scripts are locos.py, dram_interconnect.py, two_layer_interconnect.py, vapor_deposition.py,
-nmos_transistor.py and cmos_inverter.py: the devices of P. Fleischmann's thesis (TU Wien 1999). Each
-runs as
+The scripts are locos.py, layout_interconnect.py, dram_interconnect.py, two_layer_interconnect.py,
+vapor_deposition.py, nmos_transistor.py and cmos_inverter.py: the devices of P. Fleischmann's thesis
+(TU Wien 1999). Each runs as
 
     pvpython SCRIPT [FOLDER]
 
@@ -202,13 +202,14 @@ def Draw(path, parts, direction, height):
             name, low, high = colours
             ColorBy(display, ("POINTS", name))
             GetColorTransferFunction(name).RescaleTransferFunction(low, high)
+            display.SetScalarBarVisibility(view, False)
         else:
             ColorBy(display, ("CELLS", "RegionId"), separate=True)
             table = GetColorTransferFunction("RegionId", display, separate=True)
             table.InterpretValuesAsCategories = 1
             table.Annotations = [text for j in range(len(colours)) for text in (str(j), str(j))]
             table.IndexedColors = [channel for entry in colours for channel in entry]
-        display.SetScalarBarVisibility(view, False)
+            display.SetScalarBarVisibility(view, False)
         shown.append(producer)
     bounds = [data.GetBounds() for data, _, _ in parts]
     centre = [0.5 * (min(box[2 * i] for box in bounds) + max(box[2 * i + 1] for box in bounds))
