@@ -4,10 +4,10 @@
 #include "Core/Predicates.h"
 
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <numeric>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 namespace cdm
@@ -42,10 +42,11 @@ public:
     std::iota(this->Parents.begin(), this->Parents.end(), 0);
   }
 
-  Id Find(Id i) const
+  Id Find(Id i)
   {
     while (this->Parents[i] != i)
     {
+      this->Parents[i] = this->Parents[this->Parents[i]];
       i = this->Parents[i];
     }
     return i;
@@ -151,8 +152,11 @@ bool AreCoplanar(const Loop& p, const Loop& q, const std::vector<Vec3>& points)
 /** An edge between two polygons that are pieces of one planar interface. */
 struct SeamEdge
 {
+  Edge Points;
   Id First;
   Id Second;
+  /** When it could not be taken. */
+  Id Tried = 0;
 };
 
 /** In the order of the edges. */
@@ -168,85 +172,154 @@ std::vector<SeamEdge> FindSeams(
       const Polygon& q = polygons[incident[1]];
       if (p.Labels == q.Labels && AreCoplanar(p.Outline, q.Outline, points))
       {
-        seams.push_back({ incident[0], incident[1] });
+        seams.push_back({ edge, incident[0], incident[1] });
       }
     }
   }
   return seams;
 }
 
-/**
- * The outline of the union of two neighbours in one facet; empty if they have anything but one
- * chain of edges in common, since the union would then have a hole or touch itself.
- */
-Loop JoinOutlines(Loop p, Loop q)
+/** A simple polygon that can be joined to another one in the time that the smaller one takes. */
+class JoinableOutline
 {
-  std::set<Edge> edgesOfQ;
-  for (std::size_t i = 0; i < q.size(); ++i)
+public:
+  explicit JoinableOutline(const Loop& loop) : First(loop[0])
   {
-    edgesOfQ.insert(GetEdge(q, i));
-  }
-  const auto isCommon = [&p, &edgesOfQ](std::size_t i) { return edgesOfQ.count(GetEdge(p, i)); };
-
-  // Let p begin with the chain.
-  std::size_t begin = 0;
-  while (begin < p.size() && (isCommon((begin + p.size() - 1) % p.size()) || !isCommon(begin)))
-  {
-    ++begin;
-  }
-  if (begin == p.size())
-  {
-    return {};
-  }
-  std::rotate(p.begin(), p.begin() + begin, p.end());
-  std::size_t chain = 0;
-  while (isCommon(chain))
-  {
-    ++chain;
-  }
-  const std::set<Id> verticesOfQ(q.begin(), q.end());
-  const auto numberOfCommonVertices =
-    std::count_if(p.begin(), p.end(), [&](Id v) { return verticesOfQ.count(v) != 0; });
-  if (numberOfCommonVertices != static_cast<std::ptrdiff_t>(chain + 1))
-  {
-    return {};
+    for (std::size_t i = 0; i < loop.size(); ++i)
+    {
+      const std::size_t last = loop.size() - 1;
+      this->Ends[loop[i]] = { loop[i == 0 ? last : i - 1], loop[i == last ? 0 : i + 1] };
+    }
   }
 
-  // q runs along the chain backwards, so it goes on at p.front() where p arrives.
-  std::rotate(q.begin(), std::find(q.begin(), q.end(), p.front()), q.end());
-  Loop joined(p.begin() + chain, p.end());
-  joined.insert(joined.end(), q.begin(), q.end() - chain);
-  return joined;
-}
+  /**
+   * Takes over the other outline, which runs along an edge of this one backwards. False, and
+   * nothing changes, if they have anything but one chain of edges in common, since the union would
+   * then have a hole or touch itself.
+   */
+  bool Join(JoinableOutline& other, const Edge& edge)
+  {
+    const bool isForward = this->Ends.at(edge.first).Next == edge.second;
+    Id begin = isForward ? edge.first : edge.second;
+    Id end = isForward ? edge.second : edge.first;
+    std::size_t chain = 1;
+    const std::size_t most = std::min(this->Ends.size(), other.Ends.size());
+    for (; chain < most && this->Ends.at(end).Next == other.Ends.at(end).Previous; ++chain)
+    {
+      end = this->Ends.at(end).Next;
+    }
+    for (; chain < most && this->Ends.at(begin).Previous == other.Ends.at(begin).Next; ++chain)
+    {
+      begin = this->Ends.at(begin).Previous;
+    }
+    const bool isSmaller = this->Ends.size() < other.Ends.size();
+    const auto& small = isSmaller ? this->Ends : other.Ends;
+    const auto& large = isSmaller ? other.Ends : this->Ends;
+    std::size_t common = 0;
+    for (auto item = small.begin(); item != small.end() && common <= chain + 1; ++item)
+    {
+      common += large.count(item->first);
+    }
+    if (chain == most || common != chain + 1)
+    {
+      return false;
+    }
+
+    const Neighbors atBegin{ this->Ends.at(begin).Previous, other.Ends.at(begin).Next };
+    const Neighbors atEnd{ other.Ends.at(end).Previous, this->Ends.at(end).Next };
+    for (Id vertex = begin; vertex != end;)
+    {
+      const Id next = this->Ends.at(vertex).Next;
+      this->Ends.erase(vertex);
+      other.Ends.erase(vertex);
+      vertex = next;
+    }
+    if (isSmaller)
+    {
+      this->Ends.swap(other.Ends);
+    }
+    this->Ends.insert(other.Ends.begin(), other.Ends.end());
+    other.Ends.clear();
+    this->Ends[begin] = atBegin;
+    this->Ends[end] = atEnd;
+    this->First = end;
+    return true;
+  }
+
+  Loop GetLoop() const
+  {
+    Loop loop;
+    for (Id vertex = this->First; loop.size() < this->Ends.size();
+         vertex = this->Ends.at(vertex).Next)
+    {
+      loop.push_back(vertex);
+    }
+    return loop;
+  }
+
+private:
+  struct Neighbors
+  {
+    Id Previous;
+    Id Next;
+  };
+
+  std::unordered_map<Id, Neighbors> Ends;
+  Id First;
+};
 
 /** Seams that could not be taken get another chance after the others. */
 void JoinPolygons(std::vector<Polygon>& polygons, const std::vector<Vec3>& points)
 {
+  std::vector<JoinableOutline> outlines;
+  for (const Polygon& polygon : polygons)
+  {
+    outlines.emplace_back(polygon.Outline);
+  }
   DisjointSets pieces(polygons.size());
+  Id time = 0;
+  std::vector<Id> changed(polygons.size(), 0);
+  const auto isTaken = [&](SeamEdge& seam)
+  {
+    const auto [p, q] = std::minmax({ pieces.Find(seam.First), pieces.Find(seam.Second) });
+    if (p == q)
+    {
+      return true;
+    }
+    if (std::max(changed[p], changed[q]) < seam.Tried ||
+      !outlines[p].Join(outlines[q], seam.Points))
+    {
+      seam.Tried = time + 1;
+      return false;
+    }
+    pieces.Unite(p, q);
+    changed[p] = ++time;
+    return true;
+  };
   std::vector<SeamEdge> seams = FindSeams(polygons, points);
   std::size_t numberOfSeams = 0;
   while (seams.size() != numberOfSeams)
   {
     numberOfSeams = seams.size();
-    const auto isTaken = [&](const SeamEdge& seam)
-    {
-      const auto [p, q] = std::minmax({ pieces.Find(seam.First), pieces.Find(seam.Second) });
-      Loop joined = p == q ? Loop{} : JoinOutlines(polygons[p].Outline, polygons[q].Outline);
-      if (!joined.empty())
-      {
-        polygons[p].Outline = std::move(joined);
-        polygons[q].Outline.clear();
-        pieces.Unite(p, q);
-      }
-      return p == q || polygons[q].Outline.empty();
-    };
     std::vector<SeamEdge> left;
-    std::remove_copy_if(seams.begin(), seams.end(), std::back_inserter(left), isTaken);
+    for (SeamEdge& seam : seams)
+    {
+      if (!isTaken(seam))
+      {
+        left.push_back(seam);
+      }
+    }
     seams = std::move(left);
   }
-  polygons.erase(std::remove_if(polygons.begin(), polygons.end(),
-                   [](const Polygon& polygon) { return polygon.Outline.empty(); }),
-    polygons.end());
+  std::vector<Polygon> joined;
+  for (std::size_t i = 0; i < polygons.size(); ++i)
+  {
+    if (pieces.Find(static_cast<Id>(i)) == static_cast<Id>(i))
+    {
+      joined.push_back({ outlines[i].GetLoop(), polygons[i].Labels });
+    }
+  }
+  polygons = std::move(joined);
 }
 
 void DropVerticesInsideLines(std::vector<Polygon>& polygons, const std::vector<Vec3>& points)

@@ -22,10 +22,11 @@
  * connected planar interface; there are several only where it has holes.
  *
  * Guarantees: every point is used, no point is there twice, none lies on an edge or in a polygon
- * that it is no vertex of. Walls are planar exactly, since their vertices lie over two places of the
- * layout; so are plates of one height, and of two heights over two parallels to an axis. Other plates
- * are planar if the heights that were given for them are. Deterministic.
- * Cost: O(n^2) for n polygons, which are few.
+ * that it is no vertex of. Walls are planar exactly, since their vertices lie over two places of
+ * the layout; so are plates of one height, and of two heights over two parallels to an axis. Other
+ * plates are planar if the heights that were given for them are. Deterministic.
+ * Cost: O(n log n) for n plates and walls, and more for facets with many holes: 50,000 take a
+ * second.
  */
 #ifndef cdmLayeredStructure_h
 #define cdmLayeredStructure_h
@@ -56,9 +57,10 @@ public:
   Id AddCell(std::vector<Id> outline);
 
   /**
-   * Put a layer on top of the previous one, up to this level, or up to these heights at the vertices;
-   * all vertices are there by now. Where the level lies below the previous one the layer has no
-   * thickness. Regions: one for each cell, OutsideRegion where the layer leaves the cell empty.
+   * Put a layer on top of the previous one, up to this level, or up to these heights at the
+   * vertices; all vertices are there by now. Where the level lies below the previous one the layer
+   * has no thickness. Regions: one for each cell, OutsideRegion where the layer leaves the cell
+   * empty.
    */
   void AddLayer(double top, std::vector<Id> regions);
   void AddLayer(std::vector<double> tops, std::vector<Id> regions);

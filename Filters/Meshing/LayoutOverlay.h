@@ -3,9 +3,10 @@
  * @file LayoutOverlay.h
  * @brief Overlays the polygons of all masks of a layout into one planar subdivision.
  *
- * Method (thesis 4.2.1, Fig. 4.3): the polygons, pressed onto the plane z = 0, go through stage 0, which
- * triangulates them and splits triangles that cross or overlap along each other; each of the pieces
- * then lies in a polygon as a whole or not at all, which the exact position of its middle tells.
+ * Method (thesis 4.2.1, Fig. 4.3): the polygons, pressed onto the plane z = 0, go through stage 0,
+ * which triangulates them and splits triangles that cross or overlap along each other; each of the
+ * pieces then lies in a polygon as a whole or not at all, which the exact position of its middle
+ * tells.
  *
  * Guarantees: pieces do not overlap and share all vertices on their common border; vertices of the
  * input keep their coordinates, unless two are nearer to each other than rounding. Deterministic.

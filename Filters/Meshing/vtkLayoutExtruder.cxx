@@ -238,6 +238,12 @@ int vtkLayoutExtruder::RequestData(
       }
       if (step.IsOk())
       {
+        const bool isWanted =
+          vtkCoreBridge::MakeContext(this).Continue(0.8, "Collecting interfaces");
+        if (!isWanted)
+        {
+          return cdm::Status::Aborted();
+        }
         boundary = Stack(overlay, masks, steps).MakeBoundary(facetIds);
       }
       if (step.IsOk() && boundary.GetNumberOfPolygons() == 0)

@@ -20,10 +20,10 @@
  * non-convex, and bridged to holes. Cell array Mask (whole numbers from 0 on): the mask of each
  * polygon; without it all are of mask 0.
  *
- * Outputs: port 0: vtkPolyData, coordinates in double precision, polygons of any number of vertices.
- * Cell arrays BoundaryLabels (int, components front and back): the region ids on the side that the
- * normal points to and on the other one, -1 outside; FacetId (int): equal for the pieces of one
- * connected planar interface. Field array RegionNames (string) if names were given.
+ * Outputs: port 0: vtkPolyData, coordinates in double precision, polygons of any number of
+ * vertices. Cell arrays BoundaryLabels (int, components front and back): the region ids on the side
+ * that the normal points to and on the other one, -1 outside; FacetId (int): equal for the pieces
+ * of one connected planar interface. Field array RegionNames (string) if names were given.
  * vtkGmshMeshWriter names interfaces and outer sides after them.
  *
  * Guarantees: each interface polygon is there once, and exactly planar; no two points coincide; no
@@ -32,9 +32,11 @@
  *
  * Failure: an error that names the cells or steps, and an empty output, for a layout without
  * polygons, an outline that crosses itself, points that are not finite, no steps, a mask without
- * polygons, heights that do not ascend, steps that leave nothing. An aborted run has an empty output.
+ * polygons, heights that do not ascend, steps that leave nothing. An aborted run has an empty
+ * output.
  *
- * Cost: O(n^2) for n edges of the overlay; 0.1 s for 100 rectangles in 8 layers.
+ * Cost: that of the overlay, which grows with the crossings of masks: 3 s for 200 rectangles of a
+ * mask that cross each other 2,000 times, in 15 layers; 0.1 s for 25.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
  * 1999: layout and layers.
@@ -60,8 +62,8 @@ public:
   /**
    * A process step: fill the prism over a mask (-1: over the bounding rectangle of the layout and
    * Margin around it) from one height to another with a region (-1: empty it). Heights in model
-   * units, the second one above the first. Whole numbers are passed as double, as ParaView does with
-   * rows of a table. Default: none.
+   * units, the second one above the first. Whole numbers are passed as double, as ParaView does
+   * with rows of a table. Default: none.
    */
   void AddStep(double mask, double bottom, double top, double region);
   void RemoveAllSteps();
@@ -75,8 +77,8 @@ public:
 
   ///@{
   /**
-   * By how much the structure is larger than the layout on all four sides, for steps without a mask.
-   * Model units; default 0; range 0 and above.
+   * By how much the structure is larger than the layout on all four sides, for steps without a
+   * mask. Model units; default 0; range 0 and above.
    */
   vtkSetClampMacro(Margin, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Margin, double);

@@ -286,8 +286,8 @@ void CheckNoTJunctions(const Boundary& boundary)
 }
 
 /**
- * Each region is a closed manifold with the expected volume; the volumes add up. Rounded: coordinates
- * are turned, or sums of several lengths.
+ * Each region is a closed manifold with the expected volume; the volumes add up. Rounded:
+ * coordinates are turned, or sums of several lengths.
  */
 void CheckRegions(
   const Boundary& boundary, const std::vector<ExpectedRegion>& regions, bool isRounded)

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Device.h
- * @brief The sample devices of vtkTechnologyStructureSource, one source file for each, and what they
- * share.
+ * @brief The sample devices of vtkTechnologyStructureSource, one source file for each, and what
+ * they share.
  *
  * Each function checks its parameters and makes a device; it returns an empty string, or what is
- * wrong with them. Lengths are in micrometres; what they mean is said in vtkTechnologyStructureSource.h.
+ * wrong with them. Lengths are in micrometres; what they mean is said in
+ * vtkTechnologyStructureSource.h.
  */
 #ifndef cdmDevice_h
 #define cdmDevice_h

@@ -63,7 +63,8 @@ std::string MakeDramInterconnect(const DramParameters& p, Device& device)
   const CosineSine slant = GetCosineSine(p.SidewallAngle);
   const double slope = slant.Sine / slant.Cosine;
   const double halfWidth = 0.5 * p.LineWidth;
-  // Lines are narrower at the top, plugs as much at the bottom, so that the masks have common edges.
+  // Lines are narrower at the top, plugs as much at the bottom, so that the masks have common
+  // edges.
   const Flank flank{ halfWidth - slope * p.LineThickness, halfWidth };
   if (problem.empty())
   {

@@ -4,9 +4,9 @@
  * @brief A layered structure over a rectangular grid of lines in x and y, for devices of boxes,
  * frustums and films.
  *
- * The lines are the edges of all masks. Levels are heights over the crossings of the lines; where the
- * four corners of a rectangle are not in one plane it is split along the diagonal that keeps three
- * equal heights together, as in the corner of a frustum.
+ * The lines are the edges of all masks. Levels are heights over the crossings of the lines; where
+ * the four corners of a rectangle are not in one plane it is split along the diagonal that keeps
+ * three equal heights together, as in the corner of a frustum.
  */
 #ifndef cdmGridLayout_h
 #define cdmGridLayout_h

@@ -41,7 +41,8 @@ std::string MakeLinedVia(const LinedViaParameters& p, Device& device)
     problem = problem.empty() ? CheckLess(small, large) : problem;
   }
 
-  // From the landing of the via upwards; where there is a trench it ends on top of the last but two.
+  // From the landing of the via upwards; where there is a trench it ends on top of the last but
+  // two.
   std::vector<double> levels{ 0.0, barrier, p.ViaHeight, p.ViaHeight + barrier };
   if (hasTrench)
   {

@@ -34,7 +34,8 @@ std::string MakeLocos(const LocosParameters& p, Device& device)
     return problem;
   }
 
-  // The beak begins StepLength under the mask, whose edge is at x = 0, and ends half of that beyond.
+  // The beak begins StepLength under the mask, whose edge is at x = 0, and ends half of that
+  // beyond.
   const double begin = -p.StepLength;
   const double length = 1.5 * p.StepLength;
   std::vector<double> x{ -bulkEdge, bulkEdge };

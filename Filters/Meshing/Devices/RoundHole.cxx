@@ -10,8 +10,8 @@ namespace cdm
 RoundHole AddRoundHole(LayeredStructure& structure, const std::array<Id, 4>& corners, double radius,
   int numberOfSegments)
 {
-  // Two cuts from opposite corners of the rectangle to the vertices of the circle that lie farthest in
-  // the direction of these corners cannot meet the circle before.
+  // Two cuts from opposite corners of the rectangle to the vertices of the circle that lie farthest
+  // in the direction of these corners cannot meet the circle before.
   const int n = numberOfSegments;
   RoundHole hole;
   std::vector<double> reach;

@@ -22,7 +22,8 @@ std::string MakeTwoLayerInterconnect(const TwoLayerParameters& p, Device& device
     return problem;
   }
 
-  // Two lines on each layer, in the middles of two strips: the lower ones along y, the others along x.
+  // Two lines on each layer, in the middles of two strips: the lower ones along y, the others along
+  // x.
   const double size = 2.0 * p.LinePitch;
   const double halfWidth = 0.5 * p.LineWidth;
   const double centers[2] = { 0.5 * p.LinePitch, 1.5 * p.LinePitch };
