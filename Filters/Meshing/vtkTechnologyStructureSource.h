@@ -17,19 +17,19 @@
  *    gate crosses it along y, from 0 to DeviceWidth, on the gate oxide between them; an oxide of
  *    the same thickness everywhere covers the device. Regions: Bulk, LeftFieldOxide,
  *    RightFieldOxide (at the low and at the high y), GateOxide, Gate, CoverOxide.
- *    Contacts of the transistors: Source, Drain, Gate, Substrate; of the via plug: BottomContact,
- *    TopContact.
+ *    Contacts of the transistors: SourceContact, DrainContact, GateContact, SubstrateContact; of the
+ *    via plug: BottomContact, TopContact.
  *  - LOCOS (thesis Fig. 4.2): an oxide grown on silicon beside a nitride mask, which covers x < 0,
  *    with a bird's beak under the bent edge of the mask; extruded along y. The silicon was there up
- *    to z = 0. Regions: Bulk, FieldOxide, Nitride. Contact: Substrate.
+ *    to z = 0. Regions: Bulk, FieldOxide, Nitride. Contact: SubstrateContact.
  *  - DRAM interconnect (thesis Fig. 7.10): word lines along x, above them bit lines along y with
  *    plugs down to z = 0 in every other gap between word lines, in an insulator; all conductors are
  *    tapered. Regions: Insulator, WordLine1, ..., BitLine1, ... Contacts: the surface of each
- *    conductor, named like it; Substrate, the bottom of the insulator.
+ *    conductor, WordLine1Contact and so on; SubstrateContact, the bottom of the insulator.
  *  - Two-layer interconnect (thesis Fig. 7.13 and 7.14): two metal lines along y on silicon, an
  *    oxide that follows their topography, on it two metal lines along x that follow it too.
  *    Regions: Bulk, Oxide, LowerLine1, LowerLine2, UpperLine1, UpperLine2. Contacts: where each
- *    line touches the oxide, named like it; Substrate.
+ *    line touches the oxide, LowerLine1Contact and so on; SubstrateContact.
  *  - Via with barrier (thesis Fig. 7.15 to 7.19): a cylindrical hole down to metal at z = 0, lined
  *    by a barrier, with the gas in it and above. Regions: Insulator, BottomMetal, Barrier, Gas.
  *    Contacts: Inlet (the top of the gas), Surface (where gas touches the barrier), BottomContact.
@@ -41,8 +41,9 @@
  *    supply, one that joins the gates, one that joins the drains. Regions: Silicon, Oxide (film and
  *    trenches), NmosGate, PmosGate, NmosSourceSpacer, NmosDrainSpacer, PmosSourceSpacer,
  *    PmosDrainSpacer, Ground, Supply, Input, Output, and Passivation if there is one. Contacts:
- *    NmosSource, NmosDrain, NmosGate, PmosSource, PmosDrain, PmosGate (where metal touches them),
- *    Substrate, and Ground, Supply, Input, Output (the tops of the metal lines).
+ *    NmosSourceContact, NmosDrainContact, NmosGateContact, PmosSourceContact, PmosDrainContact,
+ *    PmosGateContact (where metal touches them), SubstrateContact, and Vss, Vdd, Vin, Vout (the tops
+ *    of Ground, Supply, Input and Output).
  *
  * Method:
  *  1. check the parameters;

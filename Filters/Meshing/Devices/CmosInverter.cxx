@@ -221,17 +221,20 @@ std::string MakeCmosInverter(const CmosParameters& p, Device& device)
 
   const auto isNmos = [=](const Vec3& v) { return v.Y < 0.5 * width; };
   const auto isPmos = [=](const Vec3& v) { return v.Y > 0.5 * width; };
-  device.Contacts = {
-    { "NmosSource", { Silicon, Ground }, isNmos }, { "NmosDrain", { Silicon, Output }, isNmos },
-    { "NmosGate", { NmosGate, Input }, isNmos }, { "PmosSource", { Silicon, Supply }, isPmos },
-    { "PmosDrain", { Silicon, Output }, isPmos }, { "PmosGate", { PmosGate, Input }, isPmos },
-    { "Substrate", { OutsideRegion, Silicon }, [=](const Vec3& v) { return v.Z == -p.BulkDepth; } }
-  };
-  for (const Id metal : { Ground, Supply, Input, Output })
+  device.Contacts = { { "NmosSourceContact", { Silicon, Ground }, isNmos },
+    { "NmosDrainContact", { Silicon, Output }, isNmos },
+    { "NmosGateContact", { NmosGate, Input }, isNmos },
+    { "PmosSourceContact", { Silicon, Supply }, isPmos },
+    { "PmosDrainContact", { Silicon, Output }, isPmos },
+    { "PmosGateContact", { PmosGate, Input }, isPmos },
+    { "SubstrateContact", { OutsideRegion, Silicon },
+      [=](const Vec3& v) { return v.Z == -p.BulkDepth; } } };
+  const std::pair<const char*, Id> terminals[] = { { "Vss", Ground }, { "Vdd", Supply },
+    { "Vin", Input }, { "Vout", Output } };
+  for (const auto& [name, metal] : terminals)
   {
-    device.Contacts.push_back(
-      { device.RegionNames[metal], { std::min(cover, metal), std::max(cover, metal) },
-        [=](const Vec3& v) { return v.Z == metalTop; } });
+    device.Contacts.push_back({ name, { std::min(cover, metal), std::max(cover, metal) },
+      [=](const Vec3& v) { return v.Z == metalTop; } });
   }
   return {};
 }

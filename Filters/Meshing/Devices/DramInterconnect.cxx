@@ -162,11 +162,11 @@ std::string MakeDramInterconnect(const DramParameters& p, Device& device)
 
   for (std::size_t region = 1; region < device.RegionNames.size(); ++region)
   {
-    device.Contacts.push_back({ device.RegionNames[region], { insulator, static_cast<Id>(region) },
-      [](const Vec3&) { return true; } });
+    device.Contacts.push_back({ device.RegionNames[region] + "Contact",
+      { insulator, static_cast<Id>(region) }, [](const Vec3&) { return true; } });
   }
   device.Contacts.push_back(
-    { "Substrate", { OutsideRegion, insulator }, [](const Vec3& v) { return v.Z == 0.0; } });
+    { "SubstrateContact", { OutsideRegion, insulator }, [](const Vec3& v) { return v.Z == 0.0; } });
   return {};
 }
 } // namespace cdm

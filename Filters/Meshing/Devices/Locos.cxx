@@ -79,7 +79,7 @@ std::string MakeLocos(const LocosParameters& p, Device& device)
   layout.AddLayer([=](double u, double v) { return getTop(u, v) + p.NitrideThickness; },
     [](double u, double) -> Id { return u < 0.0 ? Id(Nitride) : OutsideRegion; });
   layout.MakeBoundary(device);
-  device.Contacts = { { "Substrate", { OutsideRegion, Bulk },
+  device.Contacts = { { "SubstrateContact", { OutsideRegion, Bulk },
     [=](const Vec3& v) { return v.Z == bottom; } } };
   return {};
 }

@@ -87,11 +87,13 @@ std::string MakeMosTransistor(const MosParameters& p, Device& device)
   structure.AddCell(std::move(spacers[1]));
   structure.AddLayer(p.DeviceWidth, { Bulk, GateOxide, Gate, LeftSpacer, RightSpacer });
   device.Boundary = structure.MakeBoundary(device.FacetIds);
-  device.Contacts = { { "Source", { OutsideRegion, Bulk },
+  device.Contacts = { { "SourceContact", { OutsideRegion, Bulk },
                         [](const Vec3& v) { return v.Z == 0.0 && v.X < 0.0; } },
-    { "Drain", { OutsideRegion, Bulk }, [](const Vec3& v) { return v.Z == 0.0 && v.X > 0.0; } },
-    { "Gate", { OutsideRegion, Gate }, [=](const Vec3& v) { return v.Z == gateTop; } },
-    { "Substrate", { OutsideRegion, Bulk }, [=](const Vec3& v) { return v.Z == -p.BulkDepth; } } };
+    { "DrainContact", { OutsideRegion, Bulk },
+      [](const Vec3& v) { return v.Z == 0.0 && v.X > 0.0; } },
+    { "GateContact", { OutsideRegion, Gate }, [=](const Vec3& v) { return v.Z == gateTop; } },
+    { "SubstrateContact", { OutsideRegion, Bulk },
+      [=](const Vec3& v) { return v.Z == -p.BulkDepth; } } };
   return {};
 }
 } // namespace cdm

@@ -107,12 +107,13 @@ std::string MakeNmosTransistor(const NmosParameters& p, Device& device)
   }
   layout.MakeBoundary(device);
   const double bulkEdge = 0.5 * p.BulkLength;
-  device.Contacts = { { "Source", { OutsideRegion, Bulk },
+  device.Contacts = { { "SourceContact", { OutsideRegion, Bulk },
                         [=](const Vec3& v) { return v.X == -bulkEdge; } },
-    { "Drain", { OutsideRegion, Bulk }, [=](const Vec3& v) { return v.X == bulkEdge; } },
-    { "Gate", { OutsideRegion, Gate },
+    { "DrainContact", { OutsideRegion, Bulk }, [=](const Vec3& v) { return v.X == bulkEdge; } },
+    { "GateContact", { OutsideRegion, Gate },
       [=](const Vec3& v) { return v.Y == 0.0 || v.Y == p.DeviceWidth; } },
-    { "Substrate", { OutsideRegion, Bulk }, [=](const Vec3& v) { return v.Z == -p.BulkDepth; } } };
+    { "SubstrateContact", { OutsideRegion, Bulk },
+      [=](const Vec3& v) { return v.Z == -p.BulkDepth; } } };
   return {};
 }
 } // namespace cdm

@@ -103,10 +103,11 @@ std::string MakeTwoLayerInterconnect(const TwoLayerParameters& p, Device& device
   const auto isAnywhere = [](const Vec3&) { return true; };
   for (const Id line : { LowerLine1, LowerLine2, UpperLine1, UpperLine2 })
   {
-    device.Contacts.push_back({ device.RegionNames[line], { Oxide, line }, isAnywhere });
+    device.Contacts.push_back(
+      { device.RegionNames[line] + "Contact", { Oxide, line }, isAnywhere });
   }
-  device.Contacts.push_back(
-    { "Substrate", { OutsideRegion, Bulk }, [=](const Vec3& v) { return v.Z == -p.BulkDepth; } });
+  device.Contacts.push_back({ "SubstrateContact", { OutsideRegion, Bulk },
+    [=](const Vec3& v) { return v.Z == -p.BulkDepth; } });
   return {};
 }
 } // namespace cdm
