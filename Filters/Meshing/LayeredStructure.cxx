@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 namespace cdm
@@ -20,8 +21,6 @@ struct Polygon
 {
   Loop Outline;
   RegionPair Labels;
-  /** Equal for polygons in one plane. */
-  Id Plane = NoId;
 };
 
 Edge MakeEdge(Id a, Id b)
@@ -43,10 +42,11 @@ public:
     std::iota(this->Parents.begin(), this->Parents.end(), 0);
   }
 
-  Id Find(Id i) const
+  Id Find(Id i)
   {
     while (this->Parents[i] != i)
     {
+      this->Parents[i] = this->Parents[this->Parents[i]];
       i = this->Parents[i];
     }
     return i;
@@ -106,41 +106,8 @@ std::vector<LayoutEdge> FindLayoutEdges(const std::vector<Loop>& cells)
   return edges;
 }
 
-/** Unites edges that continue each other in a straight line. */
-DisjointSets FindLines(
-  const std::vector<LayoutEdge>& edges, const std::vector<std::array<double, 2>>& vertices)
-{
-  std::vector<std::vector<Id>> edgesAtVertices(vertices.size());
-  for (std::size_t i = 0; i < edges.size(); ++i)
-  {
-    edgesAtVertices[edges[i].Begin].push_back(static_cast<Id>(i));
-    edgesAtVertices[edges[i].End].push_back(static_cast<Id>(i));
-  }
-  DisjointSets lines(edges.size());
-  for (std::size_t vertex = 0; vertex < vertices.size(); ++vertex)
-  {
-    const auto& incident = edgesAtVertices[vertex];
-    for (std::size_t i = 0; i < incident.size(); ++i)
-    {
-      for (std::size_t j = i + 1; j < incident.size(); ++j)
-      {
-        const LayoutEdge& a = edges[incident[i]];
-        const LayoutEdge& b = edges[incident[j]];
-        const Id endOfA = a.Begin + a.End - static_cast<Id>(vertex);
-        const Id endOfB = b.Begin + b.End - static_cast<Id>(vertex);
-        if (AreCollinear(
-              ToPlane(vertices[vertex]), ToPlane(vertices[endOfA]), ToPlane(vertices[endOfB])))
-        {
-          lines.Unite(incident[i], incident[j]);
-        }
-      }
-    }
-  }
-  return lines;
-}
-
 /** Outline as seen from the side of region front. Adds nothing inside of one region. */
-void AddPolygon(std::vector<Polygon>& polygons, Loop outline, RegionPair labels, Id plane)
+void AddPolygon(std::vector<Polygon>& polygons, Loop outline, RegionPair labels)
 {
   if (labels.Front == labels.Back)
   {
@@ -151,7 +118,7 @@ void AddPolygon(std::vector<Polygon>& polygons, Loop outline, RegionPair labels,
     std::swap(labels.Front, labels.Back);
     std::reverse(outline.begin(), outline.end());
   }
-  polygons.push_back({ std::move(outline), labels, plane });
+  polygons.push_back({ std::move(outline), labels });
 }
 
 using EdgeMap = std::map<Edge, std::vector<Id>>;
@@ -170,84 +137,189 @@ EdgeMap FindPolygonsAtEdges(const std::vector<Polygon>& polygons)
   return polygonsAtEdges;
 }
 
-/** True if the edge of these polygons separates two pieces of one planar interface. */
-bool IsInsideFacet(const std::vector<Id>& polygonsAtEdge, const std::vector<Polygon>& polygons)
+/** True if all vertices of q lie in the plane of p. */
+bool AreCoplanar(const Loop& p, const Loop& q, const std::vector<Vec3>& points)
 {
-  if (polygonsAtEdge.size() != 2)
-  {
-    return false;
-  }
-  const Polygon& p = polygons[polygonsAtEdge[0]];
-  const Polygon& q = polygons[polygonsAtEdge[1]];
-  return p.Plane == q.Plane && p.Labels == q.Labels;
+  const Vec3& a = points[p[0]];
+  const Vec3& b = points[p[1]];
+  const auto corner = std::find_if(
+    p.begin() + 2, p.end(), [&](Id vertex) { return !AreCollinear(a, b, points[vertex]); });
+  return corner != p.end() &&
+    std::all_of(q.begin(), q.end(),
+      [&](Id vertex) { return Orientation(a, b, points[*corner], points[vertex]) == 0; });
 }
 
-/**
- * The outline of the union of two neighbours in one facet; empty if they have anything but one
- * chain of edges in common, since the union would then have a hole or touch itself.
- */
-Loop JoinOutlines(Loop p, Loop q)
+/** An edge between two polygons that are pieces of one planar interface. */
+struct SeamEdge
 {
-  std::set<Edge> edgesOfQ;
-  for (std::size_t i = 0; i < q.size(); ++i)
-  {
-    edgesOfQ.insert(GetEdge(q, i));
-  }
-  const auto isCommon = [&p, &edgesOfQ](std::size_t i) { return edgesOfQ.count(GetEdge(p, i)); };
+  Edge Points;
+  Id First;
+  Id Second;
+  /** When it could not be taken. */
+  Id Tried = 0;
+};
 
-  // Let p begin with the chain.
-  std::size_t begin = 0;
-  while (begin < p.size() && (isCommon((begin + p.size() - 1) % p.size()) || !isCommon(begin)))
-  {
-    ++begin;
-  }
-  if (begin == p.size())
-  {
-    return {};
-  }
-  std::rotate(p.begin(), p.begin() + begin, p.end());
-  std::size_t chain = 0;
-  while (isCommon(chain))
-  {
-    ++chain;
-  }
-  const std::set<Id> verticesOfQ(q.begin(), q.end());
-  const auto numberOfCommonVertices =
-    std::count_if(p.begin(), p.end(), [&](Id v) { return verticesOfQ.count(v) != 0; });
-  if (numberOfCommonVertices != static_cast<std::ptrdiff_t>(chain + 1))
-  {
-    return {};
-  }
-
-  // q runs along the chain backwards, so it goes on at p.front() where p arrives.
-  std::rotate(q.begin(), std::find(q.begin(), q.end(), p.front()), q.end());
-  Loop joined(p.begin() + chain, p.end());
-  joined.insert(joined.end(), q.begin(), q.end() - chain);
-  return joined;
-}
-
-void JoinPolygons(std::vector<Polygon>& polygons)
+/** In the order of the edges. */
+std::vector<SeamEdge> FindSeams(
+  const std::vector<Polygon>& polygons, const std::vector<Vec3>& points)
 {
-  bool isChanged = true;
-  while (isChanged)
+  std::vector<SeamEdge> seams;
+  for (const auto& [edge, incident] : FindPolygonsAtEdges(polygons))
   {
-    isChanged = false;
-    for (const auto& [edge, incident] : FindPolygonsAtEdges(polygons))
+    if (incident.size() == 2)
     {
-      if (!IsInsideFacet(incident, polygons))
+      const Polygon& p = polygons[incident[0]];
+      const Polygon& q = polygons[incident[1]];
+      if (p.Labels == q.Labels && AreCoplanar(p.Outline, q.Outline, points))
       {
-        continue;
-      }
-      Loop joined = JoinOutlines(polygons[incident[0]].Outline, polygons[incident[1]].Outline);
-      if (!joined.empty())
-      {
-        polygons[incident[0]].Outline = std::move(joined);
-        polygons.erase(polygons.begin() + incident[1]);
-        isChanged = true;
-        break;
+        seams.push_back({ edge, incident[0], incident[1] });
       }
     }
   }
+  return seams;
+}
+
+/** A simple polygon that can be joined to another one in the time that the smaller one takes. */
+class JoinableOutline
+{
+public:
+  explicit JoinableOutline(const Loop& loop) : First(loop[0])
+  {
+    for (std::size_t i = 0; i < loop.size(); ++i)
+    {
+      const std::size_t last = loop.size() - 1;
+      this->Ends[loop[i]] = { loop[i == 0 ? last : i - 1], loop[i == last ? 0 : i + 1] };
+    }
+  }
+
+  /**
+   * Takes over the other outline, which runs along an edge of this one backwards. False, and
+   * nothing changes, if they have anything but one chain of edges in common, since the union would
+   * then have a hole or touch itself.
+   */
+  bool Join(JoinableOutline& other, const Edge& edge)
+  {
+    const bool isForward = this->Ends.at(edge.first).Next == edge.second;
+    Id begin = isForward ? edge.first : edge.second;
+    Id end = isForward ? edge.second : edge.first;
+    std::size_t chain = 1;
+    const std::size_t most = std::min(this->Ends.size(), other.Ends.size());
+    for (; chain < most && this->Ends.at(end).Next == other.Ends.at(end).Previous; ++chain)
+    {
+      end = this->Ends.at(end).Next;
+    }
+    for (; chain < most && this->Ends.at(begin).Previous == other.Ends.at(begin).Next; ++chain)
+    {
+      begin = this->Ends.at(begin).Previous;
+    }
+    const bool isSmaller = this->Ends.size() < other.Ends.size();
+    const auto& small = isSmaller ? this->Ends : other.Ends;
+    const auto& large = isSmaller ? other.Ends : this->Ends;
+    std::size_t common = 0;
+    for (auto item = small.begin(); item != small.end() && common <= chain + 1; ++item)
+    {
+      common += large.count(item->first);
+    }
+    if (chain == most || common != chain + 1)
+    {
+      return false;
+    }
+
+    const Neighbors atBegin{ this->Ends.at(begin).Previous, other.Ends.at(begin).Next };
+    const Neighbors atEnd{ other.Ends.at(end).Previous, this->Ends.at(end).Next };
+    for (Id vertex = begin; vertex != end;)
+    {
+      const Id next = this->Ends.at(vertex).Next;
+      this->Ends.erase(vertex);
+      other.Ends.erase(vertex);
+      vertex = next;
+    }
+    if (isSmaller)
+    {
+      this->Ends.swap(other.Ends);
+    }
+    this->Ends.insert(other.Ends.begin(), other.Ends.end());
+    other.Ends.clear();
+    this->Ends[begin] = atBegin;
+    this->Ends[end] = atEnd;
+    this->First = end;
+    return true;
+  }
+
+  Loop GetLoop() const
+  {
+    Loop loop;
+    for (Id vertex = this->First; loop.size() < this->Ends.size();
+         vertex = this->Ends.at(vertex).Next)
+    {
+      loop.push_back(vertex);
+    }
+    return loop;
+  }
+
+private:
+  struct Neighbors
+  {
+    Id Previous;
+    Id Next;
+  };
+
+  std::unordered_map<Id, Neighbors> Ends;
+  Id First;
+};
+
+/** Seams that could not be taken get another chance after the others. */
+void JoinPolygons(std::vector<Polygon>& polygons, const std::vector<Vec3>& points)
+{
+  std::vector<JoinableOutline> outlines;
+  for (const Polygon& polygon : polygons)
+  {
+    outlines.emplace_back(polygon.Outline);
+  }
+  DisjointSets pieces(polygons.size());
+  Id time = 0;
+  std::vector<Id> changed(polygons.size(), 0);
+  const auto isTaken = [&](SeamEdge& seam)
+  {
+    const auto [p, q] = std::minmax({ pieces.Find(seam.First), pieces.Find(seam.Second) });
+    if (p == q)
+    {
+      return true;
+    }
+    if (std::max(changed[p], changed[q]) < seam.Tried ||
+      !outlines[p].Join(outlines[q], seam.Points))
+    {
+      seam.Tried = time + 1;
+      return false;
+    }
+    pieces.Unite(p, q);
+    changed[p] = ++time;
+    return true;
+  };
+  std::vector<SeamEdge> seams = FindSeams(polygons, points);
+  std::size_t numberOfSeams = 0;
+  while (seams.size() != numberOfSeams)
+  {
+    numberOfSeams = seams.size();
+    std::vector<SeamEdge> left;
+    for (SeamEdge& seam : seams)
+    {
+      if (!isTaken(seam))
+      {
+        left.push_back(seam);
+      }
+    }
+    seams = std::move(left);
+  }
+  std::vector<Polygon> joined;
+  for (std::size_t i = 0; i < polygons.size(); ++i)
+  {
+    if (pieces.Find(static_cast<Id>(i)) == static_cast<Id>(i))
+    {
+      joined.push_back({ outlines[i].GetLoop(), polygons[i].Labels });
+    }
+  }
+  polygons = std::move(joined);
 }
 
 void DropVerticesInsideLines(std::vector<Polygon>& polygons, const std::vector<Vec3>& points)
@@ -287,15 +359,12 @@ void DropVerticesInsideLines(std::vector<Polygon>& polygons, const std::vector<V
 }
 
 /** Connected pieces of one planar interface get the same id, counted in the order of polygons. */
-std::vector<Id> NumberFacets(const std::vector<Polygon>& polygons)
+std::vector<Id> NumberFacets(const std::vector<Polygon>& polygons, const std::vector<Vec3>& points)
 {
   DisjointSets facets(polygons.size());
-  for (const auto& [edge, incident] : FindPolygonsAtEdges(polygons))
+  for (const SeamEdge& seam : FindSeams(polygons, points))
   {
-    if (IsInsideFacet(incident, polygons))
-    {
-      facets.Unite(incident[0], incident[1]);
-    }
+    facets.Unite(seam.First, seam.Second);
   }
   std::map<Id, Id> numbers;
   std::vector<Id> facetIds;
@@ -358,64 +427,95 @@ Id LayeredStructure::AddCell(std::vector<Id> outline)
 
 void LayeredStructure::AddLayer(double top, std::vector<Id> regions)
 {
-  this->Levels.push_back(top);
+  this->AddLayer(std::vector<double>(this->Vertices.size(), top), std::move(regions));
+}
+
+void LayeredStructure::AddLayer(std::vector<double> tops, std::vector<Id> regions)
+{
+  this->Tops.push_back(std::move(tops));
   this->Regions.push_back(std::move(regions));
 }
 
 PolygonSoup LayeredStructure::MakeBoundary(std::vector<Id>& facetIds) const
 {
   const Id numberOfVertices = static_cast<Id>(this->Vertices.size());
-  const Id numberOfLevels = static_cast<Id>(this->Levels.size());
-  const auto getRegion = [this, numberOfLevels](Id layer, Id cell)
+  const Id numberOfLayers = static_cast<Id>(this->Tops.size());
+
+  // Level by level; where levels meet, the point of the lowest of them stands for all.
+  std::vector<Vec3> points;
+  std::vector<Id> pointIds;
+  for (Id level = 0; level <= numberOfLayers; ++level)
   {
-    return layer < 0 || layer + 1 >= numberOfLevels || cell == NoId ? OutsideRegion
-                                                                    : this->Regions[layer][cell];
+    for (Id vertex = 0; vertex < numberOfVertices; ++vertex)
+    {
+      const Id id = static_cast<Id>(points.size());
+      const double below =
+        level == 0 ? this->FirstLevel : points[id - numberOfVertices][this->Axis];
+      const double height = level == 0 ? below : std::max(below, this->Tops[level - 1][vertex]);
+      Vec3 point;
+      point[this->Axis] = height;
+      point[this->Axis == 0 ? 1 : 0] = this->Vertices[vertex][0];
+      point[this->Axis == 2 ? 1 : 2] = this->Vertices[vertex][1];
+      points.push_back(point);
+      pointIds.push_back(level > 0 && height == below ? pointIds[id - numberOfVertices] : id);
+    }
+  }
+  const auto getPoint = [&pointIds, numberOfVertices](Id level, Id vertex)
+  { return pointIds[level * numberOfVertices + vertex]; };
+  const auto isEmpty = [&](Id layer, Id cell)
+  {
+    const Loop& outline = this->Cells[cell];
+    return std::all_of(outline.begin(), outline.end(),
+      [&](Id vertex) { return getPoint(layer, vertex) == getPoint(layer + 1, vertex); });
   };
+  const auto getRegion = [this](Id layer, Id cell)
+  { return cell == NoId ? OutsideRegion : this->Regions[layer][cell]; };
 
   std::vector<Polygon> polygons;
-  for (Id level = 0; level < numberOfLevels; ++level)
+  for (Id level = 0; level <= numberOfLayers; ++level)
   {
-    for (std::size_t cell = 0; cell < this->Cells.size(); ++cell)
+    for (Id cell = 0; cell < static_cast<Id>(this->Cells.size()); ++cell)
     {
+      if (level > 0 && isEmpty(level - 1, cell))
+      {
+        continue;
+      }
+      Id above = level;
+      while (above < numberOfLayers && isEmpty(above, cell))
+      {
+        ++above;
+      }
       Loop outline = this->Cells[cell];
       for (Id& vertex : outline)
       {
-        vertex += level * numberOfVertices;
+        vertex = getPoint(level, vertex);
       }
-      const Id cellId = static_cast<Id>(cell);
       AddPolygon(polygons, std::move(outline),
-        { getRegion(level, cellId), getRegion(level - 1, cellId) }, level);
+        { above == numberOfLayers ? OutsideRegion : getRegion(above, cell),
+          level == 0 ? OutsideRegion : getRegion(level - 1, cell) });
     }
   }
   const std::vector<LayoutEdge> edges = FindLayoutEdges(this->Cells);
-  const DisjointSets lines = FindLines(edges, this->Vertices);
-  for (Id layer = 0; layer + 1 < numberOfLevels; ++layer)
+  for (Id layer = 0; layer < numberOfLayers; ++layer)
   {
-    for (std::size_t i = 0; i < edges.size(); ++i)
+    for (const LayoutEdge& edge : edges)
     {
-      const LayoutEdge& edge = edges[i];
-      const Id below = layer * numberOfVertices;
-      const Id above = below + numberOfVertices;
-      AddPolygon(polygons,
-        { below + edge.Begin, below + edge.End, above + edge.End, above + edge.Begin },
-        { getRegion(layer, edge.Right), getRegion(layer, edge.Left) },
-        numberOfLevels + lines.Find(static_cast<Id>(i)));
+      Loop outline{ getPoint(layer, edge.Begin), getPoint(layer, edge.End),
+        getPoint(layer + 1, edge.End), getPoint(layer + 1, edge.Begin) };
+      outline.erase(std::unique(outline.begin(), outline.end()), outline.end());
+      if (outline.back() == outline.front())
+      {
+        outline.pop_back();
+      }
+      if (outline.size() > 2)
+      {
+        AddPolygon(polygons, std::move(outline),
+          { getRegion(layer, edge.Right), getRegion(layer, edge.Left) });
+      }
     }
   }
 
-  std::vector<Vec3> points;
-  for (const double level : this->Levels)
-  {
-    for (const auto& vertex : this->Vertices)
-    {
-      Vec3 point;
-      point[this->Axis] = level;
-      point[this->Axis == 0 ? 1 : 0] = vertex[0];
-      point[this->Axis == 2 ? 1 : 2] = vertex[1];
-      points.push_back(point);
-    }
-  }
-  JoinPolygons(polygons);
+  JoinPolygons(polygons, points);
   DropVerticesInsideLines(polygons, points);
   if (this->Axis == 1)
   {
@@ -425,7 +525,7 @@ PolygonSoup LayeredStructure::MakeBoundary(std::vector<Id>& facetIds) const
       std::reverse(polygon.Outline.begin(), polygon.Outline.end());
     }
   }
-  facetIds = NumberFacets(polygons);
+  facetIds = NumberFacets(polygons, points);
   return MakeSoup(polygons, points);
 }
 } // namespace cdm

@@ -130,6 +130,12 @@ cdm::EdgeIds GetEdge(const cdm::TriangleIds& triangle, int i)
   return { ends.first, ends.second };
 }
 
+/** Of one interface, whichever side is in front. */
+bool AreSameRegions(const cdm::RegionPair& a, const cdm::RegionPair& b)
+{
+  return a == b || (a.Front == b.Back && a.Back == b.Front);
+}
+
 /**
  * The boundary of a mesh from which flat tetrahedra were peeled off: triangles of the boundary before
  * that are still there, then the new ones, with an old triangle of the same patch as their source.
@@ -170,14 +176,17 @@ cdm::TriangleMesh UpdateBoundary(const cdm::TetMesh& mesh, const cdm::TriangleMe
   for (const auto& item : interfaces)
   {
     const cdm::TriangleIds& added = facets.Triangles[item.second];
+    const cdm::RegionPair& labels = facets.Labels[item.second];
     cdm::Id source = cdm::NoId;
     for (int k = 0; k < 3 && source == cdm::NoId; ++k)
     {
-      const auto gone = goneByEdge.find(GetEdge(added, k));
-      source = gone == goneByEdge.end() ? cdm::NoId : gone->second.front();
+      const std::vector<cdm::Id>& gone = goneByEdge[GetEdge(added, k)];
+      const auto found = std::find_if(gone.begin(), gone.end(),
+        [&](cdm::Id i) { return AreSameRegions(before.Labels[i], labels); });
+      source = found == gone.end() ? cdm::NoId : *found;
     }
     after.Triangles.push_back(added);
-    after.Labels.push_back(facets.Labels[item.second]);
+    after.Labels.push_back(labels);
     after.SourceCells.push_back(source);
   }
   return after;

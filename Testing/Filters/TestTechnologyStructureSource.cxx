@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The boundary of a device is judged by itself: closed regions, volumes in closed form, and no
 // point where it does not belong, all by brute force.
+#include "vtkConformingDelaunayMesher.h"
 #include "vtkTechnologyStructureSource.h"
 
 #include <vtkAlgorithm.h>
 #include <vtkCallbackCommand.h>
+#include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkExecutive.h>
 #include <vtkFieldData.h>
@@ -13,7 +15,9 @@
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkPolygon.h>
 #include <vtkStringArray.h>
+#include <vtkUnstructuredGrid.h>
 
 #include <gtest/gtest.h>
 
@@ -281,9 +285,12 @@ void CheckNoTJunctions(const Boundary& boundary)
   }
 }
 
-/** Each region is a closed manifold with the expected volume; the volumes add up. */
+/**
+ * Each region is a closed manifold with the expected volume; the volumes add up. Rounded:
+ * coordinates are turned, or sums of several lengths.
+ */
 void CheckRegions(
-  const Boundary& boundary, const std::vector<ExpectedRegion>& regions, bool isRotated)
+  const Boundary& boundary, const std::vector<ExpectedRegion>& regions, bool isRounded)
 {
   ASSERT_EQ(boundary.RegionNames.size(), regions.size());
   long double total = 0.0L;
@@ -314,8 +321,8 @@ void CheckRegions(
         static_cast<int>(loops.size()),
       regions[region].EulerCharacteristic);
 
-    // A rotated point is off by a few roundings, which moves the whole surface by as much.
-    const long double allowed = isRotated
+    // A point is off by a few roundings then, which moves the whole surface by as much.
+    const long double allowed = isRounded
       ? 4.0 * std::numeric_limits<double>::epsilon() * GetExtent(boundary) * area
       : 1e-14L * regions[region].Volume;
     const long double volume = GetVolume(boundary, loops);
@@ -353,13 +360,14 @@ void CheckExactlyPlanar(const Boundary& boundary)
   }
 }
 
-void CheckBoundary(const Boundary& boundary, const std::vector<ExpectedRegion>& regions)
+void CheckBoundary(
+  const Boundary& boundary, const std::vector<ExpectedRegion>& regions, bool isRounded = false)
 {
   ASSERT_FALSE(boundary.Polygons.empty());
   CheckPoints(boundary);
   CheckPolygons(boundary, regions);
   CheckNoTJunctions(boundary);
-  CheckRegions(boundary, regions, false);
+  CheckRegions(boundary, regions, isRounded);
   CheckExactlyPlanar(boundary);
 }
 
@@ -535,6 +543,418 @@ std::vector<ExpectedRegion> Apply(const Nmos& nmos, vtkTechnologyStructureSource
     { "CoverOxide", onGate + onFlanks + beside, 2 },
   };
 }
+
+struct Locos
+{
+  double BulkLength = 0.8;
+  double BulkDepth = 0.5;
+  double DeviceWidth = 0.3;
+  double FieldOxideThickness = 0.16;
+  double PadOxideThickness = 0.02;
+  double NitrideThickness = 0.1;
+  double StepLength = 0.1;
+  int ProfileSegments = 6;
+};
+
+std::vector<ExpectedRegion> Apply(const Locos& locos, vtkTechnologyStructureSource* source)
+{
+  source->SetStructureToLocos();
+  source->SetBulkLength(locos.BulkLength);
+  source->SetBulkDepth(locos.BulkDepth);
+  source->SetDeviceWidth(locos.DeviceWidth);
+  source->SetFieldOxideThickness(locos.FieldOxideThickness);
+  source->SetPadOxideThickness(locos.PadOxideThickness);
+  source->SetNitrideThickness(locos.NitrideThickness);
+  source->SetStepLength(locos.StepLength);
+  source->SetProfileSegments(locos.ProfileSegments);
+  // Under the profile: trapezoids between the places where the cosine is taken, then a rectangle.
+  std::vector<double> places;
+  for (int i = 0; i <= locos.ProfileSegments; ++i)
+  {
+    places.push_back(locos.StepLength * (static_cast<double>(i) / locos.ProfileSegments - 1.0));
+  }
+  const int beyond = (locos.ProfileSegments + 1) / 2;
+  for (int i = 1; i <= beyond; ++i)
+  {
+    places.push_back(0.5 * locos.StepLength * i / beyond);
+  }
+  const auto getProfile = [&](double x)
+  { return 0.5 - 0.5 * std::cos(Pi * (x + locos.StepLength) / (1.5 * locos.StepLength)); };
+  double profile = 0.5 * locos.BulkLength - places.back();
+  for (std::size_t i = 1; i < places.size(); ++i)
+  {
+    profile +=
+      0.5 * (places[i] - places[i - 1]) * (getProfile(places[i - 1]) + getProfile(places[i]));
+  }
+  const double grown =
+    (locos.FieldOxideThickness - locos.PadOxideThickness) * profile * locos.DeviceWidth;
+  const double area = locos.BulkLength * locos.DeviceWidth;
+  return { { "Bulk", area * locos.BulkDepth - 0.44 * grown, 2 },
+    { "FieldOxide", area * locos.PadOxideThickness + grown, 2 },
+    { "Nitride", 0.5 * area * locos.NitrideThickness, 2 } };
+}
+
+struct Dram
+{
+  double LinePitch = 0.4;
+  double LineWidth = 0.16;
+  double LineThickness = 0.2;
+  double InsulatorThickness = 0.15;
+  double SidewallAngle = 5.0;
+  int NumberOfWordLines = 8;
+  int NumberOfBitLines = 2;
+};
+
+std::vector<ExpectedRegion> Apply(const Dram& dram, vtkTechnologyStructureSource* source)
+{
+  source->SetStructureToDramInterconnect();
+  source->SetLinePitch(dram.LinePitch);
+  source->SetLineWidth(dram.LineWidth);
+  source->SetLineThickness(dram.LineThickness);
+  source->SetInsulatorThickness(dram.InsulatorThickness);
+  source->SetSidewallAngle(dram.SidewallAngle);
+  source->SetNumberOfWordLines(dram.NumberOfWordLines);
+  source->SetNumberOfBitLines(dram.NumberOfBitLines);
+  const double lengthX = dram.LinePitch * dram.NumberOfBitLines;
+  const double lengthY = dram.LinePitch * dram.NumberOfWordLines;
+  const double height = 3.0 * dram.InsulatorThickness + 2.0 * dram.LineThickness;
+  // Trapezoids, and frustums of square pyramids.
+  const double slope = std::tan(Pi / 180.0 * dram.SidewallAngle);
+  const double section = dram.LineThickness * (dram.LineWidth - slope * dram.LineThickness);
+  const double plugHeight = 2.0 * dram.InsulatorThickness + dram.LineThickness;
+  const double narrow = dram.LineWidth - 2.0 * slope * dram.LineThickness;
+  const double plug = plugHeight / 3.0 *
+    (narrow * narrow + narrow * dram.LineWidth + dram.LineWidth * dram.LineWidth);
+  std::vector<ExpectedRegion> regions{ { "Insulator", lengthX * lengthY * height, 2 } };
+  for (int i = 1; i <= dram.NumberOfWordLines; ++i)
+  {
+    regions.push_back({ "WordLine" + std::to_string(i), section * lengthX, 2 });
+  }
+  int tunnels = dram.NumberOfWordLines + dram.NumberOfBitLines;
+  for (int i = 1; i <= dram.NumberOfBitLines; ++i)
+  {
+    // Plugs in every other gap, beginning with the second and the first by turns.
+    const int plugs = (dram.NumberOfWordLines - i % 2) / 2;
+    regions.push_back({ "BitLine" + std::to_string(i), section * lengthY + plugs * plug, 2 });
+    tunnels += plugs;
+  }
+  for (std::size_t i = 1; i < regions.size(); ++i)
+  {
+    regions[0].Volume -= regions[i].Volume;
+  }
+  regions[0].EulerCharacteristic -= 2 * tunnels;
+  return regions;
+}
+
+struct TwoLayer
+{
+  double LinePitch = 0.4;
+  double LineWidth = 0.16;
+  double LineThickness = 0.2;
+  double InsulatorThickness = 0.15;
+  double BulkDepth = 0.5;
+  double StepLength = 0.1;
+  int ProfileSegments = 6;
+};
+
+std::vector<ExpectedRegion> Apply(const TwoLayer& lines, vtkTechnologyStructureSource* source)
+{
+  source->SetStructureToTwoLayerInterconnect();
+  source->SetLinePitch(lines.LinePitch);
+  source->SetLineWidth(lines.LineWidth);
+  source->SetLineThickness(lines.LineThickness);
+  source->SetInsulatorThickness(lines.InsulatorThickness);
+  source->SetBulkDepth(lines.BulkDepth);
+  source->SetStepLength(lines.StepLength);
+  source->SetProfileSegments(lines.ProfileSegments);
+  const double size = 2.0 * lines.LinePitch;
+  const double line = lines.LineWidth * lines.LineThickness * size;
+  // A step is symmetric to its middle: it has half of the area that a full step would have.
+  const double oxide =
+    size * size * lines.InsulatorThickness + 2.0 * size * lines.LineThickness * lines.StepLength;
+  return { { "Bulk", size * size * lines.BulkDepth, 2 }, { "Oxide", oxide, 2 },
+    { "LowerLine1", line, 2 }, { "LowerLine2", line, 2 }, { "UpperLine1", line, 2 },
+    { "UpperLine2", line, 2 } };
+}
+
+struct LinedVia
+{
+  bool HasTrench = false;
+  double ViaDiameter = 0.3;
+  double ViaHeight = 0.6;
+  int NumberOfSegments = 24;
+  double BottomLineThickness = 0.3;
+  double BarrierThickness = 0.03;
+  double BarrierAsymmetry = 0.0;
+  double GasHeight = 0.4;
+  double BoxSize = 1.0;
+  double TrenchWidth = 0.5;
+  double TrenchDepth = 0.3;
+};
+
+std::vector<ExpectedRegion> Apply(const LinedVia& via, vtkTechnologyStructureSource* source)
+{
+  via.HasTrench ? source->SetStructureToDamascene() : source->SetStructureToViaWithBarrier();
+  source->SetViaDiameter(via.ViaDiameter);
+  source->SetViaHeight(via.ViaHeight);
+  source->SetNumberOfSegments(via.NumberOfSegments);
+  source->SetBottomLineThickness(via.BottomLineThickness);
+  source->SetBarrierThickness(via.BarrierThickness);
+  source->SetBarrierAsymmetry(via.BarrierAsymmetry);
+  source->SetGasHeight(via.GasHeight);
+  source->SetBoxSize(via.BoxSize);
+  source->SetTrenchWidth(via.TrenchWidth);
+  source->SetTrenchDepth(via.TrenchDepth);
+  const auto getArea = [&](double diameter)
+  {
+    return 0.125 * diameter * diameter * via.NumberOfSegments *
+      std::sin(2.0 * Pi / via.NumberOfSegments);
+  };
+  const double area = via.BoxSize * via.BoxSize;
+  const double depth = via.HasTrench ? via.TrenchDepth : 0.0;
+  const double insulator = area * (via.ViaHeight + depth) -
+    getArea(via.ViaDiameter) * via.ViaHeight - via.TrenchWidth * via.BoxSize * depth;
+  // The hole that the barrier leaves is as deep as the via, the trench as deep as it was.
+  const double open = getArea(via.ViaDiameter - 2.0 * via.BarrierThickness) * via.ViaHeight +
+    (via.TrenchWidth - 2.0 * via.BarrierThickness) * via.BoxSize * depth;
+  return { { "Insulator", insulator, 0 }, { "BottomMetal", area * via.BottomLineThickness, 2 },
+    { "Barrier", area * (via.ViaHeight + depth + via.BarrierThickness) - insulator - open, 2 },
+    { "Gas", open + area * via.GasHeight, 2 } };
+}
+
+struct Cmos
+{
+  double GateLength = 0.18;
+  double GateHeight = 0.2;
+  double GateOxideThickness = 0.005;
+  double SpacerWidth = 0.08;
+  int SpacerSegments = 3;
+  double BulkDepth = 0.5;
+  double ChannelWidth = 0.18;
+  double DiffusionLength = 0.3;
+  double ContactWidth = 0.12;
+  double TrenchWidth = 0.5;
+  double TrenchDepth = 0.3;
+  double InsulatorThickness = 0.15;
+  double LineThickness = 0.2;
+  double PassivationThickness = 0.0;
+};
+
+std::vector<ExpectedRegion> Apply(const Cmos& cmos, vtkTechnologyStructureSource* source)
+{
+  source->SetStructureToCmosInverter();
+  source->SetGateLength(cmos.GateLength);
+  source->SetGateHeight(cmos.GateHeight);
+  source->SetGateOxideThickness(cmos.GateOxideThickness);
+  source->SetSpacerWidth(cmos.SpacerWidth);
+  source->SetSpacerSegments(cmos.SpacerSegments);
+  source->SetBulkDepth(cmos.BulkDepth);
+  source->SetChannelWidth(cmos.ChannelWidth);
+  source->SetDiffusionLength(cmos.DiffusionLength);
+  source->SetContactWidth(cmos.ContactWidth);
+  source->SetTrenchWidth(cmos.TrenchWidth);
+  source->SetTrenchDepth(cmos.TrenchDepth);
+  source->SetInsulatorThickness(cmos.InsulatorThickness);
+  source->SetLineThickness(cmos.LineThickness);
+  source->SetPassivationThickness(cmos.PassivationThickness);
+  const double contact = cmos.ContactWidth;
+  const double activeLength = cmos.GateLength + 2.0 * (cmos.SpacerWidth + cmos.DiffusionLength);
+  const double length = activeLength + 2.0 * cmos.TrenchWidth;
+  const double width = 2.0 * (cmos.TrenchWidth + cmos.ChannelWidth) + 5.0 * contact;
+  const double active = 2.0 * activeLength * cmos.ChannelWidth;
+  // Gates end in the middle of the outer trench, and two contacts beyond the channel.
+  const double gateWidth = 0.5 * cmos.TrenchWidth + cmos.ChannelWidth + 2.0 * contact;
+  const double gate = cmos.GateLength * cmos.GateHeight * gateWidth;
+  const double spacer = cmos.SpacerWidth * cmos.GateHeight * gateWidth * 0.5 * cmos.SpacerSegments *
+    std::sin(0.5 * Pi / cmos.SpacerSegments);
+  const double plug =
+    contact * contact * (cmos.GateOxideThickness + cmos.GateHeight + cmos.InsulatorThickness);
+  const double section = contact * cmos.LineThickness;
+  // From the edge of the device over the trench to the far side of the contact.
+  const double supply =
+    plug + section * (cmos.TrenchWidth + 0.5 * cmos.DiffusionLength + 0.5 * contact);
+  const double silicon =
+    length * width * (cmos.BulkDepth - cmos.TrenchDepth) + active * cmos.TrenchDepth;
+  const double oxide = (length * width - active) * cmos.TrenchDepth +
+    (length * width - 4.0 * contact * contact) * cmos.GateOxideThickness;
+  std::vector<ExpectedRegion> regions{ { "Silicon", silicon, 2 }, { "Oxide", oxide, -6 },
+    { "NmosGate", gate, 2 }, { "PmosGate", gate, 2 }, { "NmosSourceSpacer", spacer, 2 },
+    { "NmosDrainSpacer", spacer, 2 }, { "PmosSourceSpacer", spacer, 2 },
+    { "PmosDrainSpacer", spacer, 2 }, { "Ground", supply, 2 }, { "Supply", supply, 2 },
+    { "Input", 2.0 * contact * contact * cmos.InsulatorThickness + 4.0 * contact * section, 2 },
+    { "Output", 2.0 * plug + (cmos.ChannelWidth + 6.0 * contact) * section, 2 } };
+  if (cmos.PassivationThickness > 0.0)
+  {
+    double rest = length * width *
+      (cmos.BulkDepth + cmos.GateOxideThickness + cmos.GateHeight + cmos.InsulatorThickness +
+        cmos.LineThickness + cmos.PassivationThickness);
+    for (const ExpectedRegion& region : regions)
+    {
+      rest -= region.Volume;
+    }
+    // A tunnel under each of the four metal lines.
+    regions.push_back({ "Passivation", rest, -6 });
+  }
+  return regions;
+}
+
+template <typename Parameters>
+void CheckRounded(const std::vector<Parameters>& devices)
+{
+  for (std::size_t i = 0; i < devices.size(); ++i)
+  {
+    SCOPED_TRACE(i);
+    vtkNew<vtkTechnologyStructureSource> source;
+    const std::vector<ExpectedRegion> regions = Apply(devices[i], source);
+    const Boundary straight = GetBoundary(source);
+    CheckBoundary(straight, regions, true);
+    if (i == 0)
+    {
+      CheckRotations(source, straight, regions);
+    }
+  }
+}
+
+TEST(TechnologyStructureSource, Locos)
+{
+  std::vector<Locos> devices(6);
+  devices[1].ProfileSegments = 1;
+  devices[2].ProfileSegments = 31;
+  devices[3].PadOxideThickness = 0.001;
+  devices[4].StepLength = 0.39;
+  devices[5].FieldOxideThickness = 1.1;
+  CheckRounded(devices);
+}
+
+TEST(TechnologyStructureSource, DramInterconnect)
+{
+  std::vector<Dram> devices(6);
+  devices[1].NumberOfWordLines = 1;
+  devices[2].NumberOfBitLines = 1;
+  devices[3].SidewallAngle = 0.5;
+  devices[4].NumberOfWordLines = 3;
+  devices[4].NumberOfBitLines = 3;
+  devices[5] = { 1.0, 0.45, 0.1, 0.05, 30.0, 2, 4 };
+  CheckRounded(devices);
+}
+
+TEST(TechnologyStructureSource, TwoLayerInterconnect)
+{
+  std::vector<TwoLayer> devices(5);
+  devices[1].ProfileSegments = 1;
+  devices[2].ProfileSegments = 45;
+  devices[3].InsulatorThickness = 0.01;
+  devices[4] = { 1.0 / 3.0, 0.1, 0.07, 1.0, 0.01, 0.1, 7 };
+  CheckRounded(devices);
+}
+
+TEST(TechnologyStructureSource, ViaWithBarrier)
+{
+  std::vector<LinedVia> devices(5);
+  devices[1].NumberOfSegments = 3;
+  devices[1].BarrierAsymmetry = 0.4;
+  devices[2].NumberOfSegments = 90;
+  devices[2].BarrierAsymmetry = 0.9;
+  devices[3].BarrierThickness = 0.001;
+  devices[4].ViaDiameter = 0.999;
+  CheckRounded(devices);
+}
+
+TEST(TechnologyStructureSource, Damascene)
+{
+  std::vector<LinedVia> devices(4);
+  devices[1].NumberOfSegments = 5;
+  devices[2].BarrierAsymmetry = 0.8;
+  devices[3].TrenchWidth = 0.361;
+  for (LinedVia& via : devices)
+  {
+    via.HasTrench = true;
+  }
+  CheckRounded(devices);
+}
+
+TEST(TechnologyStructureSource, CmosInverter)
+{
+  std::vector<Cmos> devices(6);
+  devices[1].PassivationThickness = 0.1;
+  devices[2].SpacerSegments = 1;
+  devices[3].SpacerSegments = 20;
+  devices[4].ContactWidth = 0.01;
+  devices[5] = { 0.1, 0.13, 0.002, 0.05, 4, 1.0, 0.7, 0.2, 0.09, 0.3, 0.4, 0.1, 0.15, 0.2 };
+  CheckRounded(devices);
+}
+
+std::map<int, double> GetContactAreas(vtkPolyData* surface)
+{
+  std::map<int, double> areas;
+  vtkDataArray* ids = surface->GetCellData()->GetArray("ContactId");
+  for (vtkIdType i = 0; i < surface->GetNumberOfCells(); ++i)
+  {
+    double normal[3];
+    vtkCell* cell = surface->GetCell(i);
+    const double area =
+      vtkPolygon::ComputeArea(cell->GetPoints(), cell->GetNumberOfPoints(), nullptr, normal);
+    areas[static_cast<int>(ids->GetComponent(i, 0))] += area;
+  }
+  return areas;
+}
+
+/** Contacts are whole facets, and come out of the mesher with their names and areas. */
+TEST(TechnologyStructureSource, ContactsReachTheBoundaryOfTheMesh)
+{
+  for (int structure = vtkTechnologyStructureSource::MOS_TRANSISTOR;
+       structure <= vtkTechnologyStructureSource::CMOS_INVERTER; ++structure)
+  {
+    for (const double angle : { 0.0, 33.0 })
+    {
+      vtkNew<vtkTechnologyStructureSource> source;
+      source->SetStructure(structure);
+      source->SetRotationAngle(angle);
+      source->SetRotationAxis(1.0, 2.0, 3.0);
+      source->Update();
+      SCOPED_TRACE(source->GetStructureAsString());
+      vtkPolyData* polygons = source->GetOutput();
+      vtkDataArray* ids = polygons->GetCellData()->GetArray("ContactId");
+      vtkDataArray* facets = polygons->GetCellData()->GetArray("FacetId");
+      std::map<double, double> contactOfFacet;
+      for (vtkIdType i = 0; i < polygons->GetNumberOfCells(); ++i)
+      {
+        const double contact = ids->GetComponent(i, 0);
+        EXPECT_EQ(
+          contactOfFacet.emplace(facets->GetComponent(i, 0), contact).first->second, contact);
+      }
+      vtkNew<vtkConformingDelaunayMesher> mesher;
+      mesher->SetInputConnection(source->GetOutputPort());
+      mesher->Update();
+      auto* boundary = vtkPolyData::SafeDownCast(mesher->GetOutputDataObject(1));
+      ASSERT_GT(boundary->GetNumberOfCells(), 0);
+      auto* names =
+        vtkStringArray::SafeDownCast(boundary->GetFieldData()->GetAbstractArray("ContactNames"));
+      ASSERT_NE(names, nullptr);
+      auto* regions = vtkStringArray::SafeDownCast(
+        mesher->GetOutput()->GetFieldData()->GetAbstractArray("RegionNames"));
+      ASSERT_NE(regions, nullptr);
+      // Files for simulators have one name space for both.
+      std::set<std::string> different;
+      for (vtkIdType i = 0; i < regions->GetNumberOfValues(); ++i)
+      {
+        EXPECT_TRUE(different.insert(regions->GetValue(i)).second) << regions->GetValue(i);
+      }
+      std::map<int, double> areas = GetContactAreas(boundary);
+      for (const auto& [contact, area] : GetContactAreas(polygons))
+      {
+        EXPECT_NEAR(areas[contact], area, 1e-12);
+      }
+      EXPECT_EQ(static_cast<vtkIdType>(areas.size()), names->GetNumberOfValues() + 1);
+      for (vtkIdType i = 0; i < names->GetNumberOfValues(); ++i)
+      {
+        EXPECT_GT(areas[static_cast<int>(i)], 0.0) << names->GetValue(i);
+        EXPECT_TRUE(different.insert(names->GetValue(i)).second) << names->GetValue(i);
+      }
+    }
+  }
+}
+
 TEST(TechnologyStructureSource, NmosWithFieldOxideSweep)
 {
   std::vector<Nmos> devices(9);
@@ -771,6 +1191,96 @@ TEST(TechnologyStructureSource, ErrorsNameTheParameters)
       s->SetCoverOxideThickness(0.09);
     },
     { "2 CoverOxideThickness", "ChannelWidth = 0.18" });
+}
+
+TEST(TechnologyStructureSource, ErrorsOfInterconnectsAndInverter)
+{
+  using Source = vtkTechnologyStructureSource;
+  ExpectError(
+    [](Source* s)
+    {
+      s->SetStructureToLocos();
+      s->SetPadOxideThickness(0.2);
+    },
+    { "PadOxideThickness = 0.2", "FieldOxideThickness = 0.16" });
+  ExpectError(
+    [](Source* s)
+    {
+      s->SetStructureToLocos();
+      s->SetStepLength(0.4);
+    },
+    { "2 StepLength = 0.8", "BulkLength = 0.8" });
+  ExpectError(
+    [](Source* s)
+    {
+      s->SetStructureToDramInterconnect();
+      s->SetSidewallAngle(22.0);
+    },
+    { "SidewallAngle", "LineWidth = 0.16" });
+  ExpectError(
+    [](Source* s)
+    {
+      s->SetStructureToDramInterconnect();
+      s->SetSidewallAngle(std::nan(""));
+    },
+    { "SidewallAngle", "0.1 to 45" });
+  ExpectError(
+    [](Source* s)
+    {
+      s->SetStructureToDramInterconnect();
+      s->SetLinePitch(0.3);
+    },
+    { "2 LineWidth = 0.32", "LinePitch = 0.3" });
+  ExpectError(
+    [](Source* s)
+    {
+      s->SetStructureToTwoLayerInterconnect();
+      s->SetStepLength(0.12);
+    },
+    { "LineWidth + 2 StepLength = 0.4", "LinePitch = 0.4" });
+  ExpectError(
+    [](Source* s)
+    {
+      s->SetStructureToViaWithBarrier();
+      s->SetBarrierThickness(0.15);
+    },
+    { "2 BarrierThickness", "ViaDiameter = 0.3" });
+  ExpectError(
+    [](Source* s)
+    {
+      s->SetStructureToViaWithBarrier();
+      s->SetNumberOfSegments(3);
+      s->SetBarrierAsymmetry(0.6);
+    },
+    { "BarrierAsymmetry = 0.6", "NumberOfSegments" });
+  ExpectError(
+    [](Source* s)
+    {
+      s->SetStructureToDamascene();
+      s->SetTrenchWidth(0.3);
+    },
+    { "ViaDiameter + 2 BarrierThickness = 0.36", "TrenchWidth = 0.3" });
+  ExpectError(
+    [](Source* s)
+    {
+      s->SetStructureToCmosInverter();
+      s->SetContactWidth(0.2);
+    },
+    { "ContactWidth = 0.2", "GateLength = 0.18" });
+  ExpectError(
+    [](Source* s)
+    {
+      s->SetStructureToCmosInverter();
+      s->SetTrenchDepth(0.5);
+    },
+    { "TrenchDepth = 0.5", "BulkDepth = 0.5" });
+  ExpectError(
+    [](Source* s)
+    {
+      s->SetStructureToCmosInverter();
+      s->SetPassivationThickness(-1.0);
+    },
+    { "PassivationThickness = -1" });
 }
 
 TEST(TechnologyStructureSource, ParametersOfTheOtherStructureDoNotMatter)

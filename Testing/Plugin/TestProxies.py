@@ -147,5 +147,14 @@ certified.UpdatePipeline()
 errors = servermanager.Fetch(certified).GetFieldData().GetArray("RegionVolumeErrors")
 assert errors.GetNumberOfTuples() == high + 1 and errors.GetRange()[1] < 1e-12
 
+# A plate with a block on it: the layout is a square, the plate has a margin around it.
+extruder = LayoutExtruder(Input=Plane(), Margin=0.5, RegionNames=["Plate", "Block"])
+extruder.Steps = [-1, 0.0, 1.0, 0, 0, 1.0, 2.0, 1]
+extruded = ConformingDelaunayMesher(Input=extruder)
+extruded.UpdatePipeline()
+assert abs(Volume(extruded) - (4.0 + 1.0)) < 6e-12, "volume %.17g" % Volume(extruded)
+names = servermanager.Fetch(extruder).GetFieldData().GetAbstractArray("RegionNames")
+assert names.GetValue(1) == "Block", names.GetValue(1)
+
 print("proxies: ok")
 sys.stdout.flush()

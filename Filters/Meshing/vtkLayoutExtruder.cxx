@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLayoutExtruder.h"
+
+#include "LayeredStructure.h"
+#include "LayoutOverlay.h"
+#include "vtkCoreBridge.h"
+#include "vtkStructureOutput.h"
+
+#include "Core/Box.h"
+
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkInformationVector.h>
+#include <vtkObjectFactory.h>
+#include <vtkPolyData.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+vtkStandardNewMacro(vtkLayoutExtruder);
+
+namespace
+{
+using cdm::Id;
+
+/** The mask of steps without one. */
+constexpr Id NoMask = -1;
+
+struct Step
+{
+  Id Mask;
+  double Bottom;
+  double Top;
+  Id Region;
+};
+
+/** A whole number from -1 on that fits. */
+bool ToId(double value, Id& id)
+{
+  const bool isId =
+    value >= -1.0 && value <= std::numeric_limits<Id>::max() && value == std::floor(value);
+  id = isId ? static_cast<Id>(value) : cdm::NoId;
+  return isId;
+}
+
+cdm::Status CheckSteps(const std::vector<std::array<double, 4>>& rows, const std::vector<Id>& masks,
+  std::vector<Step>& steps)
+{
+  if (rows.empty())
+  {
+    return cdm::Status::InvalidInput("There are no process steps: add some.");
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    const auto& [mask, bottom, top, region] = rows[i];
+    Step step{ 0, bottom, top, 0 };
+    std::ostringstream problem;
+    if (!ToId(mask, step.Mask) || !ToId(region, step.Region))
+    {
+      problem << "mask and region have to be whole numbers from -1 on.";
+    }
+    else if (!std::isfinite(bottom) || !std::isfinite(top) || !(bottom < top))
+    {
+      problem << "the top, " << top << ", has to be above the bottom, " << bottom << ".";
+    }
+    else if (step.Mask != NoMask && std::find(masks.begin(), masks.end(), step.Mask) == masks.end())
+    {
+      problem << "no polygon is of mask " << step.Mask << ".";
+    }
+    if (!problem.str().empty())
+    {
+      return cdm::Status::InvalidInput("Step " + std::to_string(i) + ": " + problem.str());
+    }
+    steps.push_back(step);
+  }
+  return {};
+}
+
+/** The mask of each polygon, from the cell array Mask. */
+cdm::Status GetMasks(
+  vtkPolyData* layout, const std::vector<vtkIdType>& cells, std::vector<Id>& masks)
+{
+  vtkDataArray* array = layout->GetCellData()->GetArray("Mask");
+  if (array && array->GetNumberOfComponents() != 1)
+  {
+    return cdm::Status::InvalidInput("The cell array Mask needs one component.");
+  }
+  std::vector<Id> wrong;
+  for (const vtkIdType cell : cells)
+  {
+    masks.emplace_back();
+    if (array && (!ToId(array->GetComponent(cell, 0), masks.back()) || masks.back() < 0))
+    {
+      wrong.push_back(static_cast<Id>(masks.size()) - 1);
+    }
+  }
+  return wrong.empty()
+    ? cdm::Status{}
+    : cdm::Status::InvalidInput("Masks have to be whole numbers from 0 on.", wrong);
+}
+
+/** The bounding rectangle of the layout and a margin around it, as the last polygon. */
+void AddRectangle(double margin, cdm::PolygonSoup& polygons)
+{
+  cdm::Box box;
+  for (const Id point : polygons.Connectivity)
+  {
+    box.Add(polygons.Points[point]);
+  }
+  const double x[2] = { box.Low.X - margin, box.High.X + margin };
+  const double y[2] = { box.Low.Y - margin, box.High.Y + margin };
+  for (int i = 0; i < 4; ++i)
+  {
+    polygons.Connectivity.push_back(static_cast<Id>(polygons.Points.size()));
+    polygons.Points.push_back({ x[i == 1 || i == 2], y[i / 2], 0.0 });
+  }
+  polygons.Offsets.push_back(static_cast<Id>(polygons.Connectivity.size()));
+}
+
+/** masks: of each polygon of the overlay. */
+cdm::LayeredStructure Stack(
+  const cdm::LayoutOverlay& overlay, const std::vector<Id>& masks, const std::vector<Step>& steps)
+{
+  std::vector<double> levels;
+  for (const Step& step : steps)
+  {
+    levels.insert(levels.end(), { step.Bottom, step.Top });
+  }
+  std::sort(levels.begin(), levels.end());
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  cdm::LayeredStructure structure(2, levels.front());
+  for (const cdm::Vec3& point : overlay.Points)
+  {
+    structure.AddVertex(point.X, point.Y);
+  }
+  for (const cdm::TriangleIds& ids : overlay.Pieces)
+  {
+    structure.AddCell({ ids.begin(), ids.end() });
+  }
+  for (std::size_t layer = 0; layer + 1 < levels.size(); ++layer)
+  {
+    std::vector<Id> regions;
+    for (const std::vector<Id>& polygons : overlay.Polygons)
+    {
+      Id region = cdm::OutsideRegion;
+      for (const Step& step : steps)
+      {
+        const bool isThere = step.Bottom <= levels[layer] && step.Top >= levels[layer + 1] &&
+          std::any_of(polygons.begin(), polygons.end(),
+            [&](Id polygon) { return masks[polygon] == step.Mask; });
+        region = isThere ? step.Region : region;
+      }
+      regions.push_back(region);
+    }
+    structure.AddLayer(levels[layer + 1], std::move(regions));
+  }
+  return structure;
+}
+} // namespace
+
+//--------------------------------------------------------------------------------------------------
+vtkLayoutExtruder::vtkLayoutExtruder() = default;
+
+//--------------------------------------------------------------------------------------------------
+void vtkLayoutExtruder::AddStep(double mask, double bottom, double top, double region)
+{
+  this->Steps.push_back({ mask, bottom, top, region });
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkLayoutExtruder::RemoveAllSteps()
+{
+  this->Steps.clear();
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkLayoutExtruder::AddRegionName(const char* name)
+{
+  this->RegionNames.emplace_back(name ? name : "");
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkLayoutExtruder::RemoveAllRegionNames()
+{
+  this->RegionNames.clear();
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
+int vtkLayoutExtruder::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
+  if (vtkCoreBridge::IsIdleProcess(input, outputVector))
+  {
+    return 1;
+  }
+  cdm::PolygonSoup boundary;
+  std::vector<Id> facetIds;
+  const cdm::Status status = vtkCoreBridge::Guard(
+    [&]
+    {
+      cdm::PolygonSoup polygons;
+      std::vector<vtkIdType> cells;
+      std::vector<Id> masks;
+      std::vector<Step> steps;
+      cdm::LayoutOverlay overlay;
+      cdm::Status step = vtkCoreBridge::ToPolygonSoup(input, polygons, cells);
+      if (step.IsOk() && polygons.GetNumberOfPolygons() == 0)
+      {
+        step = cdm::Status::InvalidInput("The layout has no polygons.");
+      }
+      if (step.IsOk())
+      {
+        step = GetMasks(input, cells, masks);
+      }
+      if (step.IsOk())
+      {
+        step = CheckSteps(this->Steps, masks, steps);
+      }
+      const bool isMaskless =
+        std::any_of(steps.begin(), steps.end(), [](const Step& row) { return row.Mask == NoMask; });
+      if (step.IsOk() && isMaskless)
+      {
+        AddRectangle(this->Margin, polygons);
+        masks.push_back(NoMask);
+      }
+      if (step.IsOk())
+      {
+        step = cdm::OverlayPolygons(
+          std::move(polygons), vtkCoreBridge::MakeContext(this).Part(0.0, 0.8), overlay);
+      }
+      if (step.IsOk())
+      {
+        const bool isWanted =
+          vtkCoreBridge::MakeContext(this).Continue(0.8, "Collecting interfaces");
+        if (!isWanted)
+        {
+          return cdm::Status::Aborted();
+        }
+        boundary = Stack(overlay, masks, steps).MakeBoundary(facetIds);
+      }
+      if (step.IsOk() && boundary.GetNumberOfPolygons() == 0)
+      {
+        step = cdm::Status::InvalidInput("The process steps leave nothing.");
+      }
+      vtkCoreBridge::MapCells(step, cells);
+      return step;
+    });
+  if (!status.IsOk())
+  {
+    return vtkCoreBridge::ReportFailure(this, outputVector, status, input);
+  }
+  vtkPolyData* output = vtkPolyData::GetData(outputVector);
+  vtkStructureOutput::SetPolygons(boundary, facetIds, output);
+  if (!this->RegionNames.empty())
+  {
+    vtkStructureOutput::AddNames("RegionNames", this->RegionNames, output);
+  }
+  return 1;
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkLayoutExtruder::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  for (const std::array<double, 4>& row : this->Steps)
+  {
+    os << indent << "Step: mask " << row[0] << ", bottom " << row[1] << ", top " << row[2]
+       << ", region " << row[3] << "\n";
+  }
+  for (const std::string& name : this->RegionNames)
+  {
+    os << indent << "RegionName: " << name << "\n";
+  }
+  os << indent << "Margin: " << this->Margin << "\n";
+}

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All sample devices, as they are and turned, meshed for the box method: the certificate is clean.
+#include "FilterTesting.h"
+
+#include <vtkConformingDelaunayMesher.h>
+#include <vtkDelaunayMeshCriteria.h>
+#include <vtkFieldData.h>
+#include <vtkTechnologyStructureSource.h>
+
+#include <iostream>
+
+using namespace testing_filters;
+
+namespace
+{
+constexpr double Target = 15.0;
+/** Value of RefinementFault: in thin layers and at sharp angles of the device. */
+constexpr double Inevitable = 4.0;
+
+class DeviceMeshes : public testing::TestWithParam<int>
+{
+public:
+  /** The mesh of the device turned by an angle, with the arrays of the certificate. */
+  vtkUnstructuredGrid* MakeMesh(double angle)
+  {
+    this->Source->SetStructure(GetParam());
+    this->Source->SetRotationAngle(angle);
+    this->Source->SetRotationAxis(1.0, 2.0, 3.0);
+    this->Mesher->SetInputConnection(this->Source->GetOutputPort());
+    this->Mesher->SetCriterionToSmallestSphereAndEdges();
+    this->Mesher->SetMaximumEdgeLength(0.2);
+    this->Mesher->AddSteinerPointsOn();
+    this->Mesher->SetRadiusEdgeRatio(2.0);
+    this->Mesher->SetDihedralAngleTarget(Target);
+    this->Mesher->RemoveSliversOff();
+    this->Criteria->SetInputConnection(0, this->Mesher->GetOutputPort());
+    this->Criteria->SetInputConnection(1, this->Source->GetOutputPort());
+    this->Criteria->Update();
+    std::cout << this->Source->GetStructureAsString() << " turned by " << angle << ": "
+              << this->Criteria->GetCertificate() << "\n";
+    return this->Criteria->GetOutput();
+  }
+
+  void CheckCertificate()
+  {
+    EXPECT_TRUE(this->Criteria->GetIsClean());
+    vtkFieldData* summary = this->Criteria->GetOutput()->GetFieldData();
+    for (const char* name :
+      { "InvertedTetrahedra", "FlatTetrahedra", "NonDelaunayTetrahedra", "FacetSphereViolations",
+        "EdgeSphereViolations", "NegativeCouplings", "OpenControlVolumes" })
+    {
+      ASSERT_NE(summary->GetArray(name), nullptr) << name;
+      EXPECT_EQ(summary->GetArray(name)->GetComponent(0, 0), 0.0) << name;
+    }
+    EXPECT_LT(summary->GetArray("RegionVolumeErrors")->GetRange()[1], 1e-12);
+  }
+
+private:
+  vtkNew<vtkTechnologyStructureSource> Source;
+  vtkNew<vtkConformingDelaunayMesher> Mesher;
+  vtkNew<vtkDelaunayMeshCriteria> Criteria;
+};
+
+TEST_P(DeviceMeshes, AreCleanWithoutSlivers)
+{
+  vtkUnstructuredGrid* mesh = this->MakeMesh(0.0);
+  ASSERT_GT(mesh->GetNumberOfCells(), 0);
+  this->CheckCertificate();
+  vtkDataArray* angles = mesh->GetCellData()->GetArray("SmallestDihedralAngle");
+  vtkDataArray* faults = mesh->GetCellData()->GetArray("RefinementFault");
+  vtkIdType slivers = 0;
+  for (vtkIdType i = 0; i < mesh->GetNumberOfCells(); ++i)
+  {
+    const bool isInevitable = faults && faults->GetComponent(i, 0) == Inevitable;
+    slivers += !isInevitable && angles->GetComponent(i, 0) < Target;
+  }
+  EXPECT_EQ(slivers, 0);
+}
+
+TEST_P(DeviceMeshes, TurnedAreClean)
+{
+  for (const double angle : { 33.0, 77.0 })
+  {
+    ASSERT_GT(this->MakeMesh(angle)->GetNumberOfCells(), 0);
+    this->CheckCertificate();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DeviceMeshes,
+  testing::Range<int>(
+    vtkTechnologyStructureSource::MOS_TRANSISTOR, vtkTechnologyStructureSource::CMOS_INVERTER + 1));
+} // namespace
