@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BoundaryTriangulator.h"
+#include "BoxTree.h"
+#include "MaterialInterfaces.h"
+#include "Measures.h"
+#include "SurfaceOrientation.h"
+#include "SurfaceSides.h"
+#include "TriangleIntersection.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <random>
+#include <set>
+#include <string>
+
+using namespace cdm;
+
+namespace
+{
+LabelledGrid MakeGrid(int nx, int ny, int nz, const std::function<Id(int, int, int)>& getRegion)
+{
+  LabelledGrid grid;
+  const int size[3] = { nx, ny, nz };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int i = 0; i <= size[axis]; ++i)
+    {
+      grid.Coordinates[axis].push_back(i);
+    }
+  }
+  for (int k = 0; k < nz; ++k)
+  {
+    for (int j = 0; j < ny; ++j)
+    {
+      for (int i = 0; i < nx; ++i)
+      {
+        grid.Regions.push_back(getRegion(i, j, k));
+      }
+    }
+  }
+  return grid;
+}
+
+LabelledGrid MakeBall(int size, double radius)
+{
+  return MakeGrid(size, size, size,
+    [&](int i, int j, int k)
+    {
+      const Vec3 center{ 0.5 * size, 0.5 * size, 0.5 * size };
+      return Distance({ i + 0.5, j + 0.5, k + 0.5 }, center) < radius ? 1 : 0;
+    });
+}
+
+MaterialInterfacesOptions MakeOptions(int smoothingSteps, bool reduce, double deviation)
+{
+  MaterialInterfacesOptions options;
+  options.SmoothingSteps = smoothingSteps;
+  options.Reduce = reduce;
+  options.MaximumDeviation = deviation;
+  return options;
+}
+
+TriangleMesh Extract(const LabelledGrid& grid, const MaterialInterfacesOptions& options,
+  MaterialInterfacesReport* report = nullptr)
+{
+  TriangleMesh surface;
+  MaterialInterfacesReport unused;
+  const Status status =
+    ExtractMaterialInterfaces(grid, options, {}, surface, report ? *report : unused);
+  EXPECT_TRUE(status.IsOk()) << status.Message;
+  return surface;
+}
+
+/** Six times the volumes that the labels enclose: exact for small integers as coordinates. */
+std::map<Id, double> GetSixVolumes(const TriangleMesh& surface)
+{
+  std::map<Id, double> volumes;
+  for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
+  {
+    const TriangleIds& ids = surface.Triangles[t];
+    const double volume =
+      Dot(surface.Points[ids[0]], Cross(surface.Points[ids[1]], surface.Points[ids[2]]));
+    volumes[surface.Labels[t].Back] += volume;
+    volumes[surface.Labels[t].Front] -= volume;
+  }
+  volumes.erase(OutsideRegion);
+  return volumes;
+}
+
+/** Six times the number of cells of each region. */
+std::map<Id, double> CountCells(const LabelledGrid& grid)
+{
+  std::map<Id, double> counts;
+  for (const Id region : grid.Regions)
+  {
+    counts[region] += 6.0;
+  }
+  counts.erase(OutsideRegion);
+  return counts;
+}
+
+/** Around each region as many triangles run along an edge as against it. */
+void ExpectWatertight(const TriangleMesh& surface)
+{
+  std::map<std::pair<Id, EdgeIds>, int> balance;
+  for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
+  {
+    const TriangleIds& ids = surface.Triangles[t];
+    const RegionPair& labels = surface.Labels[t];
+    ASSERT_NE(labels.Front, labels.Back);
+    for (int i = 0; i < 3; ++i)
+    {
+      const Id a = ids[i];
+      const Id b = ids[(i + 1) % 3];
+      const EdgeIds edge{ std::min(a, b), std::max(a, b) };
+      balance[{ labels.Back, edge }] += a < b ? 1 : -1;
+      balance[{ labels.Front, edge }] -= a < b ? 1 : -1;
+    }
+  }
+  for (const auto& [key, sum] : balance)
+  {
+    ASSERT_EQ(sum, 0) << "region " << key.first << ", edge " << key.second[0] << " "
+                      << key.second[1];
+  }
+}
+
+/** Sides that look into the same space have the same region; nothing intersects. */
+void ExpectSound(const TriangleMesh& surface)
+{
+  ExpectWatertight(surface);
+  std::vector<TrianglePair> pairs;
+  EXPECT_TRUE(FindIntersectingPairs(surface.Points, surface.Triangles, {}, {}, pairs));
+  EXPECT_TRUE(pairs.empty()) << pairs.size() << " intersections";
+  const SurfaceSides sides = FindSurfaceSides(surface);
+  EXPECT_TRUE(sides.OpenTriangles.empty());
+  std::map<Id, Id> regions;
+  for (std::size_t side = 0; side < sides.Shells.size(); ++side)
+  {
+    const RegionPair& labels = surface.Labels[side / 2];
+    const Id region = side % 2 == 0 ? labels.Front : labels.Back;
+    ASSERT_EQ(regions.emplace(sides.Shells[side], region).first->second, region) << "side " << side;
+  }
+  TriangleMesh copy = surface;
+  EXPECT_TRUE(RepairOrientation(copy).empty());
+  std::set<Vec3> places(surface.Points.begin(), surface.Points.end());
+  EXPECT_EQ(places.size(), surface.Points.size());
+}
+
+/** Stage 0 takes the surface as it is: same points, same triangles. */
+void ExpectTriangulatorTakes(const TriangleMesh& surface)
+{
+  PolygonSoup soup;
+  soup.Points = surface.Points;
+  soup.Labels = surface.Labels;
+  for (const TriangleIds& ids : surface.Triangles)
+  {
+    soup.Connectivity.insert(soup.Connectivity.end(), ids.begin(), ids.end());
+    soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+  }
+  BoundaryTriangulatorOutput output;
+  const Status status = TriangulateBoundary(soup, {}, {}, output);
+  EXPECT_TRUE(status.IsOk()) << status.Message;
+  EXPECT_TRUE(output.Problems.empty());
+  EXPECT_EQ(output.Surface.Points.size(), surface.Points.size());
+  EXPECT_EQ(output.Surface.Triangles.size(), surface.Triangles.size());
+}
+
+/** Of points spread over the triangles of one surface from another one. */
+double GetLargestDistance(const TriangleMesh& from, const TriangleMesh& to, double reach)
+{
+  std::vector<Box> boxes(to.Triangles.size());
+  for (std::size_t t = 0; t < boxes.size(); ++t)
+  {
+    for (const Id id : to.Triangles[t])
+    {
+      boxes[t].Add(to.Points[id]);
+    }
+  }
+  const BoxTree tree(boxes);
+  const Vec3 margin{ reach, reach, reach };
+  double largest = 0.0;
+  for (const TriangleIds& ids : from.Triangles)
+  {
+    const Vec3& a = from.Points[ids[0]];
+    const Vec3& b = from.Points[ids[1]];
+    const Vec3& c = from.Points[ids[2]];
+    const double longest = std::max({ Distance(a, b), Distance(b, c), Distance(c, a) });
+    const int n = std::max(2, static_cast<int>(std::ceil(longest / 0.3)));
+    for (int i = 0; i <= n; ++i)
+    {
+      for (int j = 0; i + j <= n; ++j)
+      {
+        const Vec3 p = a + (double(i) / n) * (b - a) + (double(j) / n) * (c - a);
+        double nearest = reach;
+        tree.VisitOverlaps({ p - margin, p + margin },
+          [&](Id t)
+          {
+            const TriangleIds& other = to.Triangles[t];
+            nearest = std::min(nearest,
+              GetDistanceToTriangle(
+                p, to.Points[other[0]], to.Points[other[1]], to.Points[other[2]]));
+          });
+        largest = std::max(largest, nearest);
+      }
+    }
+  }
+  return largest;
+}
+
+/** Random regions; of some grids cells are outside. */
+LabelledGrid MakeRandomGrid(std::mt19937_64& generator)
+{
+  const auto pick = [&](int low, int high)
+  { return std::uniform_int_distribution<int>(low, high)(generator); };
+  const int labels = pick(2, 5);
+  const int first = pick(0, 1) - 1;
+  const int nx = pick(2, 6);
+  const int ny = pick(2, 6);
+  const int nz = pick(2, 6);
+  return MakeGrid(nx, ny, nz, [&](int, int, int) { return first + pick(0, labels - 1); });
+}
+
+std::mt19937_64 MakeGenerator()
+{
+  const auto seed = std::random_device{}();
+  std::cout << "seed " << seed << "\n";
+  testing::Test::RecordProperty("seed", std::to_string(seed));
+  return std::mt19937_64(seed);
+}
+} // namespace
+
+TEST(MaterialInterfaces, OneCellIsACube)
+{
+  const LabelledGrid grid = MakeGrid(1, 1, 1, [](int, int, int) { return 3; });
+  for (const int steps : { 0, 20 })
+  {
+    for (const bool reduce : { false, true })
+    {
+      MaterialInterfacesReport report;
+      const TriangleMesh surface = Extract(grid, MakeOptions(steps, reduce, 0.25), &report);
+      EXPECT_EQ(surface.Points.size(), 8u);
+      EXPECT_EQ(surface.Triangles.size(), 12u);
+      EXPECT_EQ(report.Faces, 6);
+      EXPECT_EQ(GetSixVolumes(surface), CountCells(grid));
+      ExpectSound(surface);
+    }
+  }
+}
+
+TEST(MaterialInterfaces, RandomGridsHaveTheirExactVolumes)
+{
+  std::mt19937_64 generator = MakeGenerator();
+  for (int round = 0; round < 300; ++round)
+  {
+    SCOPED_TRACE(round);
+    const LabelledGrid grid = MakeRandomGrid(generator);
+    for (const bool reduce : { false, true })
+    {
+      const TriangleMesh surface = Extract(grid, MakeOptions(0, reduce, 0.0));
+      ExpectSound(surface);
+      EXPECT_EQ(GetSixVolumes(surface), CountCells(grid));
+      ExpectTriangulatorTakes(surface);
+      if (testing::Test::HasFailure())
+      {
+        return;
+      }
+    }
+  }
+}
+
+TEST(MaterialInterfaces, RandomGridsStaySoundWhenSmoothedAndReduced)
+{
+  std::mt19937_64 generator = MakeGenerator();
+  for (int round = 0; round < 40; ++round)
+  {
+    SCOPED_TRACE(round);
+    const LabelledGrid grid = MakeRandomGrid(generator);
+    const TriangleMesh smooth = Extract(grid, MakeOptions(20, false, 0.0));
+    ExpectSound(smooth);
+    ExpectTriangulatorTakes(smooth);
+    for (const double deviation : { 0.0, 0.1, 0.5, 3.0 })
+    {
+      MaterialInterfacesReport report;
+      const TriangleMesh surface = Extract(grid, MakeOptions(20, true, deviation), &report);
+      ExpectSound(surface);
+      EXPECT_EQ(GetSixVolumes(surface).size(), CountCells(grid).size());
+      EXPECT_LE(report.LargestDeviation, deviation);
+      const double bound = report.LargestDeviation + 1e-12;
+      EXPECT_LE(GetLargestDistance(surface, smooth, bound + 0.1), bound);
+      EXPECT_LE(GetLargestDistance(smooth, surface, bound + 0.1), bound);
+      ExpectTriangulatorTakes(surface);
+      if (testing::Test::HasFailure())
+      {
+        return;
+      }
+    }
+  }
+}
+
+TEST(MaterialInterfaces, ABallIsRound)
+{
+  const double radius = 12.0;
+  const LabelledGrid grid = MakeBall(32, radius);
+  const TriangleMesh stairs = Extract(grid, MakeOptions(0, false, 0.0));
+  const TriangleMesh smooth = Extract(grid, MakeOptions(20, false, 0.0));
+  const auto getRoughness = [&](const TriangleMesh& surface)
+  {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (const Vec3& p : surface.Points)
+    {
+      const double height = Distance(p, { 16.0, 16.0, 16.0 }) - radius;
+      if (std::abs(height) < 2.0)
+      {
+        sum += height * height;
+        ++count;
+      }
+    }
+    return std::sqrt(sum / count);
+  };
+  std::cout << "roughness " << getRoughness(stairs) << " -> " << getRoughness(smooth) << " volume "
+            << GetSixVolumes(smooth).at(1) << " of " << CountCells(grid).at(1) << "\n";
+  EXPECT_LT(getRoughness(smooth), 0.35 * getRoughness(stairs));
+  EXPECT_NEAR(GetSixVolumes(smooth).at(1), CountCells(grid).at(1), 0.01 * CountCells(grid).at(1));
+  for (const double deviation : { 0.1, 0.25, 0.5 })
+  {
+    MaterialInterfacesReport report;
+    const TriangleMesh reduced = Extract(grid, MakeOptions(20, true, deviation), &report);
+    ExpectSound(reduced);
+    std::cout << deviation << ": " << smooth.Triangles.size() << " -> " << reduced.Triangles.size()
+              << " held " << report.HeldPoints << " bound " << report.LargestDeviation
+              << " distance " << GetLargestDistance(smooth, reduced, 1.0) << " "
+              << GetLargestDistance(reduced, smooth, 1.0) << "\n";
+  }
+}
