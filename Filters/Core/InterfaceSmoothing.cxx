@@ -13,11 +13,16 @@ namespace cdm
 {
 namespace
 {
-/** Towards the neighbors and away from them: Taubin's lambda and mu. */
-constexpr double StepIn = 0.5;
-constexpr double StepOut = -0.53;
 /** How much is left of the way of a point when it goes back, each time. */
 constexpr double WaysBack[4] = { 1.0, 0.5, 0.25, 0.0 };
+
+/** Moves are whole numbers of so small parts of the room that a point has along an axis. */
+constexpr double PartsOfReach = 256.0;
+
+/** Steps of relaxation, and their parts of the way to the middle and back (Taubin). */
+constexpr int RelaxationSteps = 10;
+constexpr double StepIn = 0.5;
+constexpr double StepOut = -0.53;
 
 struct NetEdge
 {
@@ -139,30 +144,148 @@ IdLists FindGuides(const FaceNet& net)
   return guides;
 }
 
-/** One step: each point by a part of the way to the middle of its guides, within its limits. */
-void Step(const FaceNet& net, const IdLists& guides, double part, const std::vector<Vec3>& from,
-  std::vector<Vec3>& to)
+/** How far each point is from the middle of its guides; nothing for points and axes that stay. */
+void FindPulls(const FaceNet& net, const IdLists& guides, const std::vector<Vec3>& places,
+  std::vector<Vec3>& pulls)
 {
   for (std::size_t point = 0; point < net.Points.size(); ++point)
   {
     const IdLists::Range ids = guides[static_cast<Id>(point)];
-    to[point] = from[point];
-    if (ids.empty())
-    {
-      continue;
-    }
+    pulls[point] = {};
     // Sums of differences: where coordinates are equal nothing moves, not even by rounding.
-    Vec3 sum;
     for (const Id id : ids)
     {
-      sum = sum + (from[id] - from[point]);
+      pulls[point] = pulls[point] + (places[id] - places[point]);
     }
+    for (int axis = 0; axis < 3 && !ids.empty(); ++axis)
+    {
+      const bool isFree = net.Points[point].Up[axis] > 0.0;
+      pulls[point][axis] = isFree ? pulls[point][axis] / static_cast<double>(ids.size()) : 0.0;
+    }
+  }
+}
+
+/**
+ * Of the filter as a sum of Chebyshev polynomials: a wave that is pulled to the middle by k times its
+ * height keeps exp(-(k / limit)^2) of it, smoothly from all to nothing, so that edges do not make
+ * waves beside them. limit: of a wave of this length along one axis of a surface.
+ */
+std::vector<double> FindWeights(double length)
+{
+  const double pi = std::acos(-1.0);
+  const double limit = length > 2.0 ? 0.5 * (1.0 - std::cos(2.0 * pi / length)) : 1.0;
+  // Weights beyond are below 1e-4.
+  const int count = static_cast<int>(std::ceil(10.0 / std::acos(1.0 - limit)));
+  const int samples = 4 * count;
+  std::vector<double> weights(count + 1, 0.0);
+  for (int sample = 0; sample < samples; ++sample)
+  {
+    const double angle = pi * (sample + 0.5) / samples;
+    const double ratio = (1.0 - std::cos(angle)) / limit;
+    for (int i = 0; i <= count; ++i)
+    {
+      weights[i] += (i == 0 ? 1.0 : 2.0) / samples * std::exp(-ratio * ratio) * std::cos(i * angle);
+    }
+  }
+  return weights;
+}
+
+/** The moves of a low pass filter. False if aborted. */
+bool Filter(const FaceNet& net, const IdLists& guides, double length,
+  const ExecutionContext& context, const std::vector<Vec3>& corners, std::vector<Vec3>& moves)
+{
+  const std::vector<double> weights = FindWeights(length);
+  const int steps = static_cast<int>(weights.size()) - 1;
+  // Places of polynomials, relative to the corners, of the step before and of this one.
+  std::vector<Vec3> before(corners.size());
+  std::vector<Vec3> current(corners.size());
+  std::vector<Vec3> places = corners;
+  std::vector<Vec3> pulls(corners.size());
+  moves.assign(corners.size(), {});
+  double sum = weights[0];
+  for (int step = 1; step <= steps; ++step)
+  {
+    if (!context.Continue(static_cast<double>(step) / (steps + 1), "Smoothing interfaces"))
+    {
+      return false;
+    }
+    FindPulls(net, guides, places, pulls);
+    sum += weights[step];
+    for (std::size_t point = 0; point < corners.size(); ++point)
+    {
+      const Vec3 next =
+        step == 1 ? pulls[point] : 2.0 * (current[point] + pulls[point]) - before[point];
+      before[point] = current[point];
+      current[point] = next;
+      places[point] = corners[point] + next;
+      moves[point] = moves[point] + weights[step] * next;
+    }
+  }
+  for (Vec3& move : moves)
+  {
+    move = (1.0 / sum) * move;
+  }
+  return true;
+}
+
+/** The nearest move within the limits of a point. */
+Vec3 Limit(const FaceNet::Point& limits, const Vec3& move)
+{
+  Vec3 limited;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    limited[axis] = std::min(std::max(move[axis], -limits.Down[axis]), limits.Up[axis]);
+  }
+  return limited;
+}
+
+/**
+ * Short waves that come from the limits, as where edges of the surface would become rounder than
+ * they can.
+ */
+bool Relax(const FaceNet& net, const IdLists& guides, const ExecutionContext& context,
+  const std::vector<Vec3>& corners, std::vector<Vec3>& moves)
+{
+  std::vector<Vec3> places(corners.size());
+  std::vector<Vec3> pulls(corners.size());
+  for (int step = 0; step < 2 * RelaxationSteps; ++step)
+  {
+    if (!context.Continue(0.5 * step / RelaxationSteps, "Smoothing interfaces"))
+    {
+      return false;
+    }
+    for (std::size_t point = 0; point < corners.size(); ++point)
+    {
+      moves[point] = Limit(net.Points[point], moves[point]);
+      places[point] = corners[point] + moves[point];
+    }
+    FindPulls(net, guides, places, pulls);
+    for (std::size_t point = 0; point < corners.size(); ++point)
+    {
+      moves[point] = moves[point] + (step % 2 == 0 ? StepIn : StepOut) * pulls[point];
+    }
+  }
+  return true;
+}
+
+/**
+ * The places after the moves, within the limits. Moves are rounded down: far from what was rough they
+ * fade away, but never end, and the mesher would have to tell surfaces that are flat from those that
+ * are flat to twelve digits.
+ */
+void Move(const FaceNet& net, const std::vector<Vec3>& moves, std::vector<Vec3>& places)
+{
+  for (std::size_t point = 0; point < places.size(); ++point)
+  {
     const FaceNet::Point& limits = net.Points[point];
+    const Vec3 move = Limit(limits, moves[point]);
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double place = from[point][axis] + part / static_cast<double>(ids.size()) * sum[axis];
-      to[point][axis] = std::min(std::max(place, limits.Place[axis] - limits.Down[axis]),
-        limits.Place[axis] + limits.Up[axis]);
+      const double unit = (limits.Up[axis] + limits.Down[axis]) / PartsOfReach;
+      if (unit > 0.0)
+      {
+        places[point][axis] += unit * std::trunc(move[axis] / unit);
+      }
     }
   }
 }
@@ -197,21 +320,18 @@ void TriangulateFaces(
   }
 }
 
-bool SmoothFaces(const FaceNet& net, int steps, const ExecutionContext& context,
+bool SmoothFaces(const FaceNet& net, double length, const ExecutionContext& context,
   std::vector<Vec3>& places, std::vector<TriangleIds>& triangles, Id& heldPoints)
 {
-  const IdLists guides = FindGuides(net);
   const std::vector<Vec3> corners = places;
-  std::vector<Vec3> between(places.size());
-  for (int step = 0; step < steps; ++step)
+  const IdLists guides = FindGuides(net);
+  std::vector<Vec3> moves;
+  if (!Filter(net, guides, length, context.Part(0.0, 0.2), corners, moves) ||
+    !Relax(net, guides, context.Part(0.2, 0.3), corners, moves))
   {
-    if (!context.Continue(0.3 * step / steps, "Smoothing interfaces"))
-    {
-      return false;
-    }
-    Step(net, guides, StepIn, places, between);
-    Step(net, guides, StepOut, between, places);
+    return false;
   }
+  Move(net, moves, places);
 
   const std::vector<Vec3> smooth = places;
   std::vector<unsigned char> timesBack(places.size(), 0);

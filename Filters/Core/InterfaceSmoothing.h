@@ -4,11 +4,11 @@
  * @brief The squares between the regions of a grid, and how they lose their staircase.
  *
  * Method (thesis 3.5.3, a low pass filter):
- *  1. points on junctions (edges that are not in two squares, or where an interface meets the border
- *     of the grid) go towards the middle of their two neighbors on it; other points towards the
- *     middle of all neighbors; ends of junctions, places where three or more of them meet, and
- *     places where a region touches itself stay. Each step is followed by a larger one away from
- *     there, so that only what is rough vanishes and volumes stay (Taubin);
+ *  1. the net of squares goes through a windowed low pass filter (Taubin): waves shorter than a
+ *     length vanish, longer ones, and so volumes, stay. For points on junctions (edges that are not
+ *     in two squares, or where an interface meets the border of the grid) the wave is that along the
+ *     junction, for others that along the surface; ends of junctions, places where three or more of
+ *     them meet, and places where a region touches itself stay;
  *  2. no point leaves the middle half cells around it: 0.49 of the edges beside it, and 0.25 along an
  *     axis where a cell beside it has other regions on both sides, so that layers and wires of one
  *     cell keep half of their thickness. Points of the border of the grid stay in its planes and
@@ -18,10 +18,10 @@
  *     intersections: all are found, exactly, and the points of triangles that intersect go half of
  *     the way back, twice, and then all of it, until there are none.
  *
- * Guarantees: as MaterialInterfaces.h; no two triangles intersect. Deterministic.
+ * Guarantees: those of MaterialInterfaces.h; no two triangles intersect. Deterministic.
  * Cost: O(n log n), about 15 microseconds per square, mostly for the search of intersections.
- * References: G. Taubin, "A signal processing approach to fair surface design", 1995,
- * doi:10.1145/218380.218473.
+ * References: G. Taubin, T. Zhang, G. Golub, "Optimal surface smoothing as filter design", 1996,
+ * doi:10.1007/BFb0015544 (the filter).
  */
 #ifndef cdmInterfaceSmoothing_h
 #define cdmInterfaceSmoothing_h
@@ -64,10 +64,10 @@ void TriangulateFaces(
   const FaceNet& net, const std::vector<Vec3>& places, std::vector<TriangleIds>& triangles);
 
 /**
- * Moves the points and triangulates. steps: each there and back. heldPoints: how many had to go
- * back. False if aborted.
+ * Moves the points and triangulates. length: of the longest waves that vanish, in cells. heldPoints:
+ * how many had to go back. False if aborted.
  */
-bool SmoothFaces(const FaceNet& net, int steps, const ExecutionContext& context,
+bool SmoothFaces(const FaceNet& net, double length, const ExecutionContext& context,
   std::vector<Vec3>& places, std::vector<TriangleIds>& triangles, Id& heldPoints);
 } // namespace cdm
 

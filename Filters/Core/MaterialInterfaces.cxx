@@ -57,17 +57,23 @@ Status CheckGrid(const LabelledGrid& grid)
       std::to_string(grid.Regions.size()) + " labels.");
   }
   std::vector<Id> wrong;
+  bool hasRegion = false;
   for (std::size_t i = 0; i < grid.Regions.size(); ++i)
   {
+    hasRegion = hasRegion || grid.Regions[i] > OutsideRegion;
     if (grid.Regions[i] < OutsideRegion)
     {
       wrong.push_back(static_cast<Id>(i));
     }
   }
-  return wrong.empty()
+  if (!wrong.empty())
+  {
+    return Status::InvalidInput(
+      "Labels below -1 are no regions: use 0 and above, or -1 for outside.", std::move(wrong));
+  }
+  return hasRegion
     ? Status{}
-    : Status::InvalidInput(
-        "Labels below -1 are no regions: use 0 and above, or -1 for outside.", std::move(wrong));
+    : Status::InvalidInput("All cells are outside: label those that are to be meshed 0 or above.");
 }
 
 /** Makes the net, one layer of corners after the other. */
@@ -272,7 +278,7 @@ Status ExtractMaterialInterfaces(const LabelledGrid& grid, const MaterialInterfa
     return status;
   }
   FaceNet net;
-  const bool isSmooth = options.SmoothingSteps > 0;
+  const bool isSmooth = options.SmoothingLength > 0.0;
   const double endOfNet = isSmooth || options.Reduce ? 0.1 : 1.0;
   const double endOfSmoothing = !isSmooth ? endOfNet : options.Reduce ? 0.4 : 1.0;
   if (!NetMaker(grid, net).Run(context.Part(0.0, endOfNet)))
@@ -293,7 +299,7 @@ Status ExtractMaterialInterfaces(const LabelledGrid& grid, const MaterialInterfa
   {
     TriangulateFaces(net, result.Points, result.Triangles);
   }
-  else if (!SmoothFaces(net, options.SmoothingSteps, context.Part(endOfNet, endOfSmoothing),
+  else if (!SmoothFaces(net, options.SmoothingLength, context.Part(endOfNet, endOfSmoothing),
              result.Points, result.Triangles, report.HeldPoints))
   {
     return Status::Aborted();

@@ -18,7 +18,7 @@
  * or a corner only: such edges are in four triangles, and stay in their places. All normals point to
  * the region of smaller id, that is, outside at the outer boundary. Deterministic.
  * Failure: InvalidInput for coordinates that do not ascend, labels below OutsideRegion (cells), a
- * wrong number of labels, and grids with more than 2^31 - 1 corners.
+ * wrong number of labels, grids without a region, and those with more than 2^31 - 1 corners.
  * Cost: one pass over the cells; 8 bytes per corner in a slice; see the parts for the surface.
  * References: S. F. Gibson, "Constrained elastic surface nets", 1998, doi:10.1007/BFb0056277 (points
  * that stay near their corner; here corners of cells, whose squares are the net of all regions).
@@ -45,8 +45,8 @@ struct LabelledGrid
 
 struct MaterialInterfacesOptions
 {
-  /** 0: the exact faces of the cells. */
-  int SmoothingSteps = 20;
+  /** In cells: shorter waves of the surface are stairs and vanish. 0: the exact faces of the cells. */
+  double SmoothingLength = 10.0;
   bool Reduce = true;
   /** Of the reduction, in units of the shortest edge of a cell. >= 0. */
   double MaximumDeviation = 0.25;
@@ -65,7 +65,6 @@ struct MaterialInterfacesReport
   double LargestDeviation = 0.0;
 };
 
-/** A grid without any region has an empty surface. */
 Status ExtractMaterialInterfaces(const LabelledGrid& grid, const MaterialInterfacesOptions& options,
   const ExecutionContext& context, TriangleMesh& surface, MaterialInterfacesReport& report);
 } // namespace cdm

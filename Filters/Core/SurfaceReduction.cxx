@@ -583,8 +583,8 @@ private:
   /** Whether around the edge from a to b, after the merge, each region borders on itself only. */
   bool KeepsRegions(Id point, Id target, Id a, Id b) const
   {
-    TriangleMesh around;
-    around.Points = { this->Points[a], this->Points[b] };
+    std::vector<TriangleAtEdge> around;
+    const EdgeIds edge{ std::min(a, b), std::max(a, b) };
     for (const Id t : this->Mergeable.GetUses(a))
     {
       TriangleIds ids = this->Mergeable.GetTriangle(t);
@@ -596,43 +596,31 @@ private:
         }
         std::replace(ids.begin(), ids.end(), point, target);
       }
-      if (std::find(ids.begin(), ids.end(), b) == ids.end())
+      for (int i = 0; i < 3; ++i)
       {
-        continue;
-      }
-      for (Id& id : ids)
-      {
-        if (id != a && id != b)
+        const Id begin = ids[i];
+        const Id end = ids[(i + 1) % 3];
+        if (EdgeIds{ std::min(begin, end), std::max(begin, end) } == edge)
         {
-          around.Points.push_back(this->Points[id]);
-          id = static_cast<Id>(around.Points.size()) - 1;
-        }
-        else
-        {
-          id = id == a ? 0 : 1;
+          around.push_back({ edge, t, ids[(i + 2) % 3], begin < end });
         }
       }
-      around.Triangles.push_back(ids);
-      around.Labels.push_back(this->Mergeable.GetLabels(t));
     }
-    if (around.Triangles.size() < 3)
+    if (around.size() < 3)
     {
       return true;
     }
-    const SurfaceSides sides = FindSurfaceSides(around);
-    std::vector<Id> regions(sides.IsOuter.size());
-    std::vector<char> isKnown(sides.IsOuter.size(), 0);
-    for (std::size_t side = 0; side < sides.Shells.size(); ++side)
+    SortAroundEdge(this->Points, around.data(), around.data() + around.size());
+    for (std::size_t i = 0; i < around.size(); ++i)
     {
-      const RegionPair& labels = around.Labels[side / 2];
-      const Id region = side % 2 == 0 ? labels.Front : labels.Back;
-      const Id shell = sides.Shells[side];
-      if (isKnown[shell] && regions[shell] != region)
+      const TriangleAtEdge& next = around[(i + 1) % around.size()];
+      const RegionPair& labels = this->Mergeable.GetLabels(around[i].Triangle);
+      const RegionPair& nextLabels = this->Mergeable.GetLabels(next.Triangle);
+      if ((around[i].IsForward ? labels.Front : labels.Back) !=
+        (next.IsForward ? nextLabels.Back : nextLabels.Front))
       {
         return false;
       }
-      isKnown[shell] = 1;
-      regions[shell] = region;
     }
     return true;
   }

@@ -55,10 +55,10 @@ LabelledGrid MakeBall(int size, double radius)
     });
 }
 
-MaterialInterfacesOptions MakeOptions(int smoothingSteps, bool reduce, double deviation)
+MaterialInterfacesOptions MakeOptions(double smoothingLength, bool reduce, double deviation)
 {
   MaterialInterfacesOptions options;
-  options.SmoothingSteps = smoothingSteps;
+  options.SmoothingLength = smoothingLength;
   options.Reduce = reduce;
   options.MaximumDeviation = deviation;
   return options;
@@ -221,7 +221,11 @@ LabelledGrid MakeRandomGrid(std::mt19937_64& generator)
   const int nx = pick(2, 6);
   const int ny = pick(2, 6);
   const int nz = pick(2, 6);
-  return MakeGrid(nx, ny, nz, [&](int, int, int) { return first + pick(0, labels - 1); });
+  LabelledGrid grid =
+    MakeGrid(nx, ny, nz, [&](int, int, int) { return first + pick(0, labels - 1); });
+  // At least one cell is not outside.
+  grid.Regions.front() = 0;
+  return grid;
 }
 
 std::mt19937_64 MakeGenerator()
@@ -236,12 +240,12 @@ std::mt19937_64 MakeGenerator()
 TEST(MaterialInterfaces, OneCellIsACube)
 {
   const LabelledGrid grid = MakeGrid(1, 1, 1, [](int, int, int) { return 3; });
-  for (const int steps : { 0, 20 })
+  for (const double length : { 0.0, 15.0 })
   {
     for (const bool reduce : { false, true })
     {
       MaterialInterfacesReport report;
-      const TriangleMesh surface = Extract(grid, MakeOptions(steps, reduce, 0.25), &report);
+      const TriangleMesh surface = Extract(grid, MakeOptions(length, reduce, 0.25), &report);
       EXPECT_EQ(surface.Points.size(), 8u);
       EXPECT_EQ(surface.Triangles.size(), 12u);
       EXPECT_EQ(report.Faces, 6);
@@ -279,13 +283,13 @@ TEST(MaterialInterfaces, RandomGridsStaySoundWhenSmoothedAndReduced)
   {
     SCOPED_TRACE(round);
     const LabelledGrid grid = MakeRandomGrid(generator);
-    const TriangleMesh smooth = Extract(grid, MakeOptions(20, false, 0.0));
+    const TriangleMesh smooth = Extract(grid, MakeOptions(10, false, 0.0));
     ExpectSound(smooth);
     ExpectTriangulatorTakes(smooth);
     for (const double deviation : { 0.0, 0.1, 0.5, 3.0 })
     {
       MaterialInterfacesReport report;
-      const TriangleMesh surface = Extract(grid, MakeOptions(20, true, deviation), &report);
+      const TriangleMesh surface = Extract(grid, MakeOptions(10, true, deviation), &report);
       ExpectSound(surface);
       EXPECT_EQ(GetSixVolumes(surface).size(), CountCells(grid).size());
       EXPECT_LE(report.LargestDeviation, deviation);
@@ -306,7 +310,7 @@ TEST(MaterialInterfaces, ABallIsRound)
   const double radius = 12.0;
   const LabelledGrid grid = MakeBall(32, radius);
   const TriangleMesh stairs = Extract(grid, MakeOptions(0, false, 0.0));
-  const TriangleMesh smooth = Extract(grid, MakeOptions(20, false, 0.0));
+  const TriangleMesh smooth = Extract(grid, MakeOptions(10, false, 0.0));
   const auto getRoughness = [&](const TriangleMesh& surface)
   {
     double sum = 0.0;
@@ -329,7 +333,7 @@ TEST(MaterialInterfaces, ABallIsRound)
   for (const double deviation : { 0.1, 0.25, 0.5 })
   {
     MaterialInterfacesReport report;
-    const TriangleMesh reduced = Extract(grid, MakeOptions(20, true, deviation), &report);
+    const TriangleMesh reduced = Extract(grid, MakeOptions(10, true, deviation), &report);
     ExpectSound(reduced);
     std::cout << deviation << ": " << smooth.Triangles.size() << " -> " << reduced.Triangles.size()
               << " held " << report.HeldPoints << " bound " << report.LargestDeviation
