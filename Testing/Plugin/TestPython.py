@@ -14,9 +14,9 @@ LoadPlugin(os.environ["CDM_PLUGIN"], remote=False, ns=globals())
 expected = {
     "vtkAdvancingFrontTetrahedralizer", "vtkBoundaryTriangulator", "vtkConformingDelaunayMesher",
     "vtkDelaunayMeshCriteria", "vtkDelaunaySurfaceRefiner", "vtkGmshMeshWriter",
-    "vtkMeshPointGenerator", "vtkMovingBoundaryRemesher", "vtkSizingFromSolution",
-    "vtkSliverRemover", "vtkSteinerPointRefiner", "vtkStructuralEdgeExtractor",
-    "vtkTechnologyStructureSource", "vtkVoronoiControlVolumes"}
+    "vtkMaterialInterfaceExtractor", "vtkMeshPointGenerator", "vtkMovingBoundaryRemesher",
+    "vtkSizingFromSolution", "vtkSliverRemover", "vtkSteinerPointRefiner",
+    "vtkStructuralEdgeExtractor", "vtkTechnologyStructureSource", "vtkVoronoiControlVolumes"}
 missing = expected - set(dir(conforming_delaunay))
 assert not missing, missing
 
