@@ -19,7 +19,7 @@
  *     the way back, twice, and then all of it, until there are none.
  *
  * Guarantees: those of MaterialInterfaces.h; no two triangles intersect. Deterministic.
- * Cost: O(n log n), about 15 microseconds per square, mostly for the search of intersections.
+ * Cost: O(n log n), about 10 microseconds per square, mostly for the search of intersections.
  * References: G. Taubin, T. Zhang, G. Golub, "Optimal surface smoothing as filter design", 1996,
  * doi:10.1007/BFb0015544 (the filter).
  */

@@ -156,8 +156,11 @@ int vtkMaterialInterfaceExtractor::FillInputPortInformation(int, vtkInformation*
 int vtkMaterialInterfaceExtractor::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
-  // A part of the voxels would get a border of its own.
+  // A part of the voxels would get a border of its own: each process asks for all of them.
   vtkInformation* info = inputVector[0]->GetInformationObject(0);
+  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
+  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
   if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
   {
     info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
@@ -175,7 +178,7 @@ int vtkMaterialInterfaceExtractor::RequestData(
     outputVector->GetInformationObject(0)->Get(
       vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) > 0)
   {
-    // The first process has all voxels.
+    // The first process makes all interfaces.
     return 1;
   }
 

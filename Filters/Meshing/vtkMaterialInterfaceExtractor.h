@@ -28,7 +28,8 @@
  * itself at an edge or a corner of voxels only, the surface is no manifold, as at junctions. With
  * smoothing off and MaximumDeviation 0 volumes are those of the voxels. Layers one voxel thick keep
  * at least half of their thickness in smoothing. Deterministic. An image with a direction matrix is
- * turned at the end, which rounds coordinates.
+ * turned at the end, which rounds coordinates. In a parallel run the first process asks for all voxels
+ * and makes all interfaces; the others have none.
  *
  * Failure: an error that names the voxels, and an empty output, for labels that are no whole numbers
  * from -1 on, an array that is missing or has several components, an image without a label other

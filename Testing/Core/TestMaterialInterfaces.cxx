@@ -333,6 +333,57 @@ TEST(MaterialInterfaces, ThinLayersKeepHalfOfTheirThickness)
   EXPECT_GE(volumes.at(3), 0.25 * CountCells(grid).at(3));
 }
 
+TEST(MaterialInterfaces, TheSameInputMakesTheSameSurface)
+{
+  std::mt19937_64 generator = MakeGenerator();
+  for (int round = 0; round < 10; ++round)
+  {
+    const LabelledGrid grid = MakeRandomGrid(generator);
+    const TriangleMesh first = Extract(grid, {});
+    const TriangleMesh second = Extract(grid, {});
+    EXPECT_EQ(first.Points, second.Points);
+    EXPECT_EQ(first.Triangles, second.Triangles);
+    EXPECT_EQ(first.Labels, second.Labels);
+  }
+}
+
+TEST(MaterialInterfaces, SaysWhatIsWrongWithTheGrid)
+{
+  const auto expect = [](const LabelledGrid& grid, const std::string& part)
+  {
+    TriangleMesh surface;
+    MaterialInterfacesReport report;
+    const Status status = ExtractMaterialInterfaces(grid, {}, {}, surface, report);
+    EXPECT_EQ(status.Code, StatusCode::InvalidInput);
+    EXPECT_NE(status.Message.find(part), std::string::npos) << status.Message;
+    EXPECT_TRUE(surface.Triangles.empty());
+    return status;
+  };
+  const LabelledGrid good = MakeGrid(2, 2, 2, [](int, int, int) { return 0; });
+  LabelledGrid grid = good;
+  grid.Coordinates[1][1] = 2.0;
+  expect(grid, "along y are not finite and ascending (number 2)");
+  grid.Coordinates[1][1] = std::nan("");
+  expect(grid, "number 1");
+  grid = good;
+  grid.Regions.pop_back();
+  expect(grid, "8 cells, but 7 labels");
+  grid = good;
+  grid.Regions[5] = -3;
+  EXPECT_EQ(expect(grid, "Labels below -1").Cells, (std::vector<Id>{ 5 }));
+  grid.Regions.assign(8, OutsideRegion);
+  expect(grid, "All cells are outside");
+  grid.Coordinates[2].resize(1);
+  expect(grid, "no cells along z");
+  grid.Coordinates[2].clear();
+  for (int i = 0; i < 2000; ++i)
+  {
+    grid.Coordinates[2].push_back(i);
+  }
+  grid.Coordinates[0] = grid.Coordinates[1] = grid.Coordinates[2];
+  expect(grid, "2^31 - 1 corners");
+}
+
 TEST(MaterialInterfaces, TheBorderOfTheGridStaysPlane)
 {
   const LabelledGrid grid = MakeGrid(20, 16, 12,

@@ -298,6 +298,19 @@ TEST(MaterialInterfaceExtractorFilter, SaysWhatIsWrongWithTheInput)
   EXPECT_GT(filter->GetOutput()->GetNumberOfCells(), 0);
 }
 
+TEST(MaterialInterfaceExtractorFilter, IsMadeWholeByTheFirstOfSeveralProcesses)
+{
+  vtkNew<vtkMaterialInterfaceExtractor> filter;
+  filter->SetInputData(MakeBall());
+  filter->Update();
+  const vtkIdType cells = filter->GetOutput()->GetNumberOfCells();
+  EXPECT_GT(cells, 0);
+  filter->UpdatePiece(0, 2, 0);
+  EXPECT_EQ(filter->GetOutput()->GetNumberOfCells(), cells);
+  filter->UpdatePiece(1, 2, 0);
+  ExpectEmptyOutputs(filter);
+}
+
 TEST(MaterialInterfaceExtractorFilter, ReportsProgressAndAborts)
 {
   vtkNew<vtkMaterialInterfaceExtractor> filter;
