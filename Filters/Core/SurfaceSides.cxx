@@ -40,19 +40,9 @@ private:
   std::vector<Id> Parents;
 };
 
-/** One triangle at an edge; the edge runs from the smaller to the larger point id. */
-struct EdgeUse
+std::vector<TriangleAtEdge> CollectEdgeUses(const TriangleMesh& surface)
 {
-  EdgeIds Edge;
-  Id Triangle;
-  Id Apex;
-  /** The triangle runs along the edge in its direction: its front faces growing angles. */
-  bool IsForward;
-};
-
-std::vector<EdgeUse> CollectEdgeUses(const TriangleMesh& surface)
-{
-  std::vector<EdgeUse> uses;
+  std::vector<TriangleAtEdge> uses;
   uses.reserve(3 * surface.Triangles.size());
   for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
   {
@@ -66,7 +56,7 @@ std::vector<EdgeUse> CollectEdgeUses(const TriangleMesh& surface)
     }
   }
   std::sort(uses.begin(), uses.end(),
-    [](const EdgeUse& x, const EdgeUse& y)
+    [](const TriangleAtEdge& x, const TriangleAtEdge& y)
     { return x.Edge != y.Edge ? x.Edge < y.Edge : x.Triangle < y.Triangle; });
   return uses;
 }
@@ -75,13 +65,13 @@ std::vector<EdgeUse> CollectEdgeUses(const TriangleMesh& surface)
 class AngleOrder
 {
 public:
-  AngleOrder(const std::vector<Vec3>& points, const EdgeUse& first)
+  AngleOrder(const std::vector<Vec3>& points, const TriangleAtEdge& first)
     : Points(points), A(points[first.Edge[0]]), B(points[first.Edge[1]]),
       Reference(points[first.Apex])
   {
   }
 
-  bool operator()(const EdgeUse& x, const EdgeUse& y) const
+  bool operator()(const TriangleAtEdge& x, const TriangleAtEdge& y) const
   {
     const int i = this->GetQuarter(x);
     const int j = this->GetQuarter(y);
@@ -95,7 +85,7 @@ public:
 
 private:
   /** 0: along the reference; 1: up to 180 degrees; 2: opposite to it; 3: beyond. */
-  int GetQuarter(const EdgeUse& use) const
+  int GetQuarter(const TriangleAtEdge& use) const
   {
     const Vec3& apex = this->Points[use.Apex];
     const int side = Orientation(this->A, this->B, this->Reference, apex);
@@ -121,13 +111,18 @@ private:
 };
 } // namespace
 
+void SortAroundEdge(const std::vector<Vec3>& points, TriangleAtEdge* begin, TriangleAtEdge* end)
+{
+  std::sort(begin, end, AngleOrder(points, *begin));
+}
+
 SurfaceSides FindSurfaceSides(const TriangleMesh& surface)
 {
   const Id numberOfTriangles = static_cast<Id>(surface.Triangles.size());
   SurfaceSides result;
   DisjointSets sides(2 * surface.Triangles.size());
   DisjointSets components(surface.Triangles.size());
-  std::vector<EdgeUse> uses = CollectEdgeUses(surface);
+  std::vector<TriangleAtEdge> uses = CollectEdgeUses(surface);
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end)
   {
     while (end < uses.size() && uses[end].Edge == uses[begin].Edge)
@@ -140,12 +135,12 @@ SurfaceSides FindSurfaceSides(const TriangleMesh& surface)
     }
     if (end - begin > 2)
     {
-      std::sort(uses.begin() + begin, uses.begin() + end, AngleOrder(surface.Points, uses[begin]));
+      SortAroundEdge(surface.Points, uses.data() + begin, uses.data() + end);
     }
     for (std::size_t i = begin; i < end; ++i)
     {
-      const EdgeUse& use = uses[i];
-      const EdgeUse& next = uses[i + 1 < end ? i + 1 : begin];
+      const TriangleAtEdge& use = uses[i];
+      const TriangleAtEdge& next = uses[i + 1 < end ? i + 1 : begin];
       // The side that faces growing angles meets the next triangle's side that faces falling ones.
       sides.Unite(
         2 * use.Triangle + (use.IsForward ? 0 : 1), 2 * next.Triangle + (next.IsForward ? 1 : 0));

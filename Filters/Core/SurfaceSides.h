@@ -33,6 +33,19 @@ struct SurfaceSides
 };
 
 SurfaceSides FindSurfaceSides(const TriangleMesh& surface);
+
+/** A triangle at an edge, which runs from the smaller to the larger point id. */
+struct TriangleAtEdge
+{
+  EdgeIds Edge;
+  Id Triangle;
+  Id Apex;
+  /** The triangle runs along the edge in its direction: its front faces growing angles. */
+  bool IsForward;
+};
+
+/** Sorts the triangles at one edge by their angle from the first one, exactly. */
+void SortAroundEdge(const std::vector<Vec3>& points, TriangleAtEdge* begin, TriangleAtEdge* end);
 } // namespace cdm
 
 #endif

@@ -135,6 +135,16 @@ mesher.UpdatePipeline()
 assert abs(Volume(mesher) - 6.0) < 6e-12
 assert Count(mesher) > without, "the mesh points are used"
 
+# Labels of points, chosen by name: two halves, in 5 x 5 x 5 voxels.
+halves = Calculator(Input=wavelet, ResultArrayName="Material", Function="if(coordsX>0.5,2,1)")
+interfaces = MaterialInterfaceExtractor(Input=halves, Labels=["POINTS", "Material"])
+voxels = ConformingDelaunayMesher(Input=interfaces)
+voxels.UpdatePipeline()
+assert abs(Volume(voxels) - 125.0) < 1e-9, "volume %.17g" % Volume(voxels)
+assert voxels.GetCellDataInformation().GetArray("RegionId").GetRange() == (1.0, 2.0)
+# Two boxes with a common side.
+assert Count(interfaces) == 22, Count(interfaces)
+
 device = TechnologyStructureSource()
 device.UpdatePipeline()
 assert Count(device) > 0

@@ -14,10 +14,10 @@ LoadPlugin(os.environ["CDM_PLUGIN"], remote=False, ns=globals())
 expected = {
     "vtkAdvancingFrontTetrahedralizer", "vtkBoundaryTriangulator", "vtkConformingDelaunayMesher",
     "vtkDelaunayMeshCriteria", "vtkDelaunaySurfaceRefiner", "vtkGmshMeshWriter",
-    "vtkLayoutExtruder", "vtkMeshPointGenerator", "vtkMovingBoundaryRemesher",
-    "vtkSizingFromSolution", "vtkSliverRemover", "vtkSteinerPointRefiner",
-    "vtkStructuralEdgeExtractor",
-    "vtkTechnologyStructureSource", "vtkVoronoiControlVolumes"}
+    "vtkLayoutExtruder", "vtkMaterialInterfaceExtractor", "vtkMeshPointGenerator",
+    "vtkMovingBoundaryRemesher", "vtkSizingFromSolution", "vtkSliverRemover",
+    "vtkSteinerPointRefiner", "vtkStructuralEdgeExtractor", "vtkTechnologyStructureSource",
+    "vtkVoronoiControlVolumes"}
 missing = expected - set(dir(conforming_delaunay))
 assert not missing, missing
 
