@@ -496,7 +496,10 @@ Status PartTetrahedralization::Update(int numberOfThreads, const ExecutionContex
   }
   if (!isNeeded)
   {
-    return {};
+    // A conflict is with a point that was not known: there must be new ones.
+    return !isFirst && std::count(this->IsOpen.begin(), this->IsOpen.end(), 1) > 0
+      ? Status::InternalError("Parts of the mesh do not agree on a conflict.")
+      : Status();
   }
 
   // The points that take part, in the order of their numbers: those of the halo follow the own ones.

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file DistributedMesh.h
+ * @brief Tetrahedralizes points, or the inside of a surface, that are spread over processes.
+ *
+ * Private to this module: what vtkDistributedTetrahedralizer does, step by step. Between two steps
+ * all processes agree that they go on.
+ */
+#ifndef DistributedMesh_h
+#define DistributedMesh_h
+
+#include "ProcessGroup.h"
+
+#include "Core/ExecutionContext.h"
+#include "Core/PartTetrahedralization.h"
+#include "Core/SpacePartition.h"
+#include "Core/Status.h"
+#include "Core/TetMesh.h"
+#include "Core/TriangleMesh.h"
+
+#include <vtkSmartPointer.h>
+#include <vtkType.h>
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+class vtkDataSetAttributes;
+class vtkPointSet;
+class vtkPolyData;
+class vtkTable;
+class vtkUnstructuredGrid;
+
+class DistributedMesh
+{
+public:
+  DistributedMesh(ProcessGroup& processes, const cdm::ExecutionContext& context,
+    int numberOfThreads, int numberOfGhostLevels);
+
+  /** Called by all processes with their pieces; the second one may be null. */
+  cdm::Status Run(vtkPointSet* input, vtkPointSet* meshPoints);
+
+  /** The tetrahedra of this process and its ghosts. */
+  void MakeMesh(vtkUnstructuredGrid* output) const;
+  /** The boundary triangles of this process. */
+  void MakeBoundary(vtkPolyData* output) const;
+
+  int GetNumberOfRounds() const { return this->NumberOfRounds; }
+  /** Points of others that this process knows. */
+  vtkIdType GetNumberOfHaloPoints() const { return this->NumberOfHaloPoints; }
+  /** Of all processes. */
+  vtkIdType GetNumberOfUnusedMeshPoints() const { return this->NumberOfUnusedMeshPoints; }
+
+private:
+  /** The points of one of the two inputs, numbered. */
+  struct Piece
+  {
+    std::vector<cdm::NumberedPoint> Points;
+    /** The point arrays that all processes have in both inputs. */
+    vtkSmartPointer<vtkDataSetAttributes> Data;
+  };
+  /** A tetrahedron of the output, its lowest numbered point first. */
+  struct Cell
+  {
+    cdm::TetrahedronIds Ids;
+    cdm::Id Region;
+  };
+  /** Where the point data of a point are: the table and the row. */
+  using Row = std::pair<std::size_t, vtkIdType>;
+
+  cdm::Status ReadPoints(vtkPointSet* input, const char* name, int port);
+  cdm::Status NumberPoints(vtkPointSet* input, int port);
+  cdm::Status CheckNumbers();
+  cdm::Status ChooseArrays(vtkPointSet* input, vtkPointSet* meshPoints);
+  cdm::Status ReadSurface(vtkPolyData* input);
+  cdm::Status GatherSurface(vtkPolyData* input);
+  cdm::Status RemoveCopiedTriangles(std::vector<Row>& rows);
+  void NameTriangles(cdm::Status& status) const;
+  cdm::Status CheckSurface();
+  cdm::Status Distribute();
+  cdm::Status MakePart();
+  cdm::Status FindSimplex(std::vector<cdm::NumberedPoint>& simplex);
+  cdm::Status Tetrahedralize();
+  cdm::Status FindRegions();
+  void FindSurfacePlaces();
+  void CollectOwn();
+  cdm::Status AddGhosts();
+  void CollectBoundary();
+  cdm::Status FetchPointData();
+  template <typename Work>
+  cdm::Status Do(const Work& work);
+  Cell MakeCell(const cdm::TetrahedronIds& ids, cdm::Id region) const;
+  void SortCells(std::size_t begin);
+  template <typename Ids>
+  bool OwnsLowest(const Ids& ids) const;
+  std::vector<cdm::Id> CompressPoints(
+    const std::vector<cdm::Id>& places, vtkPointSet* output) const;
+  int GetOwner(const cdm::Vec3& position) const { return this->Partition->GetPart(position); }
+
+  ProcessGroup& Processes;
+  const cdm::ExecutionContext& Context;
+  int NumberOfThreads;
+  int NumberOfGhostLevels;
+
+  Piece Pieces[2];
+  bool HasSurface = false;
+  /** All of it, with points in the order of their numbers; the regions of its sides. */
+  cdm::TriangleMesh Surface;
+  std::vector<cdm::RegionPair> SideRegions;
+  /** The cells of this process that are triangles of the surface. */
+  std::vector<vtkIdType> SurfaceCells;
+  /** For each triangle of the surface its process and the cell there. */
+  std::vector<std::pair<int, std::int64_t>> SurfaceSources;
+  vtkSmartPointer<vtkTable> SurfaceCellData;
+
+  std::unique_ptr<cdm::SpacePartition> Partition;
+  std::vector<cdm::NumberedPoint> OwnPoints;
+  std::vector<vtkSmartPointer<vtkTable>> Tables;
+  std::vector<Row> Rows;
+  std::unique_ptr<cdm::PartTetrahedralization> Part;
+
+  /** On the points of the part, then those of ghosts. */
+  std::vector<cdm::NumberedPoint> Points;
+  cdm::Id NumberOfOwnPoints = 0;
+  cdm::TetMesh Mesh;
+  std::vector<cdm::TriangleIds> Hull;
+  /** Of the points of the surface; NoId for those that this process does not know. */
+  std::vector<cdm::Id> SurfacePlaces;
+  /** The triangles of the surface with points of the part, and the regions on their sides. */
+  std::vector<cdm::Id> PartTriangles;
+  std::vector<cdm::RegionPair> PartLabels;
+  /** Tetrahedra of the output, the own ones first. */
+  std::vector<Cell> Cells;
+  std::size_t NumberOfOwnCells = 0;
+  /** Without points of its own. */
+  cdm::TriangleMesh Boundary;
+  bool HasPointData = false;
+
+  int NumberOfRounds = 0;
+  vtkIdType NumberOfHaloPoints = 0;
+  std::int64_t FirstMeshPoint = 0;
+  vtkIdType NumberOfUnusedMeshPoints = 0;
+};
+
+#endif
