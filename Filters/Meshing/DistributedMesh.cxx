@@ -1047,7 +1047,7 @@ cdm::Status DistributedMesh::FindRegions()
   {
     status = this->Do([&] { return regions.Finish(this->Mesh.Regions); });
   }
-  for (std::size_t t = 0; t < triangles.size(); ++t)
+  for (std::size_t t = 0; t < triangles.size() && status.IsOk(); ++t)
   {
     const cdm::Id side = static_cast<cdm::Id>(2 * t);
     this->PartLabels.push_back({ regions.GetSideRegion(side), regions.GetSideRegion(side + 1) });
