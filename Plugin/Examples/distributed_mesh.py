@@ -20,7 +20,7 @@ folder = sys.argv[1] if len(sys.argv) > 1 else "."
 device = TechnologyStructureSource(Structure="MOS transistor")
 surface = BoundaryTriangulator(Input=device)
 points = MeshPointGenerator(Input=surface, Spacing=[0.05, 0.05, 0.05])
-refined = DelaunaySurfaceRefiner(Input=surface, MeshPoints=points)
+refined = DelaunaySurfaceRefiner(Input=surface, MeshPoints=points, MaximumEdgeLength=0.05)
 mesh = DistributedTetrahedralizer(Input=refined, MeshPoints=OutputPort(refined, 2))
 # ParaView asks for a level of ghost cells, and would count them.
 owned = RemoveGhostInformation(Input=mesh)

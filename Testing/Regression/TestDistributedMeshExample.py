@@ -56,7 +56,7 @@ scene = Scene.Scene((0.0, 0.15, -0.2), (0.45, -1.0, 0.5), 1.25)
 for piece, colour in zip(pieces, Scene.FACET_COLOURS):
     moved = Scene.Copy(piece)
     points = Scene.GetPoints(moved)
-    points += 0.25 * (points.mean(axis=0) - center)
+    points += 0.35 * (points.mean(axis=0) - center)
     scene.AddTetrahedra(moved, numpy.tile(colour, (moved.GetNumberOfCells(), 1)))
 scene.Save("DistributedMeshExample.png")
 Scene.AssertSameAsBaselines("DistributedMeshExample.png")
