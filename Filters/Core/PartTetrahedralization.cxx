@@ -12,7 +12,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <type_traits>
 #include <utility>
 
 namespace cdm
@@ -22,6 +21,8 @@ namespace
 /** Points of a block, and by how much of its longest side its box is enlarged for the halo. */
 constexpr Id BlockSize = 32;
 constexpr double HaloRatio = 0.75;
+/** Points of another part in the box of a block, at most: where they are much denser, few are needed. */
+constexpr std::size_t LargestHalo = 256;
 /** Points in the answer to one query: twice as many each round, so that there are few rounds. */
 constexpr std::size_t FirstAnswerSize = 8;
 constexpr int LastDoubling = 20;
@@ -29,12 +30,13 @@ constexpr int LastDoubling = 20;
 constexpr std::size_t ReportInterval = 4096;
 constexpr const char* Activity = "Completing the tetrahedra between parts";
 
-/** Beyond a facet of the hull, tested with a bound of the error; false only if all of a box is not. */
-class HalfSpaceForm
+/** Where points in conflict with a facet of the hull may be: beyond it, or in its plane. */
+class FacetForm
 {
 public:
-  HalfSpaceForm(const Vec3& a, const Vec3& b, const Vec3& c)
-    : Origin(a), Normal(Cross(b - a, c - a))
+  /** A facet, counter-clockwise seen from outside, and the apex of its tetrahedron. */
+  FacetForm(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& apex)
+    : A(a), B(b), C(c), Normal(Cross(b - a, c - a)), Sphere(a, c, b, apex)
   {
     double size = 0.0;
     for (int axis = 0; axis < 3; ++axis)
@@ -45,25 +47,44 @@ public:
     this->Error = 0x1p-49 * size * size;
   }
 
-  bool MayTouch(const Box& box) const
+  /** False only if no point of the box is in conflict. */
+  bool MayTouch(const Vec3& low, const Vec3& high) const
   {
     double largest = 0.0;
-    double error = 0.0;
+    // What may underflow.
+    double error = std::numeric_limits<double>::min();
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double low = box.Low[axis] - this->Origin[axis];
-      const double high = box.High[axis] - this->Origin[axis];
-      largest += std::max(this->Normal[axis] * low, this->Normal[axis] * high);
+      const double lower = low[axis] - this->A[axis];
+      const double upper = high[axis] - this->A[axis];
+      largest += std::max(this->Normal[axis] * lower, this->Normal[axis] * upper);
       error += (this->Error + 0x1p-49 * std::abs(this->Normal[axis])) *
-        std::max(std::abs(low), std::abs(high));
+        std::max(std::abs(lower), std::abs(upper));
     }
-    // Not true for numbers that overflow or underflow.
-    return !(largest < -error - std::numeric_limits<double>::min());
+    if (std::abs(largest) > error)
+    {
+      return largest > 0.0;
+    }
+    // The box comes close to the plane, as all of a flat side of the hull does: if no corner is
+    // beyond it, points in the plane are left, for which the sphere decides.
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      const Vec3 p{ (corner & 1 ? high : low).X, (corner & 2 ? high : low).Y,
+        (corner & 4 ? high : low).Z };
+      if (Orientation(this->A, this->B, this->C, p) > 0)
+      {
+        return true;
+      }
+    }
+    return this->Sphere.MayTouch(low, high);
   }
 
 private:
-  Vec3 Origin;
+  Vec3 A;
+  Vec3 B;
+  Vec3 C;
   Vec3 Normal;
+  SphereForm Sphere;
   double Error;
 };
 
@@ -130,7 +151,7 @@ public:
   {
     const double distance = GetSquaredDistance(box, this->Center);
     return (this->Found.size() == this->Limit && distance >= this->Found.back().first) ||
-        !this->MayTouch(box)
+        !this->Shape.MayTouch(box.Low, box.High)
       ? std::numeric_limits<double>::infinity()
       : distance;
   }
@@ -153,18 +174,6 @@ public:
   const std::vector<std::pair<double, Id>>& GetFound() const { return this->Found; }
 
 private:
-  bool MayTouch(const Box& box) const
-  {
-    if constexpr (std::is_same_v<Form, SphereForm>)
-    {
-      return this->Shape.MayTouch(box.Low, box.High);
-    }
-    else
-    {
-      return this->Shape.MayTouch(box);
-    }
-  }
-
   const ConflictQuery& Query;
   const Vec3 Center;
   const Form& Shape;
@@ -180,8 +189,8 @@ std::vector<std::pair<double, Id>> FindConflicts(const ConflictQuery& query,
   const auto& v = query.Vertices;
   if (query.IsFacet != 0)
   {
-    const HalfSpaceForm form(v[0], v[1], v[2]);
-    ConflictSearch<HalfSpaceForm> search(query, form, points, limit);
+    const FacetForm form(v[0], v[1], v[2], v[3]);
+    ConflictSearch<FacetForm> search(query, form, points, limit);
     octree.Visit(search);
     return search.GetFound();
   }
@@ -292,55 +301,61 @@ PartTetrahedralization::PartTetrahedralization(
       positions.push_back(point.Position);
     }
     this->Octree.Insert(positions);
-    this->MakeBlocks();
-  }
-}
-
-void PartTetrahedralization::MakeBlocks()
-{
-  std::vector<Vec3> positions;
-  std::vector<Id> order(this->Points.size());
-  std::iota(order.begin(), order.end(), 0);
-  for (const NumberedPoint& point : this->Points)
-  {
-    positions.push_back(point.Position);
-  }
-  SortAlongHilbertCurve(positions, order);
-  this->BlockOfPoint.resize(order.size());
-  for (std::size_t begin = 0; begin < order.size(); begin += BlockSize)
-  {
-    Box box;
-    for (std::size_t i = begin; i < std::min(order.size(), begin + BlockSize); ++i)
+    std::vector<Id> ids(this->Points.size());
+    std::iota(ids.begin(), ids.end(), 0);
+    this->BlockOfPoint.resize(ids.size());
+    if (!ids.empty())
     {
-      box.Add(positions[order[i]]);
-      this->BlockOfPoint[order[i]] = static_cast<Id>(this->Blocks.size());
+      this->MakeBlocks(ids.data(), ids.data() + ids.size());
     }
-    const Vec3 size = box.High - box.Low;
-    const double margin = HaloRatio * std::max({ size.X, size.Y, size.Z });
-    box.Low = box.Low - Vec3{ margin, margin, margin };
-    box.High = box.High + Vec3{ margin, margin, margin };
-    this->Blocks.push_back(box);
   }
 }
 
-std::vector<std::vector<Box>> PartTetrahedralization::GetHaloBoxes() const
+/** Halves the points across the longest side of their box until they are few. */
+void PartTetrahedralization::MakeBlocks(Id* begin, Id* end)
+{
+  Box box;
+  std::for_each(begin, end, [&](Id id) { box.Add(this->Points[id].Position); });
+  const Vec3 size = box.High - box.Low;
+  const double longest = std::max({ size.X, size.Y, size.Z });
+  if (end - begin > BlockSize)
+  {
+    const int axis = size.X == longest ? 0 : size.Y == longest ? 1 : 2;
+    Id* const middle = begin + (end - begin) / 2;
+    std::nth_element(begin, middle, end,
+      [&](Id a, Id b) { return this->Points[a].Position[axis] < this->Points[b].Position[axis]; });
+    this->MakeBlocks(begin, middle);
+    this->MakeBlocks(middle, end);
+    return;
+  }
+  std::for_each(
+    begin, end, [&](Id id) { this->BlockOfPoint[id] = static_cast<Id>(this->Blocks.size()); });
+  const double margin = HaloRatio * longest;
+  box.Low = box.Low - Vec3{ margin, margin, margin };
+  box.High = box.High + Vec3{ margin, margin, margin };
+  this->Blocks.push_back(box);
+}
+
+std::vector<std::vector<Box>> PartTetrahedralization::GetHaloBoxes()
 {
   std::vector<std::vector<Box>> boxes(this->Bounds.size());
+  this->BlocksOfBoxes.assign(this->Bounds.size(), {});
   for (std::size_t part = 0; part < boxes.size(); ++part)
   {
-    for (const Box& block : this->Blocks)
+    for (std::size_t block = 0; block < this->Blocks.size(); ++block)
     {
       if (static_cast<int>(part) != this->Part && !this->Bounds[part].IsEmpty() &&
-        block.Overlaps(this->Bounds[part]))
+        this->Blocks[block].Overlaps(this->Bounds[part]))
       {
-        boxes[part].push_back(block);
+        boxes[part].push_back(this->Blocks[block]);
+        this->BlocksOfBoxes[part].push_back(static_cast<Id>(block));
       }
     }
   }
   return boxes;
 }
 
-std::vector<NumberedPoint> PartTetrahedralization::GetPointsIn(const std::vector<Box>& boxes) const
+HaloPoints PartTetrahedralization::GetPointsIn(const std::vector<Box>& boxes) const
 {
   struct BoxSearch
   {
@@ -348,7 +363,9 @@ std::vector<NumberedPoint> PartTetrahedralization::GetPointsIn(const std::vector
     std::vector<Id>& Found;
     double Order(const Box& box) const
     {
-      return this->Wanted.Overlaps(box) ? 0.0 : std::numeric_limits<double>::infinity();
+      return this->Found.size() <= LargestHalo && this->Wanted.Overlaps(box)
+        ? 0.0
+        : std::numeric_limits<double>::infinity();
     }
     void Visit(Id point, const Vec3& p)
     {
@@ -360,22 +377,39 @@ std::vector<NumberedPoint> PartTetrahedralization::GetPointsIn(const std::vector
   };
   std::vector<Id> found;
   std::vector<char> isTaken(static_cast<std::size_t>(this->NumberOfOwnPoints), 0);
-  std::vector<NumberedPoint> points;
+  HaloPoints halo;
   for (const Box& box : boxes)
   {
     found.clear();
     BoxSearch search{ box, found };
     this->Octree.Visit(search);
-    for (Id point : found)
+    halo.IsComplete.push_back(found.size() <= LargestHalo ? 1 : 0);
+    for (std::size_t i = 0; i < found.size() && found.size() <= LargestHalo; ++i)
     {
-      if (!isTaken[point])
+      if (!isTaken[found[i]])
       {
-        isTaken[point] = 1;
-        points.push_back(this->Points[point]);
+        isTaken[found[i]] = 1;
+        halo.Points.push_back(this->Points[found[i]]);
       }
     }
   }
-  return points;
+  return halo;
+}
+
+void PartTetrahedralization::TakeHalo(const std::vector<HaloPoints>& halo)
+{
+  for (std::size_t part = 0; part < halo.size(); ++part)
+  {
+    for (std::size_t i = 0; i < halo[part].IsComplete.size(); ++i)
+    {
+      if (!halo[part].IsComplete[i])
+      {
+        // Nothing lies within an empty box: its points are asked for one by one.
+        this->Blocks[this->BlocksOfBoxes[part][i]] = Box();
+      }
+    }
+    this->AddPoints(halo[part].Points);
+  }
 }
 
 void PartTetrahedralization::AddPoints(const std::vector<NumberedPoint>& points)
@@ -435,12 +469,12 @@ void PartTetrahedralization::Classify(const Doubt& doubt)
   {
     const ConflictQuery query = this->MakeQuery(doubt);
     const auto& v = query.Vertices;
-    const auto ask = [&](const auto& mayTouch)
+    const auto ask = [&](const auto& form)
     {
       for (std::size_t part = 0; part < this->Bounds.size(); ++part)
       {
         if (static_cast<int>(part) != this->Part && !this->Bounds[part].IsEmpty() &&
-          mayTouch(this->Bounds[part]))
+          form.MayTouch(this->Bounds[part].Low, this->Bounds[part].High))
         {
           this->Queries[part].push_back(query);
           this->DoubtsOfQueries[part].push_back(this->Doubts.size());
@@ -450,13 +484,11 @@ void PartTetrahedralization::Classify(const Doubt& doubt)
     };
     if (doubt.IsFacet)
     {
-      const HalfSpaceForm form(v[0], v[1], v[2]);
-      ask([&form](const Box& box) { return form.MayTouch(box); });
+      ask(FacetForm(v[0], v[1], v[2], v[3]));
     }
     else
     {
-      const SphereForm form(v[0], v[1], v[2], v[3]);
-      ask([&form](const Box& box) { return form.MayTouch(box.Low, box.High); });
+      ask(SphereForm(v[0], v[1], v[2], v[3]));
     }
   }
   if (isAsked)

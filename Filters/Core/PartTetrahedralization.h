@@ -8,8 +8,8 @@
  * without looking at each other. How points travel between parts is left to the caller.
  *
  * Method:
- *  1. halo: blocks of own points that follow each other on a Hilbert curve have boxes; enlarged by
- *     their size, they are asked of the parts whose points they may hold;
+ *  1. halo: small blocks of own points have boxes; enlarged by their size, they are asked of the parts
+ *     whose points they may hold, and answered with these points unless they are very many;
  *  2. tetrahedralize all points known. A tetrahedron at an own point is final if no point of any
  *     part is in conflict with it: none lies inside of its sphere, with points on the sphere told
  *     apart by the pulling rule (PulledSphere.h), so none has to be looked at twice. That is certain
@@ -82,6 +82,14 @@ struct ConflictAnswers
   std::vector<NumberedPoint> Points;
 };
 
+/** The points of a part in the boxes that another part has asked for. */
+struct HaloPoints
+{
+  /** For each box: 0 if it has too many points, which are not among these. */
+  std::vector<char> IsComplete;
+  std::vector<NumberedPoint> Points;
+};
+
 /** The lowest numbered one of points at the same place stays; the result is in ascending order. */
 void RemoveCopies(std::vector<NumberedPoint>& points);
 
@@ -104,10 +112,12 @@ public:
     std::vector<NumberedPoint> own, int part, std::vector<Box> bounds, const Box& cell);
 
   /** The boxes from which this part wants all points of each part. */
-  std::vector<std::vector<Box>> GetHaloBoxes() const;
-  /** The own points in these boxes. */
-  std::vector<NumberedPoint> GetPointsIn(const std::vector<Box>& boxes) const;
-  /** Points of other parts. */
+  std::vector<std::vector<Box>> GetHaloBoxes();
+  /** As the part that is asked. */
+  HaloPoints GetPointsIn(const std::vector<Box>& boxes) const;
+  /** From each part. */
+  void TakeHalo(const std::vector<HaloPoints>& halo);
+  /** Any points of other parts. */
   void AddPoints(const std::vector<NumberedPoint>& points);
 
   /**
@@ -150,7 +160,7 @@ private:
     int GetSize() const { return this->IsFacet ? 3 : 4; }
   };
 
-  void MakeBlocks();
+  void MakeBlocks(Id* begin, Id* end);
   void Classify(const Doubt& doubt);
   void Take(const Doubt& doubt);
   ConflictQuery MakeQuery(const Doubt& doubt) const;
@@ -167,6 +177,8 @@ private:
   /** The enlarged box of each block of own points, and the block of each own point. */
   std::vector<Box> Blocks;
   std::vector<Id> BlockOfPoint;
+  /** For each part the blocks whose boxes it was asked for. */
+  std::vector<std::vector<Id>> BlocksOfBoxes;
   std::unordered_set<std::int64_t> HaloNumbers;
 
   int Round = 0;

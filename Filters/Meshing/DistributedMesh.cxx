@@ -796,7 +796,8 @@ cdm::Status DistributedMesh::MakePart()
   {
     status = this->Processes.Exchange(boxes, wanted);
   }
-  std::vector<std::vector<cdm::NumberedPoint>> halo(count);
+  std::vector<std::vector<char>> isComplete(count);
+  std::vector<std::vector<cdm::NumberedPoint>> points(count);
   if (status.IsOk())
   {
     status = this->Do(
@@ -804,25 +805,34 @@ cdm::Status DistributedMesh::MakePart()
       {
         for (std::size_t part = 0; part < count; ++part)
         {
-          halo[part] = this->Part->GetPointsIn(wanted[part]);
+          cdm::HaloPoints halo = this->Part->GetPointsIn(wanted[part]);
+          isComplete[part] = std::move(halo.IsComplete);
+          points[part] = std::move(halo.Points);
         }
         return cdm::Status();
       });
   }
-  std::vector<std::vector<cdm::NumberedPoint>> received;
+  std::vector<std::vector<char>> completeThere;
+  std::vector<std::vector<cdm::NumberedPoint>> pointsThere;
   if (status.IsOk())
   {
-    status = this->Processes.Exchange(halo, received);
+    status = this->Processes.Exchange(isComplete, completeThere);
+  }
+  if (status.IsOk())
+  {
+    status = this->Processes.Exchange(points, pointsThere);
   }
   if (status.IsOk())
   {
     status = this->Do(
       [&]
       {
-        for (const std::vector<cdm::NumberedPoint>& points : received)
+        std::vector<cdm::HaloPoints> halo(count);
+        for (std::size_t part = 0; part < count; ++part)
         {
-          this->Part->AddPoints(points);
+          halo[part] = { std::move(completeThere[part]), std::move(pointsThere[part]) };
         }
+        this->Part->TakeHalo(halo);
         return cdm::Status();
       });
   }

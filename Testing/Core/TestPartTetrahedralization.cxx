@@ -119,17 +119,19 @@ Whole MakeParts(const std::vector<Vec3>& points, const std::vector<int>& partOf,
     parts.emplace_back(own[r], static_cast<int>(r), bounds, cells[r]);
   }
   std::vector<std::vector<std::vector<Box>>> boxes;
-  for (const PartTetrahedralization& part : parts)
+  for (PartTetrahedralization& part : parts)
   {
     boxes.push_back(part.GetHaloBoxes());
   }
   for (std::size_t r = 0; r < count; ++r)
   {
     parts[r].AddPoints(simplex);
+    std::vector<HaloPoints> halo;
     for (std::size_t s = 0; s < count; ++s)
     {
-      parts[r].AddPoints(parts[s].GetPointsIn(boxes[r][s]));
+      halo.push_back(parts[s].GetPointsIn(boxes[r][s]));
     }
+    parts[r].TakeHalo(halo);
   }
   bool isFinished = false;
   traffic = {};
