@@ -32,8 +32,9 @@
 
 namespace
 {
-/** Points that the cuts of space are found with. */
+/** Points that the cuts of space are found with, at least and for each process. */
 constexpr std::int64_t SampleSize = 20000;
+constexpr std::int64_t SampleSizeOfProcess = 1000;
 /** Triangles that a message names. */
 constexpr std::size_t NamedTriangles = 10;
 
@@ -226,6 +227,7 @@ cdm::Status DistributedMesh::NumberPoints(vtkPointSet* input, int port)
   std::vector<cdm::NumberedPoint>& points = this->Pieces[port].Points;
   vtkDataArray* ids = points.empty() ? nullptr : input->GetPointData()->GetGlobalIds();
   const bool hasIds = this->Processes.Sum(points.empty() || ids ? 0 : 1) == 0;
+  this->HasGlobalIds = this->HasGlobalIds || hasIds;
   std::int64_t highest = -1;
   for (const cdm::NumberedPoint& point : this->Pieces[0].Points)
   {
@@ -644,7 +646,9 @@ cdm::Status DistributedMesh::Distribute()
   const std::size_t count = static_cast<std::size_t>(this->Processes.GetSize());
   const std::int64_t own =
     static_cast<std::int64_t>(this->Pieces[0].Points.size() + this->Pieces[1].Points.size());
-  const std::int64_t step = std::max<std::int64_t>(1, this->Processes.Sum(own) / SampleSize);
+  const std::int64_t size =
+    std::max(SampleSize, SampleSizeOfProcess * static_cast<std::int64_t>(count));
+  const std::int64_t step = std::max<std::int64_t>(1, this->Processes.Sum(own) / size);
   std::vector<cdm::Vec3> sample;
   std::int64_t next = 0;
   for (const Piece& piece : this->Pieces)
@@ -1085,9 +1089,9 @@ DistributedMesh::Cell DistributedMesh::MakeCell(
 
 //--------------------------------------------------------------------------------------------------
 /** By the numbers of their points: so the order does not depend on how they were found. */
-void DistributedMesh::SortCells(std::size_t begin)
+void DistributedMesh::SortCells(std::ptrdiff_t begin, std::ptrdiff_t end)
 {
-  std::sort(this->Cells.begin() + static_cast<std::ptrdiff_t>(begin), this->Cells.end(),
+  std::sort(this->Cells.begin() + begin, this->Cells.begin() + end,
     [this](const Cell& a, const Cell& b)
     {
       return std::lexicographical_compare(a.Ids.begin(), a.Ids.end(), b.Ids.begin(), b.Ids.end(),
@@ -1108,6 +1112,7 @@ bool DistributedMesh::OwnsLowest(const Ids& ids) const
 void DistributedMesh::CollectOwn()
 {
   std::vector<char> isUsed(static_cast<std::size_t>(this->NumberOfOwnPoints), 0);
+  std::vector<cdm::Id> starts(static_cast<std::size_t>(this->NumberOfOwnPoints) + 1, 0);
   for (std::size_t t = 0; t < this->Mesh.Tetrahedra.size(); ++t)
   {
     const cdm::TetrahedronIds& ids = this->Mesh.Tetrahedra[t];
@@ -1125,9 +1130,23 @@ void DistributedMesh::CollectOwn()
     if (this->OwnsLowest(ids))
     {
       this->Cells.push_back(this->MakeCell(ids, this->Mesh.Regions[t]));
+      ++starts[this->Cells.back().Ids[0] + 1];
     }
   }
-  this->SortCells(0);
+  // Own points are in the order of their numbers: so are the cells after this, but for those of one
+  // point.
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  std::vector<Cell> sorted(this->Cells.size());
+  std::vector<cdm::Id> next(starts);
+  for (const Cell& cell : this->Cells)
+  {
+    sorted[next[cell.Ids[0]]++] = cell;
+  }
+  this->Cells.swap(sorted);
+  for (cdm::Id i = 0; i < this->NumberOfOwnPoints; ++i)
+  {
+    this->SortCells(starts[i], starts[i + 1]);
+  }
   this->NumberOfOwnCells = this->Cells.size();
   for (cdm::Id i = 0; i < this->NumberOfOwnPoints; ++i)
   {
@@ -1281,7 +1300,8 @@ cdm::Status DistributedMesh::AddGhosts()
   }
   if (status.IsOk())
   {
-    this->SortCells(this->NumberOfOwnCells);
+    this->SortCells(static_cast<std::ptrdiff_t>(this->NumberOfOwnCells),
+      static_cast<std::ptrdiff_t>(this->Cells.size()));
   }
   return status;
 }
@@ -1421,7 +1441,10 @@ cdm::Status DistributedMesh::Run(vtkPointSet* input, vtkPointSet* meshPoints)
       status = step();
     }
   };
-  next([&] { return this->CheckNumbers(); });
+  if (this->HasGlobalIds)
+  {
+    next([&] { return this->CheckNumbers(); });
+  }
   next([&] { return this->ChooseArrays(input, meshPoints); });
   next([&] { return this->GatherSurface(surface); });
   if (this->HasSurface)
@@ -1470,10 +1493,21 @@ cdm::Status DistributedMesh::Run(vtkPointSet* input, vtkPointSet* meshPoints)
 std::vector<cdm::Id> DistributedMesh::CompressPoints(
   const std::vector<cdm::Id>& places, vtkPointSet* output) const
 {
-  std::vector<cdm::Id> used(places);
+  std::vector<char> isUsed(this->Points.size(), 0);
+  for (cdm::Id place : places)
+  {
+    isUsed[place] = 1;
+  }
+  std::vector<cdm::Id> used;
+  for (std::size_t i = 0; i < isUsed.size(); ++i)
+  {
+    if (isUsed[i])
+    {
+      used.push_back(static_cast<cdm::Id>(i));
+    }
+  }
   std::sort(used.begin(), used.end(),
     [this](cdm::Id a, cdm::Id b) { return this->Points[a].Number < this->Points[b].Number; });
-  used.erase(std::unique(used.begin(), used.end()), used.end());
   std::vector<cdm::Id> newPlaces(this->Points.size(), cdm::NoId);
   std::vector<cdm::Vec3> positions;
   std::vector<std::int64_t> numbers;

@@ -21,6 +21,7 @@
 #include <vtkSmartPointer.h>
 #include <vtkType.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -91,7 +92,7 @@ private:
   template <typename Work>
   cdm::Status Do(const Work& work);
   Cell MakeCell(const cdm::TetrahedronIds& ids, cdm::Id region) const;
-  void SortCells(std::size_t begin);
+  void SortCells(std::ptrdiff_t begin, std::ptrdiff_t end);
   template <typename Ids>
   bool OwnsLowest(const Ids& ids) const;
   std::vector<cdm::Id> CompressPoints(
@@ -136,6 +137,7 @@ private:
   /** Without points of its own. */
   cdm::TriangleMesh Boundary;
   bool HasPointData = false;
+  bool HasGlobalIds = false;
 
   int NumberOfRounds = 0;
   vtkIdType NumberOfHaloPoints = 0;
