@@ -86,7 +86,7 @@ cdm::Status CollectLeaves(
 //--------------------------------------------------------------------------------------------------
 cdm::Status BlockDistribution::Run(ProcessGroup& processes, vtkDataObjectTree* input)
 {
-  cdm::Status status = processes.Agree(vtkCoreBridge::Guard(
+  cdm::Status status = processes.Do(
     [&]
     {
       cdm::Status step;
@@ -122,7 +122,7 @@ cdm::Status BlockDistribution::Run(ProcessGroup& processes, vtkDataObjectTree* i
         }
       }
       return step;
-    }));
+    });
   if (status.IsOk())
   {
     status = this->Assign(processes);
@@ -176,7 +176,7 @@ cdm::Status BlockDistribution::Send(ProcessGroup& processes)
   const std::size_t count = static_cast<std::size_t>(processes.GetSize());
   // A message holds for each of its blocks the index, the length, and the polygons.
   std::vector<ProcessGroup::Bytes> messages(count);
-  cdm::Status status = processes.Agree(vtkCoreBridge::Guard(
+  cdm::Status status = processes.Do(
     [&]
     {
       for (const Block& piece : this->Pieces)
@@ -193,7 +193,7 @@ cdm::Status BlockDistribution::Send(ProcessGroup& processes)
         }
       }
       return cdm::Status();
-    }));
+    });
   std::vector<ProcessGroup::Bytes> received;
   if (status.IsOk())
   {
@@ -203,7 +203,7 @@ cdm::Status BlockDistribution::Send(ProcessGroup& processes)
   {
     return status;
   }
-  return processes.Agree(vtkCoreBridge::Guard(
+  return processes.Do(
     [&]
     {
       std::vector<std::vector<vtkSmartPointer<vtkPolyData>>> pieces(this->Pieces.size());
@@ -238,7 +238,7 @@ cdm::Status BlockDistribution::Send(ProcessGroup& processes)
         }
       }
       return cdm::Status();
-    }));
+    });
 }
 
 //--------------------------------------------------------------------------------------------------

@@ -3,16 +3,11 @@
 
 #include "vtkCoreBridge.h"
 
-#include "Core/DuplicateTriangles.h"
-#include "Core/FacetPolygons.h"
 #include "Core/MeshChecks.h"
 #include "Core/PartRegions.h"
-#include "Core/Predicates.h"
-#include "Core/RegionLocator.h"
 
 #include <vtkCellData.h>
 #include <vtkDataSetAttributes.h>
-#include <vtkDataSetAttributesFieldList.h>
 #include <vtkIdTypeArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -24,7 +19,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <numeric>
 #include <set>
 #include <string>
@@ -32,11 +26,6 @@
 
 namespace
 {
-/** Points that the cuts of space are found with, at least and for each process. */
-constexpr std::int64_t SampleSize = 20000;
-constexpr std::int64_t SampleSizeOfProcess = 1000;
-/** Triangles that a message names. */
-constexpr std::size_t NamedTriangles = 10;
 
 using Numbers = std::array<std::int64_t, 4>;
 
@@ -52,122 +41,6 @@ struct GhostTetrahedron
   std::array<cdm::NumberedPoint, 4> Points;
   std::int64_t Region;
 };
-
-struct SurfaceTriangle
-{
-  /** Places among the points that its process sent. */
-  cdm::TriangleIds Points;
-  cdm::RegionPair Labels;
-  std::int64_t Cell;
-};
-
-bool IsLessByNumber(const cdm::NumberedPoint& p, const cdm::NumberedPoint& q)
-{
-  return p.Number < q.Number;
-}
-
-std::string GetSignature(vtkAbstractArray* array)
-{
-  return std::to_string(array->GetDataType()) + ' ' +
-    std::to_string(array->GetNumberOfComponents()) + ' ' +
-    (array->GetName() ? array->GetName() : "");
-}
-
-/** Arrays other than ids and marks of ghosts, which the output has of its own. */
-std::set<std::string> GetSignatures(vtkDataSetAttributes* data)
-{
-  std::set<std::string> signatures;
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    vtkAbstractArray* array = data->GetAbstractArray(i);
-    if (array != data->GetGlobalIds() && array->GetName() &&
-      std::string(array->GetName()) != vtkDataSetAttributes::GhostArrayName())
-    {
-      signatures.insert(GetSignature(array));
-    }
-  }
-  return signatures;
-}
-
-/** Those that all processes have which have anything; hasAny: this one has. */
-std::set<std::string> Intersect(
-  const ProcessGroup& processes, const std::set<std::string>& own, bool hasAny)
-{
-  std::string text = hasAny ? "+" : "";
-  for (const std::string& signature : own)
-  {
-    text += signature + '\n';
-  }
-  std::set<std::string> common;
-  bool isFirst = true;
-  for (const ProcessGroup::Bytes& bytes :
-    processes.Gather(ProcessGroup::Bytes(text.begin(), text.end())))
-  {
-    if (bytes.empty())
-    {
-      continue;
-    }
-    std::set<std::string> there;
-    for (auto begin = bytes.begin() + 1; begin != bytes.end();)
-    {
-      const auto end = std::find(begin, bytes.end(), '\n');
-      there.emplace(begin, end);
-      begin = end + 1;
-    }
-    std::set<std::string> both;
-    std::set_intersection(
-      common.begin(), common.end(), there.begin(), there.end(), std::inserter(both, both.begin()));
-    common = isFirst ? there : both;
-    isFirst = false;
-  }
-  return common;
-}
-
-void PassArrays(
-  vtkDataSetAttributes* from, const std::set<std::string>& signatures, vtkDataSetAttributes* to)
-{
-  for (int i = 0; i < from->GetNumberOfArrays(); ++i)
-  {
-    if (signatures.count(GetSignature(from->GetAbstractArray(i))) != 0)
-    {
-      to->AddArray(from->GetAbstractArray(i));
-    }
-  }
-}
-
-vtkSmartPointer<vtkTable> SelectRows(vtkDataSetAttributes* from, const std::vector<vtkIdType>& rows)
-{
-  auto table = vtkSmartPointer<vtkTable>::New();
-  vtkCoreBridge::CopyTuples(from, rows, table->GetRowData());
-  return table;
-}
-
-/** Rows of several tables, each given by its table and its row there. */
-void MergeRows(const std::vector<vtkSmartPointer<vtkTable>>& tables,
-  const std::vector<std::pair<std::size_t, vtkIdType>>& rows, vtkDataSetAttributes* to)
-{
-  vtkDataSetAttributes::FieldList fields;
-  std::vector<int> places(tables.size(), -1);
-  int count = 0;
-  for (std::size_t i = 0; i < tables.size(); ++i)
-  {
-    if (tables[i] && tables[i]->GetNumberOfRows() > 0)
-    {
-      fields.IntersectFieldList(tables[i]->GetRowData());
-      places[i] = count++;
-    }
-  }
-  if (count == 0)
-  {
-    return;
-  }
-  fields.CopyAllocate(to, vtkDataSetAttributes::COPYTUPLE, static_cast<vtkIdType>(rows.size()), 0);
-  for (std::size_t i = 0; i < rows.size(); ++i)
-  {
-    const auto& [table, row] = rows[i];
-    fields.CopyData(places[table], tables[table]->GetRowData(), row, to, static_cast<vtkIdType>(i));
-  }
-}
 
 vtkSmartPointer<vtkIdTypeArray> MakeGlobalIds(const std::vector<std::int64_t>& numbers)
 {
@@ -195,551 +68,8 @@ vtkSmartPointer<vtkUnsignedCharArray> MakeGhostArray(std::size_t count)
 DistributedMesh::DistributedMesh(ProcessGroup& processes, const cdm::ExecutionContext& context,
   int numberOfThreads, int numberOfGhostLevels)
   : Processes(processes), Context(context), NumberOfThreads(numberOfThreads),
-    NumberOfGhostLevels(numberOfGhostLevels)
+    NumberOfGhostLevels(numberOfGhostLevels), Input(processes), Surface(processes)
 {
-}
-
-//--------------------------------------------------------------------------------------------------
-/** Work of this process alone; all agree on how it ended. */
-template <typename Work>
-cdm::Status DistributedMesh::Do(const Work& work)
-{
-  return this->Processes.Agree(vtkCoreBridge::Guard(work));
-}
-
-//--------------------------------------------------------------------------------------------------
-cdm::Status DistributedMesh::ReadPoints(vtkPointSet* input, const char* name, int port)
-{
-  std::vector<cdm::Vec3> positions;
-  const cdm::Status status =
-    input ? vtkCoreBridge::ToPoints(input, name, positions) : cdm::Status();
-  for (const cdm::Vec3& position : positions)
-  {
-    this->Pieces[port].Points.push_back({ position, 0 });
-  }
-  return status;
-}
-
-//--------------------------------------------------------------------------------------------------
-/** By their global ids if all of the input's points have them, otherwise one process after another. */
-cdm::Status DistributedMesh::NumberPoints(vtkPointSet* input, int port)
-{
-  std::vector<cdm::NumberedPoint>& points = this->Pieces[port].Points;
-  vtkDataArray* ids = points.empty() ? nullptr : input->GetPointData()->GetGlobalIds();
-  const bool hasIds = this->Processes.Sum(points.empty() || ids ? 0 : 1) == 0;
-  this->HasGlobalIds = this->HasGlobalIds || hasIds;
-  std::int64_t highest = -1;
-  for (const cdm::NumberedPoint& point : this->Pieces[0].Points)
-  {
-    highest = std::max(highest, point.Number);
-  }
-  std::int64_t next = port == 0 ? 0 : this->Processes.Maximum(highest) + 1;
-  if (port == 1)
-  {
-    this->FirstMeshPoint = next;
-  }
-  const std::vector<std::int64_t> counts = this->Processes.GatherAll(
-    std::vector<std::int64_t>{ static_cast<std::int64_t>(points.size()) });
-  if (!hasIds)
-  {
-    next = std::accumulate(counts.begin(), counts.begin() + this->Processes.GetRank(), next);
-  }
-  bool isNegative = false;
-  vtkIdTypeArray* exact = vtkIdTypeArray::SafeDownCast(ids);
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    const vtkIdType place = static_cast<vtkIdType>(i);
-    const std::int64_t id = !hasIds ? place
-      : exact                       ? exact->GetValue(place)
-                                    : static_cast<std::int64_t>(ids->GetTuple1(place));
-    isNegative = isNegative || id < 0;
-    points[i].Number = next + id;
-  }
-  return isNegative ? cdm::Status::InvalidInput(
-                        "Global point ids of the input are negative. Correct or remove them.")
-                    : cdm::Status();
-}
-
-//--------------------------------------------------------------------------------------------------
-/** Global ids of the input must not be those of two points. */
-cdm::Status DistributedMesh::CheckNumbers()
-{
-  std::vector<std::vector<cdm::NumberedPoint>> messages(
-    static_cast<std::size_t>(this->Processes.GetSize()));
-  for (const Piece& piece : this->Pieces)
-  {
-    for (const cdm::NumberedPoint& point : piece.Points)
-    {
-      messages[point.Number % this->Processes.GetSize()].push_back(point);
-    }
-  }
-  std::vector<std::vector<cdm::NumberedPoint>> received;
-  const cdm::Status status = this->Processes.Exchange(messages, received);
-  if (!status.IsOk())
-  {
-    return status;
-  }
-  return this->Do(
-    [&]
-    {
-      std::vector<cdm::NumberedPoint> points;
-      for (const auto& message : received)
-      {
-        points.insert(points.end(), message.begin(), message.end());
-      }
-      std::sort(points.begin(), points.end(), IsLessByNumber);
-      const auto wrong = std::adjacent_find(points.begin(), points.end(),
-        [](const cdm::NumberedPoint& p, const cdm::NumberedPoint& q)
-        { return p.Number == q.Number && p.Position != q.Position; });
-      return wrong == points.end()
-        ? cdm::Status()
-        : cdm::Status::InvalidInput("Two points of the input at different places have the global "
-                                    "id " +
-            std::to_string(wrong->Number) + ". Correct or remove the global ids.");
-    });
-}
-
-//--------------------------------------------------------------------------------------------------
-cdm::Status DistributedMesh::ChooseArrays(vtkPointSet* input, vtkPointSet* meshPoints)
-{
-  std::set<std::string> common;
-  bool isFirst = true;
-  vtkPointSet* const inputs[2] = { input, meshPoints };
-  for (vtkPointSet* points : inputs)
-  {
-    const bool hasPoints = points && points->GetNumberOfPoints() > 0;
-    const std::set<std::string> here = Intersect(this->Processes,
-      hasPoints ? GetSignatures(points->GetPointData()) : std::set<std::string>(), hasPoints);
-    if (this->Processes.Sum(hasPoints ? 1 : 0) == 0)
-    {
-      continue;
-    }
-    std::set<std::string> both;
-    std::set_intersection(
-      common.begin(), common.end(), here.begin(), here.end(), std::inserter(both, both.begin()));
-    common = isFirst ? here : both;
-    isFirst = false;
-  }
-  this->HasPointData = !common.empty();
-  for (int port = 0; port < 2; ++port)
-  {
-    this->Pieces[port].Data = vtkSmartPointer<vtkDataSetAttributes>::New();
-    if (inputs[port])
-    {
-      PassArrays(inputs[port]->GetPointData(), common, this->Pieces[port].Data);
-    }
-  }
-  return {};
-}
-
-//--------------------------------------------------------------------------------------------------
-/** The triangles of this process, with places among its points. Ghosts belong to another one. */
-cdm::Status DistributedMesh::ReadSurface(vtkPolyData* input)
-{
-  if (!input || input->GetNumberOfPolys() + input->GetNumberOfStrips() == 0)
-  {
-    return {};
-  }
-  cdm::Status status = vtkCoreBridge::ToTriangleMesh(input, this->Surface);
-  const vtkIdType first = vtkCoreBridge::GetFirstPolygon(input);
-  vtkCoreBridge::OffsetCells(status, first);
-  vtkUnsignedCharArray* ghosts = input->GetCellGhostArray();
-  std::size_t kept = 0;
-  for (std::size_t t = 0; t < this->Surface.Triangles.size() && status.IsOk(); ++t)
-  {
-    const vtkIdType cell = first + static_cast<vtkIdType>(t);
-    if (ghosts && (ghosts->GetValue(cell) & vtkDataSetAttributes::DUPLICATECELL) != 0)
-    {
-      continue;
-    }
-    this->Surface.Triangles[kept] = this->Surface.Triangles[t];
-    if (!this->Surface.Labels.empty())
-    {
-      this->Surface.Labels[kept] = this->Surface.Labels[t];
-    }
-    ++kept;
-    this->SurfaceCells.push_back(cell);
-  }
-  this->Surface.Triangles.resize(kept);
-  this->Surface.Labels.resize(this->Surface.Labels.empty() ? 0 : kept);
-  return status;
-}
-
-//--------------------------------------------------------------------------------------------------
-/** All of the surface on each process, as it is small beside the tetrahedra. */
-cdm::Status DistributedMesh::GatherSurface(vtkPolyData* input)
-{
-  const bool hasTriangles = !this->Surface.Triangles.empty();
-  const bool hasLabels = !this->Surface.Labels.empty();
-  const std::int64_t withLabels = this->Processes.Sum(hasTriangles && hasLabels ? 1 : 0);
-  const std::int64_t withoutLabels = this->Processes.Sum(hasTriangles && !hasLabels ? 1 : 0);
-  this->HasSurface = withLabels + withoutLabels > 0;
-  if (!this->HasSurface)
-  {
-    return {};
-  }
-  if (withLabels > 0 && withoutLabels > 0)
-  {
-    return cdm::Status::InvalidInput(
-      "Only some processes have the cell array BoundaryLabels on their surface.");
-  }
-  std::vector<SurfaceTriangle> own;
-  for (std::size_t t = 0; t < this->Surface.Triangles.size(); ++t)
-  {
-    own.push_back({ this->Surface.Triangles[t],
-      hasLabels ? this->Surface.Labels[t] : cdm::RegionPair(), this->SurfaceCells[t] });
-  }
-  const std::vector<ProcessGroup::Bytes> triangles =
-    this->Processes.Gather(ProcessGroup::Pack(own));
-  const std::vector<ProcessGroup::Bytes> points =
-    this->Processes.Gather(ProcessGroup::Pack(this->Pieces[0].Points));
-  const std::set<std::string> arrays = Intersect(this->Processes,
-    hasTriangles ? GetSignatures(input->GetCellData()) : std::set<std::string>(), hasTriangles);
-  std::vector<ProcessGroup::Bytes> tables;
-  if (!arrays.empty())
-  {
-    vtkNew<vtkDataSetAttributes> data;
-    if (hasTriangles)
-    {
-      PassArrays(input->GetCellData(), arrays, data);
-    }
-    tables =
-      this->Processes.Gather(hasTriangles ? ProcessGroup::Pack(SelectRows(data, this->SurfaceCells))
-                                          : ProcessGroup::Bytes());
-  }
-
-  // Points at the same place are one, which has their lowest number.
-  struct Entry
-  {
-    cdm::NumberedPoint Point;
-    std::size_t Place;
-  };
-  std::vector<Entry> entries;
-  std::vector<std::size_t> starts;
-  for (const ProcessGroup::Bytes& bytes : points)
-  {
-    starts.push_back(entries.size());
-    for (const cdm::NumberedPoint& point : ProcessGroup::Unpack<cdm::NumberedPoint>(bytes))
-    {
-      entries.push_back({ point, entries.size() });
-    }
-  }
-  std::vector<char> isUsed(entries.size(), 0);
-  std::vector<std::vector<SurfaceTriangle>> pieces;
-  for (std::size_t rank = 0; rank < triangles.size(); ++rank)
-  {
-    pieces.push_back(ProcessGroup::Unpack<SurfaceTriangle>(triangles[rank]));
-    for (const SurfaceTriangle& triangle : pieces.back())
-    {
-      for (cdm::Id point : triangle.Points)
-      {
-        isUsed[starts[rank] + point] = 1;
-      }
-    }
-  }
-  std::sort(entries.begin(), entries.end(),
-    [](const Entry& p, const Entry& q)
-    {
-      return p.Point.Position != q.Point.Position ? p.Point.Position < q.Point.Position
-                                                  : p.Point.Number < q.Point.Number;
-    });
-  std::vector<std::pair<cdm::NumberedPoint, std::vector<std::size_t>>> used;
-  for (auto begin = entries.begin(), end = begin; begin != entries.end(); begin = end)
-  {
-    std::vector<std::size_t> places;
-    for (; end != entries.end() && end->Point.Position == begin->Point.Position; ++end)
-    {
-      if (isUsed[end->Place])
-      {
-        places.push_back(end->Place);
-      }
-    }
-    if (!places.empty())
-    {
-      used.emplace_back(begin->Point, std::move(places));
-    }
-  }
-  std::sort(used.begin(), used.end(),
-    [](const auto& p, const auto& q) { return IsLessByNumber(p.first, q.first); });
-  std::vector<cdm::Id> ids(entries.size(), cdm::NoId);
-  this->Surface = cdm::TriangleMesh();
-  for (const auto& [point, places] : used)
-  {
-    for (std::size_t place : places)
-    {
-      ids[place] = static_cast<cdm::Id>(this->Surface.Points.size());
-    }
-    this->Surface.Points.push_back(point.Position);
-  }
-  std::vector<Row> rows;
-  for (std::size_t rank = 0; rank < pieces.size(); ++rank)
-  {
-    for (std::size_t t = 0; t < pieces[rank].size(); ++t)
-    {
-      cdm::TriangleIds triangle = pieces[rank][t].Points;
-      for (cdm::Id& point : triangle)
-      {
-        point = ids[starts[rank] + point];
-      }
-      this->Surface.Triangles.push_back(triangle);
-      if (withLabels > 0)
-      {
-        this->Surface.Labels.push_back(pieces[rank][t].Labels);
-      }
-      this->SurfaceSources.emplace_back(static_cast<int>(rank), pieces[rank][t].Cell);
-      rows.emplace_back(rank, static_cast<vtkIdType>(t));
-    }
-  }
-  const cdm::Status status = this->RemoveCopiedTriangles(rows);
-  this->SurfaceCellData = vtkSmartPointer<vtkTable>::New();
-  std::vector<vtkSmartPointer<vtkTable>> parts;
-  for (const ProcessGroup::Bytes& bytes : tables)
-  {
-    parts.emplace_back(
-      bytes.empty() ? nullptr : vtkTable::SafeDownCast(ProcessGroup::UnpackData(bytes)));
-  }
-  MergeRows(parts, rows, this->SurfaceCellData->GetRowData());
-  return status;
-}
-
-//--------------------------------------------------------------------------------------------------
-/** Where two processes have the same triangle, that of the first one stays. */
-cdm::Status DistributedMesh::RemoveCopiedTriangles(std::vector<Row>& rows)
-{
-  std::vector<char> isCopy(this->Surface.Triangles.size(), 0);
-  cdm::Status status;
-  for (const cdm::DuplicateTriangle& copy : cdm::FindDuplicateTriangles(this->Surface.Triangles))
-  {
-    isCopy[copy.Triangle] = 1;
-    if (this->SurfaceSources[copy.Triangle].first == this->SurfaceSources[copy.Original].first)
-    {
-      status = cdm::Status::InvalidInput("Two triangles of the surface have the same points; clean "
-                                         "the surface with vtkBoundaryTriangulator first.",
-        { copy.Triangle });
-    }
-  }
-  this->NameTriangles(status);
-  std::size_t kept = 0;
-  for (std::size_t t = 0; t < isCopy.size(); ++t)
-  {
-    if (!isCopy[t])
-    {
-      this->Surface.Triangles[kept] = this->Surface.Triangles[t];
-      this->SurfaceSources[kept] = this->SurfaceSources[t];
-      if (!this->Surface.Labels.empty())
-      {
-        this->Surface.Labels[kept] = this->Surface.Labels[t];
-      }
-      rows[kept++] = rows[t];
-    }
-  }
-  this->Surface.Triangles.resize(kept);
-  this->Surface.Labels.resize(this->Surface.Labels.empty() ? 0 : kept);
-  this->SurfaceSources.resize(kept);
-  rows.resize(kept);
-  return status;
-}
-
-//--------------------------------------------------------------------------------------------------
-/** Triangles of a status as cells of the input, or in the message with the process they are of. */
-void DistributedMesh::NameTriangles(cdm::Status& status) const
-{
-  if (status.Cells.empty())
-  {
-    return;
-  }
-  if (this->Processes.IsAlone())
-  {
-    for (cdm::Id& cell : status.Cells)
-    {
-      cell = static_cast<cdm::Id>(this->SurfaceSources[cell].second);
-    }
-    return;
-  }
-  status.Message += " Cells: ";
-  for (std::size_t i = 0; i < std::min(status.Cells.size(), NamedTriangles); ++i)
-  {
-    const auto& [rank, cell] = this->SurfaceSources[status.Cells[i]];
-    status.Message +=
-      (i > 0 ? ", " : "") + std::to_string(cell) + " of process " + std::to_string(rank);
-  }
-  status.Message += (status.Cells.size() > NamedTriangles ? ", ... (" : " (") +
-    std::to_string(status.Cells.size()) + " in all).";
-  status.Cells.clear();
-}
-
-//--------------------------------------------------------------------------------------------------
-/** The regions that the surface encloses, and the diagonals that a mesh has in its flat facets. */
-cdm::Status DistributedMesh::CheckSurface()
-{
-  const std::vector<cdm::Vec3>& points = this->Surface.Points;
-  std::vector<cdm::TriangleIds>& triangles = this->Surface.Triangles;
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-  {
-    if (cdm::AreCollinear(
-          points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]))
-    {
-      return cdm::Status::InvalidInput("A triangle of the surface has no area; clean the surface "
-                                       "with vtkBoundaryTriangulator first.",
-        { static_cast<cdm::Id>(t) });
-    }
-  }
-  cdm::RegionLocator locator(this->Surface);
-  cdm::Status status = locator.Build();
-  for (std::size_t t = 0; t < triangles.size() && status.IsOk(); ++t)
-  {
-    cdm::RegionPair regions = locator.GetRegions(static_cast<cdm::Id>(t));
-    // Without labels the outer side of a component does not know what is around it.
-    if (this->Surface.Labels.empty())
-    {
-      regions.Front =
-        regions.Front == cdm::OutsideRegion ? cdm::PartRegions::Unknown : regions.Front;
-      regions.Back = regions.Back == cdm::OutsideRegion ? cdm::PartRegions::Unknown : regions.Back;
-    }
-    this->SideRegions.push_back(regions);
-  }
-  const cdm::FacetPolygons polygons(this->Surface);
-  std::vector<char> isDone(triangles.size(), 0);
-  std::vector<cdm::Id> polygon;
-  for (std::size_t t = 0; t < triangles.size() && status.IsOk(); ++t)
-  {
-    if (isDone[t])
-    {
-      continue;
-    }
-    const cdm::TriangleIds ids = triangles[t];
-    const auto isCocircular = [&](cdm::Id point)
-    {
-      return cdm::Orientation(points[ids[0]], points[ids[1]], points[ids[2]], points[point]) == 0 &&
-        cdm::InEquatorialSphere(points[ids[0]], points[ids[1]], points[ids[2]], points[point]) == 0;
-    };
-    const std::vector<cdm::Id> others =
-      polygons.Collect(static_cast<cdm::Id>(t), isCocircular, polygon);
-    if (others.empty())
-    {
-      continue;
-    }
-    const std::vector<cdm::TriangleIds> fan = cdm::MakePulledFan(points, ids, others);
-    if (fan.size() != polygon.size())
-    {
-      return cdm::Status::InvalidInput("Triangles of a flat facet overlap; check the surface with "
-                                       "vtkBoundaryTriangulator.",
-        polygon);
-    }
-    const cdm::RegionPair regions = this->SideRegions[t];
-    for (std::size_t i = 0; i < fan.size(); ++i)
-    {
-      triangles[polygon[i]] = fan[i];
-      this->SideRegions[polygon[i]] = regions;
-      isDone[polygon[i]] = 1;
-    }
-  }
-  // From here on the sides have regions, and labels are not looked at any more.
-  this->Surface.Labels.clear();
-  return status;
-}
-
-//--------------------------------------------------------------------------------------------------
-/** Cuts space, and sends each point with its data to the process in whose cell it lies. */
-cdm::Status DistributedMesh::Distribute()
-{
-  const std::size_t count = static_cast<std::size_t>(this->Processes.GetSize());
-  const std::int64_t own =
-    static_cast<std::int64_t>(this->Pieces[0].Points.size() + this->Pieces[1].Points.size());
-  const std::int64_t size =
-    std::max(SampleSize, SampleSizeOfProcess * static_cast<std::int64_t>(count));
-  const std::int64_t step = std::max<std::int64_t>(1, this->Processes.Sum(own) / size);
-  std::vector<cdm::Vec3> sample;
-  std::int64_t next = 0;
-  for (const Piece& piece : this->Pieces)
-  {
-    for (const cdm::NumberedPoint& point : piece.Points)
-    {
-      if (next++ % step == 0)
-      {
-        sample.push_back(point.Position);
-      }
-    }
-  }
-  this->Partition = std::make_unique<cdm::SpacePartition>(
-    this->Processes.GatherAll(sample), this->Processes.GetSize());
-
-  std::vector<cdm::NumberedPoint> all;
-  std::vector<std::int64_t> numbersByRow;
-  std::vector<Row> rows;
-  for (const Piece& piece : this->Pieces)
-  {
-    std::vector<std::vector<cdm::NumberedPoint>> messages(count);
-    std::vector<std::vector<vtkIdType>> rowsOfPart(count);
-    for (std::size_t i = 0; i < piece.Points.size(); ++i)
-    {
-      const std::size_t part = static_cast<std::size_t>(this->GetOwner(piece.Points[i].Position));
-      messages[part].push_back(piece.Points[i]);
-      rowsOfPart[part].push_back(static_cast<vtkIdType>(i));
-    }
-    std::vector<ProcessGroup::Bytes> tables(count);
-    cdm::Status status = this->Do(
-      [&]
-      {
-        for (std::size_t part = 0; part < count; ++part)
-        {
-          if (!rowsOfPart[part].empty() && piece.Data->GetNumberOfArrays() > 0)
-          {
-            tables[part] = ProcessGroup::Pack(SelectRows(piece.Data, rowsOfPart[part]));
-          }
-        }
-        return cdm::Status();
-      });
-    std::vector<std::vector<cdm::NumberedPoint>> points;
-    std::vector<ProcessGroup::Bytes> receivedTables;
-    if (status.IsOk())
-    {
-      status = this->Processes.Exchange(messages, points);
-    }
-    if (status.IsOk())
-    {
-      status = this->Processes.Exchange(std::move(tables), receivedTables);
-    }
-    if (!status.IsOk())
-    {
-      return status;
-    }
-    for (std::size_t part = 0; part < count; ++part)
-    {
-      for (std::size_t i = 0; i < points[part].size(); ++i)
-      {
-        all.push_back(points[part][i]);
-        rows.emplace_back(this->Tables.size(), static_cast<vtkIdType>(i));
-      }
-      const ProcessGroup::Bytes& bytes = receivedTables[part];
-      this->Tables.emplace_back(
-        bytes.empty() ? nullptr : vtkTable::SafeDownCast(ProcessGroup::UnpackData(bytes)));
-    }
-  }
-  this->OwnPoints = all;
-  cdm::RemoveCopies(this->OwnPoints);
-  std::vector<std::size_t> order(all.size());
-  std::iota(order.begin(), order.end(), std::size_t(0));
-  std::stable_sort(order.begin(), order.end(),
-    [&all](std::size_t a, std::size_t b) { return all[a].Number < all[b].Number; });
-  std::size_t place = 0;
-  for (const cdm::NumberedPoint& point : this->OwnPoints)
-  {
-    while (all[order[place]].Number != point.Number)
-    {
-      ++place;
-    }
-    this->Rows.push_back(rows[order[place]]);
-  }
-  // Copies on the surface are what its pieces share.
-  const std::int64_t first = this->HasSurface ? this->FirstMeshPoint : 0;
-  const auto countFrom = [first](const std::vector<cdm::NumberedPoint>& points)
-  {
-    return std::count_if(points.begin(), points.end(),
-      [first](const cdm::NumberedPoint& point) { return point.Number >= first; });
-  };
-  this->NumberOfUnusedMeshPoints = countFrom(all) - countFrom(this->OwnPoints);
-  return {};
 }
 
 //--------------------------------------------------------------------------------------------------
@@ -786,11 +116,11 @@ cdm::Status DistributedMesh::MakePart()
   const std::vector<cdm::Box> allBounds =
     this->Processes.GatherAll(std::vector<cdm::Box>{ bounds });
   std::vector<std::vector<cdm::Box>> boxes;
-  status = this->Do(
+  status = this->Processes.Do(
     [&]
     {
-      this->Part = std::make_unique<cdm::PartTetrahedralization>(std::move(this->OwnPoints),
-        this->Processes.GetRank(), allBounds, this->Partition->GetCell(this->Processes.GetRank()));
+      this->Part = std::make_unique<cdm::PartTetrahedralization>(
+        std::move(this->OwnPoints), this->Processes.GetRank(), allBounds, this->Input.GetCell());
       this->Part->AddPoints(simplex);
       boxes = this->Part->GetHaloBoxes();
       return cdm::Status();
@@ -804,7 +134,7 @@ cdm::Status DistributedMesh::MakePart()
   std::vector<std::vector<cdm::NumberedPoint>> points(count);
   if (status.IsOk())
   {
-    status = this->Do(
+    status = this->Processes.Do(
       [&]
       {
         for (std::size_t part = 0; part < count; ++part)
@@ -828,7 +158,7 @@ cdm::Status DistributedMesh::MakePart()
   }
   if (status.IsOk())
   {
-    status = this->Do(
+    status = this->Processes.Do(
       [&]
       {
         std::vector<cdm::HaloPoints> halo(count);
@@ -857,8 +187,8 @@ cdm::Status DistributedMesh::Tetrahedralize()
     begin = end;
     end += 0.5 * (0.85 - end);
     ++this->NumberOfRounds;
-    cdm::Status status =
-      this->Do([&] { return this->Part->Update(this->NumberOfThreads, part.Part(0.0, 0.9)); });
+    cdm::Status status = this->Processes.Do(
+      [&] { return this->Part->Update(this->NumberOfThreads, part.Part(0.0, 0.9)); });
     std::vector<std::vector<cdm::ConflictQuery>> queries;
     if (status.IsOk())
     {
@@ -868,7 +198,7 @@ cdm::Status DistributedMesh::Tetrahedralize()
     std::vector<std::vector<cdm::NumberedPoint>> points(count);
     if (status.IsOk())
     {
-      status = this->Do(
+      status = this->Processes.Do(
         [&]
         {
           cdm::Status step;
@@ -894,7 +224,7 @@ cdm::Status DistributedMesh::Tetrahedralize()
     }
     if (status.IsOk())
     {
-      status = this->Do(
+      status = this->Processes.Do(
         [&]
         {
           std::vector<cdm::ConflictAnswers> answers(count);
@@ -929,7 +259,7 @@ void DistributedMesh::FindSurfacePlaces()
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(),
     [this](cdm::Id a, cdm::Id b) { return this->Points[a].Position < this->Points[b].Position; });
-  for (const cdm::Vec3& position : this->Surface.Points)
+  for (const cdm::Vec3& position : this->Surface.GetMesh().Points)
   {
     const auto place = std::lower_bound(order.begin(), order.end(), position,
       [this](cdm::Id a, const cdm::Vec3& p) { return this->Points[a].Position < p; });
@@ -945,7 +275,7 @@ cdm::Status DistributedMesh::FindRegions()
   const std::size_t count = static_cast<std::size_t>(this->Processes.GetSize());
   std::vector<cdm::TriangleIds> triangles;
   std::vector<cdm::RegionPair> sides;
-  cdm::Status status = this->Do(
+  cdm::Status status = this->Processes.Do(
     [&]
     {
       for (const cdm::NumberedPoint& point : this->Points)
@@ -953,15 +283,15 @@ cdm::Status DistributedMesh::FindRegions()
         this->Mesh.Points.push_back(point.Position);
       }
       this->FindSurfacePlaces();
-      for (std::size_t t = 0; t < this->Surface.Triangles.size(); ++t)
+      for (std::size_t t = 0; t < this->Surface.GetMesh().Triangles.size(); ++t)
       {
-        cdm::TriangleIds ids = this->Surface.Triangles[t];
+        cdm::TriangleIds ids = this->Surface.GetMesh().Triangles[t];
         std::transform(ids.begin(), ids.end(), ids.begin(),
           [this](cdm::Id id) { return this->SurfacePlaces[id]; });
         if (std::find(ids.begin(), ids.end(), cdm::NoId) == ids.end())
         {
           triangles.push_back(ids);
-          sides.push_back(this->SideRegions[t]);
+          sides.push_back(this->Surface.GetSideRegions()[t]);
           this->PartTriangles.push_back(static_cast<cdm::Id>(t));
         }
       }
@@ -977,7 +307,7 @@ cdm::Status DistributedMesh::FindRegions()
     {
       cell = this->PartTriangles[cell];
     }
-    this->NameTriangles(failure);
+    this->Surface.NameTriangles(failure);
     return failure;
   };
   cdm::PartRegions regions(this->Mesh, this->NumberOfOwnPoints, triangles, sides);
@@ -992,7 +322,7 @@ cdm::Status DistributedMesh::FindRegions()
   };
   std::vector<std::pair<Numbers, cdm::Id>> shared;
   std::vector<cdm::Id> sharedIds;
-  status = this->Do(
+  status = this->Processes.Do(
     [&]
     {
       for (std::size_t t = 0; t < this->Mesh.Tetrahedra.size(); ++t)
@@ -1019,7 +349,7 @@ cdm::Status DistributedMesh::FindRegions()
       {
         if (id >= this->NumberOfOwnPoints)
         {
-          owners.insert(this->GetOwner(this->Points[id].Position));
+          owners.insert(this->Input.GetOwner(this->Points[id].Position));
         }
       }
       for (int owner : owners)
@@ -1031,7 +361,7 @@ cdm::Status DistributedMesh::FindRegions()
     status = this->Processes.Exchange(messages, received);
     if (status.IsOk())
     {
-      status = this->Do(
+      status = this->Processes.Do(
         [&]
         {
           cdm::Status step;
@@ -1059,7 +389,7 @@ cdm::Status DistributedMesh::FindRegions()
   }
   if (status.IsOk())
   {
-    status = this->Do([&] { return regions.Finish(this->Mesh.Regions); });
+    status = this->Processes.Do([&] { return regions.Finish(this->Mesh.Regions); });
   }
   for (std::size_t t = 0; t < triangles.size() && status.IsOk(); ++t)
   {
@@ -1150,7 +480,8 @@ void DistributedMesh::CollectOwn()
   this->NumberOfOwnCells = this->Cells.size();
   for (cdm::Id i = 0; i < this->NumberOfOwnPoints; ++i)
   {
-    this->NumberOfUnusedMeshPoints += !isUsed[i] && this->Points[i].Number >= this->FirstMeshPoint;
+    this->NumberOfUnusedMeshPoints +=
+      !isUsed[i] && this->Points[i].Number >= this->Input.GetFirstMeshPoint();
   }
 }
 
@@ -1164,7 +495,7 @@ cdm::Status DistributedMesh::AddGhosts()
   std::vector<cdm::Id> stars;
   std::unordered_map<std::int64_t, cdm::Id> places;
   std::vector<char> isTaken(this->Mesh.Tetrahedra.size(), 0);
-  cdm::Status status = this->Do(
+  cdm::Status status = this->Processes.Do(
     [&]
     {
       const auto isMeshed = [this](std::size_t t)
@@ -1224,7 +555,8 @@ cdm::Status DistributedMesh::AddGhosts()
         }
         if (id >= this->NumberOfOwnPoints)
         {
-          requests[this->GetOwner(this->Points[id].Position)].push_back(this->Points[id].Number);
+          requests[this->Input.GetOwner(this->Points[id].Position)].push_back(
+            this->Points[id].Number);
         }
       }
     }
@@ -1233,7 +565,7 @@ cdm::Status DistributedMesh::AddGhosts()
     std::vector<std::vector<GhostTetrahedron>> answers(count);
     if (status.IsOk())
     {
-      status = this->Do(
+      status = this->Processes.Do(
         [&]
         {
           for (std::size_t i = 0; i < count; ++i)
@@ -1264,7 +596,7 @@ cdm::Status DistributedMesh::AddGhosts()
     }
     if (status.IsOk())
     {
-      status = this->Do(
+      status = this->Processes.Do(
         [&]
         {
           for (const std::vector<GhostTetrahedron>& message : received)
@@ -1311,7 +643,7 @@ void DistributedMesh::CollectBoundary()
 {
   for (std::size_t i = 0; i < this->PartTriangles.size(); ++i)
   {
-    cdm::TriangleIds ids = this->Surface.Triangles[this->PartTriangles[i]];
+    cdm::TriangleIds ids = this->Surface.GetMesh().Triangles[this->PartTriangles[i]];
     std::transform(
       ids.begin(), ids.end(), ids.begin(), [this](cdm::Id id) { return this->SurfacePlaces[id]; });
     const cdm::RegionPair& labels = this->PartLabels[i];
@@ -1326,14 +658,14 @@ void DistributedMesh::CollectBoundary()
   { return this->Points[a].Number < this->Points[b].Number; };
   for (cdm::TriangleIds ids : this->Hull)
   {
-    if (!this->HasSurface && this->OwnsLowest(ids))
+    if (!this->Surface.Exists() && this->OwnsLowest(ids))
     {
       std::rotate(ids.begin(), std::min_element(ids.begin(), ids.end(), isLess), ids.end());
       this->Boundary.Triangles.push_back(ids);
       this->Boundary.Labels.push_back({ cdm::OutsideRegion, 0 });
     }
   }
-  if (!this->HasSurface)
+  if (!this->Surface.Exists())
   {
     std::sort(this->Boundary.Triangles.begin(), this->Boundary.Triangles.end(),
       [&isLess](const cdm::TriangleIds& s, const cdm::TriangleIds& t)
@@ -1342,14 +674,9 @@ void DistributedMesh::CollectBoundary()
 }
 
 //--------------------------------------------------------------------------------------------------
-/** Point data of the points of others that are in the outputs. */
-cdm::Status DistributedMesh::FetchPointData()
+/** Which points are in the outputs. */
+std::vector<char> DistributedMesh::FindUsed() const
 {
-  if (!this->HasPointData)
-  {
-    return {};
-  }
-  const std::size_t count = static_cast<std::size_t>(this->Processes.GetSize());
   std::vector<char> isUsed(this->Points.size(), 0);
   for (const Cell& cell : this->Cells)
   {
@@ -1365,75 +692,20 @@ cdm::Status DistributedMesh::FetchPointData()
       isUsed[id] = 1;
     }
   }
-  this->Rows.resize(this->Points.size());
-  std::vector<std::vector<std::int64_t>> requests(count);
-  for (std::size_t i = static_cast<std::size_t>(this->NumberOfOwnPoints); i < isUsed.size(); ++i)
-  {
-    if (isUsed[i])
-    {
-      std::vector<std::int64_t>& request = requests[this->GetOwner(this->Points[i].Position)];
-      this->Rows[i] = { static_cast<std::size_t>(this->GetOwner(this->Points[i].Position)) +
-          this->Tables.size(),
-        static_cast<vtkIdType>(request.size()) };
-      request.push_back(this->Points[i].Number);
-    }
-  }
-  std::vector<std::vector<std::int64_t>> asked;
-  cdm::Status status = this->Processes.Exchange(requests, asked);
-  std::vector<ProcessGroup::Bytes> answers(count);
-  if (status.IsOk())
-  {
-    status = this->Do(
-      [&]
-      {
-        for (std::size_t i = 0; i < count; ++i)
-        {
-          std::vector<Row> rows;
-          for (std::int64_t number : asked[i])
-          {
-            const auto place =
-              std::lower_bound(this->Points.begin(), this->Points.begin() + this->NumberOfOwnPoints,
-                cdm::NumberedPoint{ {}, number }, IsLessByNumber);
-            rows.push_back(this->Rows[place - this->Points.begin()]);
-          }
-          if (!rows.empty())
-          {
-            vtkNew<vtkTable> table;
-            MergeRows(this->Tables, rows, table->GetRowData());
-            answers[i] = ProcessGroup::Pack(table);
-          }
-        }
-        return cdm::Status();
-      });
-  }
-  std::vector<ProcessGroup::Bytes> received;
-  if (status.IsOk())
-  {
-    status = this->Processes.Exchange(std::move(answers), received);
-  }
-  for (const ProcessGroup::Bytes& bytes : received)
-  {
-    this->Tables.emplace_back(
-      bytes.empty() ? nullptr : vtkTable::SafeDownCast(ProcessGroup::UnpackData(bytes)));
-  }
-  return status;
+  return isUsed;
 }
 
 //--------------------------------------------------------------------------------------------------
 cdm::Status DistributedMesh::Run(vtkPointSet* input, vtkPointSet* meshPoints)
 {
   vtkPolyData* surface = vtkPolyData::SafeDownCast(input);
-  cdm::Status status = this->Do(
+  cdm::Status status = this->Processes.Do(
     [&]
     {
-      cdm::Status step = this->ReadPoints(input, "input", 0);
-      step = step.IsOk() ? this->ReadPoints(meshPoints, "mesh points", 1) : step;
-      return step.IsOk() ? this->ReadSurface(surface) : step;
+      cdm::Status step = this->Input.Read(input, "input", 0);
+      step = step.IsOk() ? this->Input.Read(meshPoints, "mesh points", 1) : step;
+      return step.IsOk() ? this->Surface.Read(surface) : step;
     });
-  for (int port = 0; port < 2 && status.IsOk(); ++port)
-  {
-    status = this->Processes.Agree(this->NumberPoints(port == 0 ? input : meshPoints, port));
-  }
   const auto next = [&status](const auto& step)
   {
     if (status.IsOk())
@@ -1441,37 +713,29 @@ cdm::Status DistributedMesh::Run(vtkPointSet* input, vtkPointSet* meshPoints)
       status = step();
     }
   };
-  if (this->HasGlobalIds)
+  next([&] { return this->Input.Number(input, meshPoints); });
+  next([&] { return this->Surface.Gather(surface, this->Input.GetPiece(0)); });
+  if (this->Surface.Exists())
   {
-    next([&] { return this->CheckNumbers(); });
+    next([&] { return this->Processes.Do([&] { return this->Surface.Check(); }); });
   }
-  next([&] { return this->ChooseArrays(input, meshPoints); });
-  next([&] { return this->GatherSurface(surface); });
-  if (this->HasSurface)
-  {
-    next(
-      [&]
-      {
-        return this->Do(
-          [&]
-          {
-            cdm::Status step = this->CheckSurface();
-            this->NameTriangles(step);
-            return step;
-          });
-      });
-  }
-  next([&] { return this->Distribute(); });
+  next(
+    [&]
+    {
+      // Copies on the surface are what its pieces share.
+      return this->Input.Distribute(this->Surface.Exists() ? this->Input.GetFirstMeshPoint() : 0,
+        this->OwnPoints, this->NumberOfUnusedMeshPoints);
+    });
   next([&] { return this->MakePart(); });
   next([&] { return this->Tetrahedralize(); });
-  if (this->HasSurface)
+  if (this->Surface.Exists())
   {
     next([&] { return this->FindRegions(); });
   }
   next(
     [&]
     {
-      return this->Do(
+      return this->Processes.Do(
         [&]
         {
           this->CollectOwn();
@@ -1483,7 +747,8 @@ cdm::Status DistributedMesh::Run(vtkPointSet* input, vtkPointSet* meshPoints)
   {
     next([&] { return this->AddGhosts(); });
   }
-  next([&] { return this->FetchPointData(); });
+  next(
+    [&] { return this->Input.FetchData(this->Points, this->NumberOfOwnPoints, this->FindUsed()); });
   this->NumberOfUnusedMeshPoints = this->Processes.Sum(this->NumberOfUnusedMeshPoints);
   return status;
 }
@@ -1511,7 +776,6 @@ std::vector<cdm::Id> DistributedMesh::CompressPoints(
   std::vector<cdm::Id> newPlaces(this->Points.size(), cdm::NoId);
   std::vector<cdm::Vec3> positions;
   std::vector<std::int64_t> numbers;
-  std::vector<Row> rows;
   auto ghosts = MakeGhostArray(used.size());
   for (cdm::Id place : used)
   {
@@ -1519,17 +783,13 @@ std::vector<cdm::Id> DistributedMesh::CompressPoints(
     newPlaces[place] = static_cast<cdm::Id>(i);
     positions.push_back(this->Points[place].Position);
     numbers.push_back(this->Points[place].Number);
-    if (this->HasPointData)
-    {
-      rows.push_back(this->Rows[place]);
-    }
     if (place >= this->NumberOfOwnPoints)
     {
       ghosts->SetValue(static_cast<vtkIdType>(i), vtkDataSetAttributes::DUPLICATEPOINT);
     }
   }
   output->SetPoints(vtkCoreBridge::FromPoints(positions));
-  MergeRows(this->Tables, rows, output->GetPointData());
+  this->Input.CopyData(used, output->GetPointData());
   output->GetPointData()->SetGlobalIds(MakeGlobalIds(numbers));
   if (!this->Processes.IsAlone())
   {
@@ -1589,11 +849,11 @@ void DistributedMesh::MakeBoundary(vtkPolyData* output) const
   vtkCoreBridge::FromTriangleMesh(boundary, output);
   output->SetPoints(points->GetPoints());
   output->GetPointData()->ShallowCopy(points->GetPointData());
-  if (this->HasSurface)
+  if (this->Surface.Exists())
   {
     const std::vector<vtkIdType> sources(
       this->Boundary.SourceCells.begin(), this->Boundary.SourceCells.end());
-    vtkCoreBridge::CopyTuples(this->SurfaceCellData->GetRowData(), sources, output->GetCellData(),
-      { vtkCoreBridge::BoundaryLabelsName });
+    vtkCoreBridge::CopyTuples(this->Surface.GetCellData()->GetRowData(), sources,
+      output->GetCellData(), { vtkCoreBridge::BoundaryLabelsName });
   }
 }

@@ -9,28 +9,25 @@
 #ifndef DistributedMesh_h
 #define DistributedMesh_h
 
+#include "DistributedPoints.h"
+#include "DistributedSurface.h"
 #include "ProcessGroup.h"
 
 #include "Core/ExecutionContext.h"
 #include "Core/PartTetrahedralization.h"
-#include "Core/SpacePartition.h"
 #include "Core/Status.h"
 #include "Core/TetMesh.h"
 #include "Core/TriangleMesh.h"
 
-#include <vtkSmartPointer.h>
 #include <vtkType.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <utility>
 #include <vector>
 
-class vtkDataSetAttributes;
 class vtkPointSet;
 class vtkPolyData;
-class vtkTable;
 class vtkUnstructuredGrid;
 
 class DistributedMesh
@@ -54,32 +51,13 @@ public:
   vtkIdType GetNumberOfUnusedMeshPoints() const { return this->NumberOfUnusedMeshPoints; }
 
 private:
-  /** The points of one of the two inputs, numbered. */
-  struct Piece
-  {
-    std::vector<cdm::NumberedPoint> Points;
-    /** The point arrays that all processes have in both inputs. */
-    vtkSmartPointer<vtkDataSetAttributes> Data;
-  };
   /** A tetrahedron of the output, its lowest numbered point first. */
   struct Cell
   {
     cdm::TetrahedronIds Ids;
     cdm::Id Region;
   };
-  /** Where the point data of a point are: the table and the row. */
-  using Row = std::pair<std::size_t, vtkIdType>;
 
-  cdm::Status ReadPoints(vtkPointSet* input, const char* name, int port);
-  cdm::Status NumberPoints(vtkPointSet* input, int port);
-  cdm::Status CheckNumbers();
-  cdm::Status ChooseArrays(vtkPointSet* input, vtkPointSet* meshPoints);
-  cdm::Status ReadSurface(vtkPolyData* input);
-  cdm::Status GatherSurface(vtkPolyData* input);
-  cdm::Status RemoveCopiedTriangles(std::vector<Row>& rows);
-  void NameTriangles(cdm::Status& status) const;
-  cdm::Status CheckSurface();
-  cdm::Status Distribute();
   cdm::Status MakePart();
   cdm::Status FindSimplex(std::vector<cdm::NumberedPoint>& simplex);
   cdm::Status Tetrahedralize();
@@ -88,37 +66,22 @@ private:
   void CollectOwn();
   cdm::Status AddGhosts();
   void CollectBoundary();
-  cdm::Status FetchPointData();
-  template <typename Work>
-  cdm::Status Do(const Work& work);
+  std::vector<char> FindUsed() const;
   Cell MakeCell(const cdm::TetrahedronIds& ids, cdm::Id region) const;
   void SortCells(std::ptrdiff_t begin, std::ptrdiff_t end);
   template <typename Ids>
   bool OwnsLowest(const Ids& ids) const;
   std::vector<cdm::Id> CompressPoints(
     const std::vector<cdm::Id>& places, vtkPointSet* output) const;
-  int GetOwner(const cdm::Vec3& position) const { return this->Partition->GetPart(position); }
 
   ProcessGroup& Processes;
   const cdm::ExecutionContext& Context;
   int NumberOfThreads;
   int NumberOfGhostLevels;
 
-  Piece Pieces[2];
-  bool HasSurface = false;
-  /** All of it, with points in the order of their numbers; the regions of its sides. */
-  cdm::TriangleMesh Surface;
-  std::vector<cdm::RegionPair> SideRegions;
-  /** The cells of this process that are triangles of the surface. */
-  std::vector<vtkIdType> SurfaceCells;
-  /** For each triangle of the surface its process and the cell there. */
-  std::vector<std::pair<int, std::int64_t>> SurfaceSources;
-  vtkSmartPointer<vtkTable> SurfaceCellData;
-
-  std::unique_ptr<cdm::SpacePartition> Partition;
+  DistributedPoints Input;
+  DistributedSurface Surface;
   std::vector<cdm::NumberedPoint> OwnPoints;
-  std::vector<vtkSmartPointer<vtkTable>> Tables;
-  std::vector<Row> Rows;
   std::unique_ptr<cdm::PartTetrahedralization> Part;
 
   /** On the points of the part, then those of ghosts. */
@@ -136,12 +99,9 @@ private:
   std::size_t NumberOfOwnCells = 0;
   /** Without points of its own. */
   cdm::TriangleMesh Boundary;
-  bool HasPointData = false;
-  bool HasGlobalIds = false;
 
   int NumberOfRounds = 0;
   vtkIdType NumberOfHaloPoints = 0;
-  std::int64_t FirstMeshPoint = 0;
   vtkIdType NumberOfUnusedMeshPoints = 0;
 };
 

@@ -89,15 +89,16 @@ cdm::Status DistributedSurface::Gather(
   std::vector<SurfaceTriangle> own;
   for (std::size_t t = 0; t < this->Mesh.Triangles.size(); ++t)
   {
-    own.push_back({ this->Mesh.Triangles[t],
-      hasLabels ? this->Mesh.Labels[t] : cdm::RegionPair(), this->OwnCells[t] });
+    own.push_back({ this->Mesh.Triangles[t], hasLabels ? this->Mesh.Labels[t] : cdm::RegionPair(),
+      this->OwnCells[t] });
   }
   const std::vector<ProcessGroup::Bytes> triangles =
     this->Processes.Gather(ProcessGroup::Pack(own));
   const std::vector<ProcessGroup::Bytes> allPoints =
     this->Processes.Gather(ProcessGroup::Pack(points));
   const std::set<std::string> arrays = AttributeRows::Intersect(this->Processes,
-    hasTriangles ? AttributeRows::GetSignatures(input->GetCellData()) : std::set<std::string>(), hasTriangles);
+    hasTriangles ? AttributeRows::GetSignatures(input->GetCellData()) : std::set<std::string>(),
+    hasTriangles);
   std::vector<ProcessGroup::Bytes> tables;
   if (!arrays.empty())
   {
@@ -106,9 +107,9 @@ cdm::Status DistributedSurface::Gather(
     {
       AttributeRows::PassArrays(input->GetCellData(), arrays, data);
     }
-    tables =
-      this->Processes.Gather(hasTriangles ? AttributeRows::Pack(AttributeRows::Select(data, this->OwnCells))
-                                          : ProcessGroup::Bytes());
+    tables = this->Processes.Gather(hasTriangles
+        ? AttributeRows::Pack(AttributeRows::Select(data, this->OwnCells))
+        : ProcessGroup::Bytes());
   }
 
   // Points at the same place are one, which has their lowest number.
@@ -198,8 +199,7 @@ cdm::Status DistributedSurface::Gather(
   std::vector<vtkSmartPointer<vtkTable>> parts;
   for (const ProcessGroup::Bytes& bytes : tables)
   {
-    parts.emplace_back(
- AttributeRows::Unpack(bytes));
+    parts.emplace_back(AttributeRows::Unpack(bytes));
   }
   AttributeRows::Merge(parts, rows, this->CellData->GetRowData());
   return status;

@@ -29,10 +29,7 @@ class vtkTable;
 class DistributedSurface
 {
 public:
-  explicit DistributedSurface(const ProcessGroup& processes)
-    : Processes(processes)
-  {
-  }
+  explicit DistributedSurface(const ProcessGroup& processes) : Processes(processes) {}
 
   /** The piece of this process. */
   cdm::Status Read(vtkPolyData* input);
@@ -48,7 +45,7 @@ public:
   /** The regions on the sides of the triangles, or PartRegions::Unknown. */
   const std::vector<cdm::RegionPair>& GetSideRegions() const { return this->SideRegions; }
   /** A row for each triangle. */
-  vtkTable* GetCellData() const { return this->CellData; }
+  const vtkSmartPointer<vtkTable>& GetCellData() const { return this->CellData; }
   /** Triangles of a status as cells of the input, or in the message with the process they are of. */
   void NameTriangles(cdm::Status& status) const;
 

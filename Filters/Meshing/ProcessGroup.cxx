@@ -86,6 +86,12 @@ cdm::Status ProcessGroup::Agree(const cdm::Status& own) const
 }
 
 //--------------------------------------------------------------------------------------------------
+cdm::Status ProcessGroup::Do(const std::function<cdm::Status()>& work) const
+{
+  return this->Agree(vtkCoreBridge::Guard(work));
+}
+
+//--------------------------------------------------------------------------------------------------
 std::int64_t ProcessGroup::Sum(std::int64_t own) const
 {
   long long sum = own;
@@ -148,7 +154,7 @@ cdm::Status ProcessGroup::Exchange(std::vector<Bytes> messages, std::vector<Byte
     }
   }
   // Only if there is room for the messages on all processes are they sent.
-  const cdm::Status status = this->Agree(vtkCoreBridge::Guard(
+  const cdm::Status status = this->Do(
     [&]
     {
       for (std::size_t partner = 0; partner < count; ++partner)
@@ -156,7 +162,7 @@ cdm::Status ProcessGroup::Exchange(std::vector<Bytes> messages, std::vector<Byte
         received[partner].resize(static_cast<std::size_t>(sizes[partner]));
       }
       return cdm::Status();
-    }));
+    });
   if (!status.IsOk())
   {
     return status;

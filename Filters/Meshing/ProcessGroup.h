@@ -20,6 +20,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -44,6 +45,9 @@ public:
    * get the message of the first process that has an error, with its rank, or else are aborted.
    */
   cdm::Status Agree(const cdm::Status& own) const;
+
+  /** Work of each process by itself, of which running out of memory is a failure; then Agree(). */
+  cdm::Status Do(const std::function<cdm::Status()>& work) const;
 
   std::int64_t Sum(std::int64_t own) const;
   std::int64_t Maximum(std::int64_t own) const;

@@ -97,13 +97,13 @@ int vtkDistributedTetrahedralizer::RequestData(
   this->NumberOfUnusedMeshPoints = mesh.GetNumberOfUnusedMeshPoints();
   if (status.IsOk())
   {
-    status = processes.Agree(vtkCoreBridge::Guard(
+    status = processes.Do(
       [&]
       {
         mesh.MakeMesh(vtkUnstructuredGrid::GetData(outputVector, 0));
         mesh.MakeBoundary(vtkPolyData::GetData(outputVector, 1));
         return cdm::Status();
-      }));
+      });
   }
   this->NumberOfBytesSent = processes.GetNumberOfBytesSent();
   if (!status.IsOk())
