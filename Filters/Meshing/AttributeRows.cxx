@@ -3,10 +3,9 @@
 
 #include "vtkCoreBridge.h"
 
-#include <vtkAbstractArray.h>
+#include <vtkDataArray.h>
 #include <vtkDataSetAttributes.h>
 #include <vtkDataSetAttributesFieldList.h>
-#include <vtkIdTypeArray.h>
 #include <vtkTable.h>
 
 #include <algorithm>

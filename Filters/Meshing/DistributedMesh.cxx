@@ -26,11 +26,12 @@
 
 namespace
 {
-
 using Numbers = std::array<std::int64_t, 4>;
 
+/** The region of a tetrahedron that another process has as well. */
 struct SharedTetrahedron
 {
+  /** The numbers of its points, ascending. */
   Numbers Key;
   std::int64_t Region;
 };

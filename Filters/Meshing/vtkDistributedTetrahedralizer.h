@@ -17,7 +17,8 @@
  *     tetrahedra, and fills the regions between them; processes tell each other the regions of
  *     tetrahedra that they share;
  *  4. a tetrahedron belongs to the process that has its lowest numbered point. Ghost cells are added
- *     level by level, as many as the pipeline asks for; ParaView's views ask for one.
+ *     level by level, as many as the pipeline asks for. ParaView asks for one, and counts them
+ *     with the others: its filter RemoveGhostInformation leaves them out.
  *
  * Inputs: port 0: vtkPointSet, a piece of it on each process, some may be empty: a Delaunay surface of
  * triangles as vtkDelaunaySurfaceRefiner makes it, optionally with BoundaryLabels; or points alone, to
