@@ -28,7 +28,9 @@
  * Guarantees: the tetrahedra at the points of all parts are those of BuildDelaunayTetrahedralization()
  * for all points, whatever the parts are; all decisions are exact.
  * Cost: O(n log n) for the n own points and O(halo) per round, of which there are two or three for
- * usual distributions. 70 bytes per tetrahedron of the part at the peak, 16 of them stay.
+ * usual distributions. 70 bytes per tetrahedron of the part at the peak, 16 of them stay. A tetrahedron
+ * is tested against all points near its sphere: with n points on one sphere but for rounding that is
+ * O(n^2) (Testing/Benchmarks/Distributed.md).
  *
  * References: R. Shewchuk, "Star splaying", 2005, doi:10.1145/1064092.1064129 (stars that are
  * completed one by one agree); D. Funke, P. Sanders, "Parallel d-D Delaunay triangulations in shared

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What a part of a distributed tetrahedralization costs: the parts of random, graded or grid points
- * in one process, one after the other, with what they would send to each other counted.
+ * What a part of a distributed tetrahedralization costs: the parts of points (random, graded, on a
+ * sphere, or of a grid: grid, rotated) in one process, one after the other, with what they would send to each other counted.
  *
  *     BenchmarkParts                          # a small case, for ctest
  *     BenchmarkParts random 1000000 1 2 4 8 27 64
@@ -29,7 +29,8 @@ std::vector<Vec3> MakePoints(const std::string& kind, std::size_t count)
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   std::vector<Vec3> points;
   const std::size_t side = static_cast<std::size_t>(std::lround(std::cbrt(double(count))));
-  for (std::size_t i = 0; i < (kind == "grid" ? side * side * side : count); ++i)
+  const bool isGrid = kind == "grid" || kind == "rotated";
+  for (std::size_t i = 0; i < (isGrid ? side * side * side : count); ++i)
   {
     if (kind == "grid")
     {
@@ -40,7 +41,13 @@ std::vector<Vec3> MakePoints(const std::string& kind, std::size_t count)
     const double power = kind == "graded" ? 4.0 : 1.0;
     const double x = std::pow(uniform(generator), power);
     const double y = std::pow(uniform(generator), power);
-    points.push_back({ x, y, std::pow(uniform(generator), power) });
+    Vec3 p{ x, y, std::pow(uniform(generator), power) };
+    if (kind == "sphere")
+    {
+      p = p - Vec3{ 0.5, 0.5, 0.5 };
+      p = (1.0 / Norm(p)) * p;
+    }
+    points.push_back(p);
   }
   return points;
 }
