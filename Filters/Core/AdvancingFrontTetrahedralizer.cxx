@@ -3,6 +3,7 @@
 
 #include "DelaunayTetrahedralization.h"
 #include "DuplicateTriangles.h"
+#include "FacetPolygons.h"
 #include "ParallelLoop.h"
 #include "Predicates.h"
 #include "SpatialSort.h"
@@ -34,21 +35,6 @@ int GetRelativeTurn(const TriangleIds& s, const TriangleIds& t)
 {
   const int first = s[0] == t[0] ? 0 : s[0] == t[1] ? 1 : 2;
   return s[1] == t[(first + 1) % 3] ? 1 : -1;
-}
-
-/** The fan of a convex polygon from its lowest point, in the polygon's orientation. */
-std::vector<TriangleIds> MakeFan(const std::vector<Id>& polygon)
-{
-  const std::size_t count = polygon.size();
-  const std::size_t lowest =
-    static_cast<std::size_t>(std::min_element(polygon.begin(), polygon.end()) - polygon.begin());
-  std::vector<TriangleIds> fan;
-  for (std::size_t i = 1; i + 1 < count; ++i)
-  {
-    fan.push_back(
-      { polygon[lowest], polygon[(lowest + i) % count], polygon[(lowest + i + 1) % count] });
-  }
-  return fan;
 }
 
 class AdvancingFront
@@ -259,104 +245,9 @@ Status AdvancingFront::CollectPoints()
   return Status();
 }
 
-/**
- * Triangles of the flat facet around a triangle whose circumcircle holds all given points: crosses
- * an edge of two triangles with the same labels if the point beyond is one of them.
- */
-class FacetPolygons
-{
-public:
-  FacetPolygons(const TriangleMesh& surface, bool hasLabels)
-    : Surface(surface), HasLabels(hasLabels)
-  {
-    for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
-    {
-      for (int i = 0; i < 3; ++i)
-      {
-        const Id a = surface.Triangles[t][i];
-        const Id b = surface.Triangles[t][(i + 1) % 3];
-        this->Uses.push_back({ { std::min(a, b), std::max(a, b) }, static_cast<Id>(t) });
-      }
-    }
-    std::sort(this->Uses.begin(), this->Uses.end());
-  }
-
-  /** False if not all of the cocircular points are reached. */
-  bool Collect(Id start, const std::vector<Id>& cocircular, std::vector<Id>& triangles) const
-  {
-    triangles.assign(1, start);
-    std::vector<Id> reached;
-    for (std::size_t i = 0; i < triangles.size(); ++i)
-    {
-      const TriangleIds& ids = this->Surface.Triangles[triangles[i]];
-      for (int e = 0; e < 3; ++e)
-      {
-        const Id a = ids[e];
-        const Id b = ids[(e + 1) % 3];
-        const Id other = this->GetOther(triangles[i], a, b);
-        if (other == NoId || !this->HaveSameLabels(triangles[i], other, a, b) ||
-          std::find(triangles.begin(), triangles.end(), other) != triangles.end())
-        {
-          continue;
-        }
-        const TriangleIds& beyond = this->Surface.Triangles[other];
-        const Id apex = beyond[0] != a && beyond[0] != b ? beyond[0]
-          : beyond[1] != a && beyond[1] != b             ? beyond[1]
-                                                         : beyond[2];
-        if (std::binary_search(cocircular.begin(), cocircular.end(), apex))
-        {
-          triangles.push_back(other);
-          reached.push_back(apex);
-        }
-      }
-    }
-    SortUnique(reached);
-    return reached == cocircular;
-  }
-
-private:
-  /** The other triangle at the edge, or NoId if there is not exactly one. */
-  Id GetOther(Id triangle, Id a, Id b) const
-  {
-    const std::pair<EdgeIds, Id> key{ { std::min(a, b), std::max(a, b) }, 0 };
-    const auto first = std::lower_bound(this->Uses.begin(), this->Uses.end(), key);
-    auto last = first;
-    while (last != this->Uses.end() && last->first == key.first)
-    {
-      ++last;
-    }
-    return last - first != 2      ? NoId
-      : first->second == triangle ? (first + 1)->second
-                                  : first->second;
-  }
-
-  bool HaveSameLabels(Id s, Id t, Id a, Id b) const
-  {
-    if (!this->HasLabels)
-    {
-      return true;
-    }
-    const auto runs = [a, b](const TriangleIds& ids)
-    {
-      return (ids[0] == a && ids[1] == b) || (ids[1] == a && ids[2] == b) ||
-        (ids[2] == a && ids[0] == b);
-    };
-    RegionPair labels = this->Surface.Labels[t];
-    if (runs(this->Surface.Triangles[s]) == runs(this->Surface.Triangles[t]))
-    {
-      std::swap(labels.Front, labels.Back);
-    }
-    return this->Surface.Labels[s] == labels;
-  }
-
-  const TriangleMesh& Surface;
-  bool HasLabels;
-  std::vector<std::pair<EdgeIds, Id>> Uses;
-};
-
 Status AdvancingFront::TurnDiagonals(const std::vector<Id>& doubtful)
 {
-  const FacetPolygons polygons(this->Surface, this->HasLabels);
+  const FacetPolygons polygons(this->Surface);
   PointOctree octree;
   for (Id point : this->Order)
   {
@@ -381,34 +272,22 @@ Status AdvancingFront::TurnDiagonals(const std::vector<Id>& doubtful)
       continue;
     }
     test.Run(this->Surface.Triangles[t], result);
+    const std::vector<Id>& cocircular = result.Cocircular;
+    const auto isCocircular = [&cocircular](Id point)
+    { return std::binary_search(cocircular.begin(), cocircular.end(), point); };
     if (!result.IsDelaunay ||
-      (!result.Cocircular.empty() && !polygons.Collect(t, result.Cocircular, polygonTriangles)))
+      (!cocircular.empty() && polygons.Collect(t, isCocircular, polygonTriangles) != cocircular))
     {
       offending.push_back(t);
       continue;
     }
-    if (result.Cocircular.empty())
+    if (cocircular.empty())
     {
       continue;
     }
 
-    // Walk around the polygon: its outline is made of the edges used once.
-    const TriangleIds& first = this->Surface.Triangles[t];
-    const Vec3& a = this->Points[first[0]];
-    std::vector<Id> outline(result.Cocircular);
-    outline.insert(outline.end(), first.begin() + 1, first.end());
-    // Directions from the first point in the plane of the triangle, in its projection.
-    int axis = 0;
-    while (ProjectedOrientation(axis, a, this->Points[first[1]], this->Points[first[2]]) == 0)
-    {
-      ++axis;
-    }
-    const int turn = ProjectedOrientation(axis, a, this->Points[first[1]], this->Points[first[2]]);
-    std::sort(outline.begin(), outline.end(),
-      [&](Id x, Id y)
-      { return ProjectedOrientation(axis, a, this->Points[x], this->Points[y]) == turn; });
-    outline.insert(outline.begin(), first[0]);
-    const std::vector<TriangleIds> fan = MakeFan(outline);
+    const std::vector<TriangleIds> fan =
+      MakePulledFan(this->Points, this->Surface.Triangles[t], cocircular);
     if (fan.size() != polygonTriangles.size())
     {
       return Status::InvalidInput("Triangles of a flat facet overlap; check the surface with "

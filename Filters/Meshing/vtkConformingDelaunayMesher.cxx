@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkConformingDelaunayMesher.h"
 
+#include "BlockDistribution.h"
+#include "ProcessGroup.h"
 #include "vtkAdvancingFrontTetrahedralizer.h"
 #include "vtkBoundaryTriangulator.h"
 #include "vtkConformingDelaunayCompatibility.h"
@@ -16,12 +18,16 @@
 #include <vtkAppendFilter.h>
 #include <vtkCellData.h>
 #include <vtkCommand.h>
+#include <vtkDataObjectTree.h>
+#include <vtkDataObjectTypes.h>
 #include <vtkDataSet.h>
+#include <vtkDemandDrivenPipeline.h>
 #include <vtkExecutive.h>
 #include <vtkFieldData.h>
 #include <vtkIdTypeArray.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
+#include <vtkMultiProcessController.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
@@ -61,7 +67,7 @@ public:
     auto stage = vtkAlgorithm::SafeDownCast(caller);
     if (event == vtkCommand::WarningEvent)
     {
-      const std::string text = GetMessage(callData);
+      const std::string text = this->Prefix + GetMessage(callData);
       vtkWarningWithObjectMacro(this->Filter, << text);
     }
     else if (event == vtkCommand::ErrorEvent)
@@ -86,18 +92,28 @@ public:
 
   vtkAlgorithm* Filter = nullptr;
   std::string Name;
+  /** What comes before its warnings: the block that is meshed. */
+  std::string Prefix;
   double Begin = 0.0;
   double End = 1.0;
   std::string Error;
 };
 
+/** What all stages of one run have in common. */
+struct Run
+{
+  vtkAlgorithm* Filter;
+  std::string Prefix;
+};
+
 /** Update a stage of the pipeline; its progress is [begin, end] of the filter's. */
 cdm::Status RunStage(
-  vtkAlgorithm* filter, vtkAlgorithm* stage, const char* name, double begin, double end)
+  const Run& run, vtkAlgorithm* stage, const char* name, double begin, double end)
 {
   vtkNew<StageObserver> observer;
-  observer->Filter = filter;
+  observer->Filter = run.Filter;
   observer->Name = name;
+  observer->Prefix = run.Prefix;
   observer->Begin = begin;
   observer->End = end;
   for (unsigned long event :
@@ -109,7 +125,7 @@ cdm::Status RunStage(
   stage->Update();
   stage->RemoveObserver(observer);
   stage->GetExecutive()->RemoveObserver(observer);
-  if (vtkConformingDelaunayCompatibility::CheckAbort(filter))
+  if (vtkConformingDelaunayCompatibility::CheckAbort(run.Filter))
   {
     return cdm::Status::Aborted();
   }
@@ -202,8 +218,8 @@ std::array<double, 3> ChooseSpacing(const double (&spacing)[3], double longestEd
 }
 
 /** Check the mesh, bring its boundary up to date if tetrahedra were peeled off, make outputs. */
-cdm::Status Finish(vtkAlgorithm* filter, vtkUnstructuredGrid* grid, vtkPolyData* surface,
-  bool isPeeled, vtkInformationVector* outputs)
+cdm::Status Finish(const Run& run, vtkUnstructuredGrid* grid, vtkPolyData* surface, bool isPeeled,
+  vtkUnstructuredGrid* output, vtkPolyData* boundaryOutput)
 {
   cdm::TetMesh mesh;
   cdm::TriangleMesh boundary;
@@ -217,8 +233,7 @@ cdm::Status Finish(vtkAlgorithm* filter, vtkUnstructuredGrid* grid, vtkPolyData*
   {
     return status;
   }
-  const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(filter).Part(0.95, 1.0);
-  vtkPolyData* boundaryOutput = vtkPolyData::GetData(outputs, 1);
+  const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(run.Filter).Part(0.95, 1.0);
   if (isPeeled)
   {
     // Volumes are those of the boundary before: a patch that was peeled has none.
@@ -242,7 +257,6 @@ cdm::Status Finish(vtkAlgorithm* filter, vtkUnstructuredGrid* grid, vtkPolyData*
   }
   boundaryOutput->GetCellData()->RemoveArray(vtkCoreBridge::InputCellName);
 
-  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputs, 0);
   output->ShallowCopy(grid);
   vtkNew<vtkStringArray> certificate;
   certificate->SetName("Certificate");
@@ -251,10 +265,11 @@ cdm::Status Finish(vtkAlgorithm* filter, vtkUnstructuredGrid* grid, vtkPolyData*
   if (status.IsOk() && !report.IsValid())
   {
     vtkWarningWithObjectMacro(
-      filter, << "The check finds fault with the mesh: " << report.GetSummary());
+      run.Filter, << run.Prefix << "The check finds fault with the mesh: " << report.GetSummary());
   }
   return status;
 }
+
 /** Marks the points as ones that vtkSteinerPointRefiner may move and take out, or must not. */
 void SetFree(vtkPointSet* points, bool isFree)
 {
@@ -292,11 +307,16 @@ void vtkConformingDelaunayMesher::RemoveAllLayers()
 int vtkConformingDelaunayMesher::FillInputPortInformation(int port, vtkInformation* info)
 {
   static const char* const types[3] = { "vtkPolyData", "vtkPointSet", "vtkDataSet" };
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), types[port]);
-  if (port > 0)
+  if (port == 0)
+  {
+    // First, as only then the executive leaves the blocks to this filter.
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  }
+  else
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), types[port]);
   return 1;
 }
 
@@ -308,14 +328,140 @@ int vtkConformingDelaunayMesher::FillOutputPortInformation(int port, vtkInformat
 }
 
 //--------------------------------------------------------------------------------------------------
+vtkTypeBool vtkConformingDelaunayMesher::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
+    ? this->RequestDataObject(inputs, outputs)
+    : this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+//--------------------------------------------------------------------------------------------------
+int vtkConformingDelaunayMesher::RequestDataObject(
+  vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataObject* const input = vtkDataObject::GetData(inputVector[0]);
+  const bool isComposite = input && input->IsA("vtkCompositeDataSet");
+  for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
+  {
+    vtkInformation* info = outputVector->GetInformationObject(port);
+    const char* type = isComposite ? input->GetClassName()
+      : port == 0                  ? "vtkUnstructuredGrid"
+                                   : "vtkPolyData";
+    // The executive replaces an output that is not of the type of its port.
+    this->GetOutputPortInformation(port)->Set(vtkDataObject::DATA_TYPE_NAME(), type);
+    vtkDataObject* output = vtkDataObject::GetData(info);
+    if (!output || !output->IsA(type))
+    {
+      info->Set(vtkDataObject::DATA_OBJECT(),
+        vtkSmartPointer<vtkDataObject>::Take(vtkDataObjectTypes::NewDataObject(type)));
+    }
+  }
+  return 1;
+}
+
+//--------------------------------------------------------------------------------------------------
 int vtkConformingDelaunayMesher::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
+  if (vtkDataObject::GetData(inputVector[0])->IsA("vtkCompositeDataSet"))
+  {
+    return this->MeshBlocks(inputVector, outputVector);
+  }
   vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
   if (vtkCoreBridge::IsIdleProcess(input, outputVector))
   {
     return 1;
   }
+  vtkNew<vtkPolyData> problems;
+  const cdm::Status status = this->MeshPolygons("", input, vtkPointSet::GetData(inputVector[1]),
+    vtkDataSet::GetData(inputVector[2]), vtkUnstructuredGrid::GetData(outputVector, 0),
+    vtkPolyData::GetData(outputVector, 1), problems);
+  const int success =
+    status.IsOk() ? 1 : vtkCoreBridge::ReportFailure(this, outputVector, status, nullptr);
+  if (!status.IsAborted())
+  {
+    vtkPolyData::GetData(outputVector, 2)->ShallowCopy(problems);
+  }
+  return success;
+}
+
+//--------------------------------------------------------------------------------------------------
+int vtkConformingDelaunayMesher::MeshBlocks(
+  vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataObjectTree* input = vtkDataObjectTree::GetData(inputVector[0]);
+  if (!input)
+  {
+    return vtkCoreBridge::ReportFailure(this, outputVector,
+      cdm::Status::InvalidInput("Composite data of this kind cannot be meshed: give a "
+                                "vtkPartitionedDataSetCollection or a vtkMultiBlockDataSet."),
+      nullptr);
+  }
+  ProcessGroup processes(vtkMultiProcessController::GetGlobalController());
+  BlockDistribution distribution;
+  cdm::Status status = distribution.Run(processes, input);
+  vtkSmartPointer<vtkDataSet> points;
+  vtkSmartPointer<vtkDataSet> sizing;
+  vtkDataObjectTree* outputs[3];
+  for (int port = 0; port < 3; ++port)
+  {
+    outputs[port] = vtkDataObjectTree::GetData(outputVector, port);
+  }
+  std::vector<vtkSmartPointer<vtkPolyData>> problems;
+  if (status.IsOk())
+  {
+    points = GatherDataSet(processes, vtkDataSet::GetData(inputVector[1]));
+    sizing = GatherDataSet(processes, vtkDataSet::GetData(inputVector[2]));
+    for (vtkDataObjectTree* output : outputs)
+    {
+      BlockDistribution::CopyStructure(input, output);
+    }
+    const std::vector<BlockDistribution::Block>& blocks = distribution.GetBlocks();
+    const double share = 1.0 / static_cast<double>(std::max<std::size_t>(1, blocks.size()));
+    for (const BlockDistribution::Block& block : blocks)
+    {
+      // A block that fails does not keep the others from showing what is wrong with them.
+      this->SetProgressShiftScale(share * static_cast<double>(problems.size()), share);
+      vtkNew<vtkUnstructuredGrid> mesh;
+      vtkNew<vtkPolyData> boundary;
+      problems.push_back(vtkSmartPointer<vtkPolyData>::New());
+      const cdm::Status step = this->MeshPolygons(block.Name + ": ", block.Polygons,
+        vtkPointSet::SafeDownCast(points), sizing, mesh, boundary, problems.back());
+      BlockDistribution::SetBlock(outputs[0], block.Index, mesh);
+      BlockDistribution::SetBlock(outputs[1], block.Index, boundary);
+      if (step.IsAborted())
+      {
+        status = step;
+        break;
+      }
+      if (!step.IsOk())
+      {
+        status.Code = step.Code;
+        status.Message += (status.Message.empty() ? "" : "\n") + block.Name + ": " + step.Message;
+      }
+    }
+    this->SetProgressShiftScale(0.0, 1.0);
+    status = processes.Agree(status);
+  }
+  const int success =
+    status.IsOk() ? 1 : vtkCoreBridge::ReportFailure(this, outputVector, status, nullptr);
+  if (!status.IsAborted() && outputs[2])
+  {
+    BlockDistribution::CopyStructure(input, outputs[2]);
+    for (std::size_t i = 0; i < problems.size(); ++i)
+    {
+      BlockDistribution::SetBlock(outputs[2], distribution.GetBlocks()[i].Index, problems[i]);
+    }
+  }
+  return success;
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status vtkConformingDelaunayMesher::MeshPolygons(const std::string& prefix, vtkPolyData* input,
+  vtkPointSet* givenPoints, vtkDataSet* sizing, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
+  vtkPolyData* problems)
+{
   // Error messages of later stages name the cells of this input.
   vtkNew<vtkPolyData> surface;
   surface->ShallowCopy(input);
@@ -336,10 +482,10 @@ int vtkConformingDelaunayMesher::RequestData(
   triangulator->SetResolveSelfIntersections(this->ResolveSelfIntersections);
   triangulator->SetKeepInternalPieces(this->KeepInternalPieces);
   vtkSmartPointer<vtkPointSet> pointInput;
-  if (vtkPointSet* given = vtkPointSet::GetData(inputVector[1]))
+  if (givenPoints)
   {
-    pointInput.TakeReference(given->NewInstance());
-    pointInput->ShallowCopy(given);
+    pointInput.TakeReference(givenPoints->NewInstance());
+    pointInput->ShallowCopy(givenPoints);
     if (this->AddSteinerPoints)
     {
       SetFree(pointInput, false);
@@ -347,7 +493,7 @@ int vtkConformingDelaunayMesher::RequestData(
   }
   vtkNew<vtkMeshPointGenerator> generator;
   generator->SetInputConnection(triangulator->GetOutputPort());
-  generator->SetInputDataObject(1, vtkDataSet::GetData(inputVector[2]));
+  generator->SetInputDataObject(1, sizing);
   generator->SetPlacement(this->Placement);
   generator->SetSpacing(ChooseSpacing(this->Spacing, this->MaximumEdgeLength).data());
   for (const std::array<double, 5>& row : this->Layers)
@@ -363,7 +509,7 @@ int vtkConformingDelaunayMesher::RequestData(
   {
     refiner->SetInputConnection(1, meshPoints->GetOutputPort());
   }
-  refiner->SetInputDataObject(2, vtkDataSet::GetData(inputVector[2]));
+  refiner->SetInputDataObject(2, sizing);
   refiner->SetMeshPointClearanceRatio(this->MeshPointClearanceRatio);
   refiner->SetCriterion(this->Criterion);
   refiner->SetAccuracyAngle(this->AccuracyAngle);
@@ -379,7 +525,7 @@ int vtkConformingDelaunayMesher::RequestData(
   tetrahedralizer->SetCloseOpenBoundary(this->CloseOpenBoundary);
   vtkNew<vtkSteinerPointRefiner> steiner;
   steiner->SetInputConnection(tetrahedralizer->GetOutputPort());
-  steiner->SetInputDataObject(1, vtkDataSet::GetData(inputVector[2]));
+  steiner->SetInputDataObject(1, sizing);
   steiner->SetInputConnection(2, tetrahedralizer->GetOutputPort(1));
   steiner->SetCriterion(this->Criterion);
   steiner->SetAccuracyAngle(this->AccuracyAngle);
@@ -402,10 +548,11 @@ int vtkConformingDelaunayMesher::RequestData(
     remover->SetFlatnessRatio(0.0);
   }
 
-  cdm::Status status = RunStage(this, triangulator, "Boundary triangulation", 0.0, 0.1);
+  const Run run{ this, prefix };
+  cdm::Status status = RunStage(run, triangulator, "Boundary triangulation", 0.0, 0.1);
   if (status.IsOk() && this->GenerateMeshPoints)
   {
-    status = RunStage(this, generator, "Mesh points", 0.1, 0.2);
+    status = RunStage(run, generator, "Mesh points", 0.1, 0.2);
     vtkNew<vtkPolyData> points;
     points->ShallowCopy(generator->GetOutput());
     if (this->AddSteinerPoints)
@@ -417,40 +564,35 @@ int vtkConformingDelaunayMesher::RequestData(
   if (status.IsOk())
   {
     status =
-      RunStage(this, refiner, "Surface refinement", this->GenerateMeshPoints ? 0.2 : 0.1, 0.5);
+      RunStage(run, refiner, "Surface refinement", this->GenerateMeshPoints ? 0.2 : 0.1, 0.5);
   }
   if (status.IsOk())
   {
     status = RunStage(
-      this, tetrahedralizer, "Tetrahedralization", 0.5, this->AddSteinerPoints ? 0.6 : 0.85);
+      run, tetrahedralizer, "Tetrahedralization", 0.5, this->AddSteinerPoints ? 0.6 : 0.85);
   }
   if (status.IsOk() && this->AddSteinerPoints)
   {
-    status = RunStage(this, steiner, "Steiner points", 0.6, 0.85);
+    status = RunStage(run, steiner, "Steiner points", 0.6, 0.85);
   }
   if (status.IsOk() && this->RemoveSlivers)
   {
-    status = RunStage(this, remover, "Sliver removal", 0.85, 0.95);
+    status = RunStage(run, remover, "Sliver removal", 0.85, 0.95);
   }
   if (status.IsOk())
   {
     status = vtkCoreBridge::Guard(
       [&]
       {
-        return Finish(this,
+        return Finish(run,
           vtkUnstructuredGrid::SafeDownCast(
             (this->RemoveSlivers ? remover.Get() : maker)->GetOutputDataObject(0)),
           vtkPolyData::SafeDownCast(maker->GetOutputDataObject(1)),
-          remover->GetNumberOfPeeledTetrahedra() > 0, outputVector);
+          remover->GetNumberOfPeeledTetrahedra() > 0, mesh, boundary);
       });
   }
-  const int success =
-    status.IsOk() ? 1 : vtkCoreBridge::ReportFailure(this, outputVector, status, nullptr);
-  if (!status.IsAborted())
-  {
-    vtkPolyData::GetData(outputVector, 2)->ShallowCopy(triangulator->GetOutputDataObject(1));
-  }
-  return success;
+  problems->ShallowCopy(triangulator->GetOutputDataObject(1));
+  return status;
 }
 
 //--------------------------------------------------------------------------------------------------

@@ -19,6 +19,12 @@
  * mesh points, beside those that are generated. Port 2, optional: vtkDataSet with the point array
  * Sizing: target edge length in model units.
  *
+ * Blocks: port 0 may be a vtkPartitionedDataSetCollection or a vtkMultiBlockDataSet of vtkPolyData. Each
+ * block is meshed by itself; all get the same mesh points and sizing. On several processes blocks are
+ * spread over them: the largest one that is left goes to the process with the fewest polygons so far.
+ * Pieces of a block on several processes, and partitions, become one surface. The outputs are of the
+ * same kind and structure, with a block where its process is, and nothing on the others.
+ *
  * Outputs: port 0: vtkUnstructuredGrid of VTK_TETRA with the cell array RegionId (int), the point
  * data of the input, interpolated at new points, and the string array Certificate in the field data:
  * one line that says what the check found. Port 1: the boundary of the mesh and its regions as
@@ -30,7 +36,8 @@
  * check finds at fault comes with a warning. Deterministic.
  *
  * Failure: the error of the stage that failed, with the cells of this filter's input, and empty
- * outputs; port 2 still lists what was found. An aborted run has empty outputs.
+ * outputs; port 2 still lists what was found. An aborted run has empty outputs. An error in a block names
+ * it, and ends the filter on all processes.
  *
  * Cost: O(n log n) for n tetrahedra, if the surface is not much finer than its smallest features.
  *
@@ -43,7 +50,17 @@
 #include <vtkUnstructuredGridAlgorithm.h>
 
 #include <array>
+#include <string>
 #include <vector>
+
+class vtkDataSet;
+class vtkPointSet;
+class vtkPolyData;
+class vtkUnstructuredGrid;
+namespace cdm
+{
+struct Status;
+}
 
 class CDMMESHING_EXPORT vtkConformingDelaunayMesher : public vtkUnstructuredGridAlgorithm
 {
@@ -240,6 +257,9 @@ public:
   vtkGetMacro(DihedralAngleTarget, double);
   ///@}
 
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
 protected:
   vtkConformingDelaunayMesher();
   ~vtkConformingDelaunayMesher() override = default;
@@ -270,6 +290,12 @@ protected:
   double MaximumVolume = 0.0;
 
 private:
+  int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
+  int MeshBlocks(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
+  /** The stages; prefix comes before the text of warnings. */
+  cdm::Status MeshPolygons(const std::string& prefix, vtkPolyData* input, vtkPointSet* givenPoints,
+    vtkDataSet* sizing, vtkUnstructuredGrid* mesh, vtkPolyData* boundary, vtkPolyData* problems);
+
   vtkConformingDelaunayMesher(const vtkConformingDelaunayMesher&) = delete;
   void operator=(const vtkConformingDelaunayMesher&) = delete;
 };

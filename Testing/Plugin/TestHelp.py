@@ -26,14 +26,15 @@ def HasText(element):
 
 
 def GetOptions(cls):
-    """Names of the options a class adds to VTK's: those with both a Set and a Get method."""
+    """Names of the options a class adds to VTK's: those with both a Set and a Get method. The
+    controller is no option in ParaView: it is that of the server."""
     instance = cls()
     methods = set(dir(cls))
     for base in cls.__mro__[1:]:
         methods -= set(dir(base))
     return {name[3:]: getattr(instance, "Get" + name[3:])()
             for name in methods
-            if name.startswith("Set") and "Get" + name[3:] in methods}
+            if name.startswith("Set") and "Get" + name[3:] in methods and name != "SetController"}
 
 
 proxies = {}
