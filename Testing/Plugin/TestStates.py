@@ -3,19 +3,25 @@
 
 Makes the pipeline with options that differ from their defaults, and then again from a ParaView state
 (.pvsm), from a Python state (.py) and from the trace of its making, each in an empty session. Options,
-connections and numbers of points and cells have to be the same. The states of Plugin/Examples load,
-too.
+connections and numbers of points and cells have to be the same.
+
+The state Plugin/Examples/mos_transistor.pvsm, of a mesh that the macro region_cut has cut open, loads and
+shows the picture RegionCut.png. With CDM_UPDATE_BASELINES=1 in the environment it is made anew.
 """
 
 import glob
 import os
+import runpy
 import tempfile
 import xml.etree.ElementTree as ElementTree
 
+import ImageComparison
 from paraview import smstate, smtrace
 from paraview.simple import *
 
 PLUGIN = os.environ["CDM_PLUGIN"]
+EXAMPLE = os.path.join(os.environ["CDM_SOURCE_DIR"], "Plugin", "Examples", "mos_transistor.pvsm")
+MACRO = os.path.join(os.environ["CDM_SOURCE_DIR"], "Plugin", "Macros", "region_cut.py")
 LoadPlugin(PLUGIN, remote=False, ns=globals())
 
 # An option of each proxy that has any, and a value that is not the default.
@@ -108,6 +114,32 @@ def GetPluginProxies():
     return names
 
 
+def CheckPicture(view):
+    SaveScreenshot(os.path.join(os.environ["CDM_OUTPUT_DIR"], "RegionCut.png"), view,
+                   ImageResolution=[600, 450])
+    Delete(view)
+    ImageComparison.AssertSameAsBaseline("RegionCut.png")
+
+
+def CheckExample():
+    """The macro as users run it: on the active source, in the active view; and the state of that."""
+    Start()
+    view = CreateRenderView(ViewSize=[600, 450])
+    device = TechnologyStructureSource(registrationName="Device")
+    mesher = ConformingDelaunayMesher(registrationName="Mesher", Input=device,
+                                      MaximumEdgeLength=0.06, GenerateMeshPoints=1)
+    SetActiveSource(mesher)
+    runpy.run_path(MACRO, run_name="__main__")
+    if os.environ.get("CDM_UPDATE_BASELINES") == "1":
+        SaveState(EXAMPLE)
+    CheckPicture(view)
+
+    Start()
+    LoadState(EXAMPLE)
+    assert FindSource("Mesher") is not None
+    CheckPicture(GetActiveView())
+
+
 with tempfile.TemporaryDirectory() as folder:
     # In the first session: ParaView 5.11 records nothing in one that followed a recorded state.
     tracer = smtrace.start_trace()
@@ -135,4 +167,5 @@ with tempfile.TemporaryDirectory() as folder:
     exec(trace, {"__name__": "trace"})
     Compare(expected, "trace")
 
+CheckExample()
 print("states: ok")
