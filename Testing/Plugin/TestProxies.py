@@ -135,6 +135,41 @@ mesher.UpdatePipeline()
 assert abs(Volume(mesher) - 6.0) < 6e-12
 assert Count(mesher) > without, "the mesh points are used"
 
+# A surface that intersects itself: no tetrahedra, and the problems to look at.
+crossing = AppendGeometry(Input=[Sphere(), Sphere(Center=[0.4, 0.0, 0.0])])
+failing = ConformingDelaunayMesher(Input=crossing)
+print("The next error is expected.")
+failing.UpdatePipeline()
+assert Count(failing) == 0 and Count(failing, 1) == 0
+assert Count(failing, 2) > 0, "the problems are shown"
+problems = OutputPort(failing, 2).GetCellDataInformation()
+assert problems.GetArray("ProblemKind") is not None
+failing.ResolveSelfIntersections = 1
+failing.UpdatePipeline()
+assert Volume(failing) > 0.0
+
+
+def Abort(algorithm, event):
+    """What an abort button does: from a progress event, while the filter runs."""
+    texts.append(algorithm.GetProgressText())
+    if algorithm.GetProgress() > 0.3:
+        algorithm.SetAbortExecute(1)
+
+
+texts = []
+aborted = ConformingDelaunayMesher(Input=cube, MaximumEdgeLength=0.1)
+algorithm = aborted.GetClientSideObject()
+observer = algorithm.AddObserver("ProgressEvent", Abort)
+aborted.UpdatePipeline()
+assert Count(aborted) == 0, "an aborted run leaves no tetrahedra"
+assert any(text and text.startswith("Surface refinement: ") for text in texts), texts
+assert not any(text and text.startswith("Tetrahedralization") for text in texts), texts
+algorithm.RemoveObserver(observer)
+algorithm.SetAbortExecute(0)
+aborted.MaximumEdgeLength = 0.5
+aborted.UpdatePipeline()
+assert abs(Volume(aborted) - 6.0) < 6e-12, "after an abort it runs again"
+
 device = TechnologyStructureSource()
 device.UpdatePipeline()
 assert Count(device) > 0

@@ -46,7 +46,7 @@ def Make(name, function, **inputs):
 
 
 def MakePipeline():
-    """Each source and filter of the plugin, connected as users do, and shown."""
+    """Each source and filter of the plugin, connected as users do."""
     device = Make("Device", TechnologyStructureSource)
     box = Box(registrationName="Box")
     triangulator = Make("Triangulator", BoundaryTriangulator, Input=box)
@@ -64,9 +64,8 @@ def MakePipeline():
     Make("Moving", MovingBoundaryRemesher, Input=calculator)
     Make("Criteria", DelaunayMeshCriteria, Input=front, Boundary=OutputPort(front, 1))
     Make("Volumes", VoronoiControlVolumes, Input=front)
-    Make("Mesher", ConformingDelaunayMesher, Input=device, Sizing=sizing)
-    for proxy in GetSources().values():
-        Show(proxy)
+    mesher = Make("Mesher", ConformingDelaunayMesher, Input=device, Sizing=sizing)
+    Show(mesher)
 
 
 def Describe():
