@@ -124,6 +124,8 @@ def CheckExample():
     """The macro as users run it: on the active source, in the active view; and the state of that."""
     Start()
     view = CreateRenderView(ViewSize=[600, 450])
+    # Without a layout the window stays empty.
+    AssignViewToLayout(view=view, layout=CreateLayout(name="Layout"))
     device = TechnologyStructureSource(registrationName="Device")
     mesher = ConformingDelaunayMesher(registrationName="Mesher", Input=device,
                                       MaximumEdgeLength=0.06, GenerateMeshPoints=1)
@@ -135,8 +137,8 @@ def CheckExample():
 
     Start()
     LoadState(EXAMPLE)
-    assert FindSource("Mesher") is not None
-    CheckPicture(GetActiveView())
+    (view,) = GetViewsInLayout(list(GetLayouts().values())[0])
+    CheckPicture(view)
 
 
 with tempfile.TemporaryDirectory() as folder:
