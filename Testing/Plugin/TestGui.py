@@ -2,7 +2,8 @@
 """The real ParaView: loads the plugin, makes a device, meshes it by the menus, takes a picture.
 
 Starts ParaView with the command of the README, and plays the events of Gui.xml; looks at the picture,
-and at the states that it saves after a change, its undoing and its redoing.
+at the states that it saves after a change, its undoing and its redoing, and at the picture of
+Plugin/Examples/mos_transistor.pvsm.
 """
 
 import os
@@ -50,6 +51,8 @@ def GetOptions(path):
 with tempfile.TemporaryDirectory() as folder:
     # The README's command speaks of build/ in the folder of the project.
     os.symlink(os.environ["CDM_BINARY_DIR"], os.path.join(folder, "build"))
+    shutil.copy(os.path.join(os.environ["CDM_SOURCE_DIR"], "Plugin", "Examples",
+                             "mos_transistor.pvsm"), folder)
     script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "Gui.xml")
     command = GetCommand() + [
         "--dr", "--test-directory=" + folder, "--test-script=" + script, "--exit"]
@@ -61,6 +64,10 @@ with tempfile.TemporaryDirectory() as folder:
     assert "ERROR" not in run.stdout and "ERR|" not in run.stdout, "ParaView reports an error"
     picture = os.path.join(folder, "Gui.png")
     CheckPicture(picture)
+    difference = ImageComparison.FindDifference(
+        os.path.join(folder, "State.png"),
+        os.path.join(os.environ["CDM_DATA_DIR"], "Baselines", "RegionCut.png"))
+    assert difference is None, difference
     for name, expected in (("changed", [1.0, 0.0005]), ("undone", [0.0, 0.0]),
                            ("redone", [1.0, 0.0005])):
         found = GetOptions(os.path.join(folder, name + ".pvsm"))
