@@ -21,7 +21,7 @@ from paraview.simple import *
 
 PLUGIN = os.environ["CDM_PLUGIN"]
 EXAMPLE = os.path.join(os.environ["CDM_SOURCE_DIR"], "Plugin", "Examples", "mos_transistor.pvsm")
-MACRO = os.path.join(os.environ["CDM_SOURCE_DIR"], "Plugin", "Macros", "region_cut.py")
+MACROS = os.path.join(os.environ["CDM_SOURCE_DIR"], "Plugin", "Macros")
 LoadPlugin(PLUGIN, remote=False, ns=globals())
 
 # An option of each proxy that has any, and a value that is not the default.
@@ -130,7 +130,7 @@ def CheckExample():
     mesher = ConformingDelaunayMesher(registrationName="Mesher", Input=device,
                                       MaximumEdgeLength=0.06, GenerateMeshPoints=1)
     SetActiveSource(mesher)
-    runpy.run_path(MACRO, run_name="__main__")
+    runpy.run_path(os.path.join(MACROS, "region_cut.py"), run_name="__main__")
     if os.environ.get("CDM_UPDATE_BASELINES") == "1":
         SaveState(EXAMPLE)
     CheckPicture(view)
@@ -139,6 +139,19 @@ def CheckExample():
     LoadState(EXAMPLE)
     (view,) = GetViewsInLayout(list(GetLayouts().values())[0])
     CheckPicture(view)
+
+
+def CheckCertificate():
+    """The other macro, on a mesh that is clean, and on the same mesh sheared."""
+    Start()
+    view = CreateRenderView(ViewSize=[600, 450])
+    mesh = ConformingDelaunayMesher(Input=Box())
+    sheared = Calculator(Input=mesh, CoordinateResults=1, Function="coords + 0.9*coordsZ*iHat")
+    certify = runpy.run_path(os.path.join(MACROS, "certificate.py"))["Certify"]
+    for tetrahedra, verdict in ((mesh, ": clean"), (sheared, ": not clean")):
+        _, text = certify(tetrahedra, view)
+        assert text.Text.endswith(verdict) and "\n" in text.Text, text.Text
+    Delete(view)
 
 
 with tempfile.TemporaryDirectory() as folder:
@@ -169,4 +182,5 @@ with tempfile.TemporaryDirectory() as folder:
     Compare(expected, "trace")
 
 CheckExample()
+CheckCertificate()
 print("states: ok")

@@ -40,8 +40,9 @@ def GetOrigin(name):
         for script in sorted(os.listdir(os.path.join(testing, folder))):
             if script.startswith("Test") and script.endswith(".py"):
                 with open(os.path.join(testing, folder, script), encoding="utf-8") as file:
-                    if '"%s"' % os.path.basename(name) in file.read():
-                        return "drawn by `Testing/%s/%s`" % (folder, script)
+                    text = file.read()
+                if '"%s"' % os.path.basename(name) in text and "AssertSameAsBaseline" in text:
+                    return "drawn by `Testing/%s/%s`" % (folder, script)
     sys.exit("no test draws Data/%s" % name)
 
 
