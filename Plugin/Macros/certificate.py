@@ -28,7 +28,8 @@ def Certify(source, view):
     return criteria, text
 
 
-if __name__ == "__main__":
+# A macro runs in ParaView's console; anything else only imports this.
+if __name__ in ("__main__", "__vtkconsole__"):
     activeView = GetActiveViewOrCreate("RenderView")
     activeCriteria, _ = Certify(GetActiveSource(), activeView)
     SetActiveSource(activeCriteria)

@@ -71,7 +71,8 @@ def CutRegions(source, view):
     return clip
 
 
-if __name__ == "__main__":
+# A macro runs in ParaView's console; anything else only imports this.
+if __name__ in ("__main__", "__vtkconsole__"):
     activeView = GetActiveViewOrCreate("RenderView")
     SetActiveSource(CutRegions(GetActiveSource(), activeView))
     Render(activeView)

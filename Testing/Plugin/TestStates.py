@@ -121,7 +121,7 @@ def CheckPicture(view):
 
 
 def CheckExample():
-    """The macro as users run it: on the active source, in the active view; and the state of that."""
+    """The macro as ParaView runs it, on the active source, in the active view; and the state of that."""
     Start()
     view = CreateRenderView(ViewSize=[600, 450])
     # Without a layout the window stays empty.
@@ -130,7 +130,7 @@ def CheckExample():
     mesher = ConformingDelaunayMesher(registrationName="Mesher", Input=device,
                                       MaximumEdgeLength=0.06, GenerateMeshPoints=1)
     SetActiveSource(mesher)
-    runpy.run_path(os.path.join(MACROS, "region_cut.py"), run_name="__main__")
+    runpy.run_path(os.path.join(MACROS, "region_cut.py"), run_name="__vtkconsole__")
     if os.environ.get("CDM_UPDATE_BASELINES") == "1":
         SaveState(EXAMPLE)
     CheckPicture(view)
