@@ -2,9 +2,9 @@
 """A macro: cuts the mesh open and gives each region a color of its own, with its name.
 
 In ParaView: Macros > Import New Macro, once; then select a mesh with the cell array RegionId and
-choose the macro. The half of the mesh in front of a plane across the shortest side of its bounding box
-goes, in whole tetrahedra, and the camera looks at the cut. The plane can be moved in the properties of
-the clip that the macro makes.
+choose the macro. The half of the mesh in front of a plane across the shortest side of its bounding
+box goes, in whole tetrahedra, and the camera looks at the cut. The plane can be moved in the
+properties of the clip that the macro makes.
 """
 from paraview.simple import *
 
@@ -36,7 +36,7 @@ def ColorByRegion(display, names):
 
 
 def CutRegions(source, view):
-    """A crinkled clip of the source, shown instead of it and colored by region; returns the clip."""
+    """A crinkled clip of the source, shown instead of it, colored by region; returns the clip."""
     source.UpdatePipeline()
     regions = source.GetCellDataInformation().GetArray("RegionId")
     if regions is None:

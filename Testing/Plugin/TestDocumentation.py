@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The manual: examples and tutorials run, pictures are what they make, links and names are right.
 
-The page of a filter has a python block that leaves the variables `before` and `after`, data to be drawn side by side,
-and perhaps `color`, an array for each of them, or None: then it is not cut open. The picture Page<Filter>.png is compared with its
-baseline, which is the one that the page shows. The python blocks of a tutorial are one script, which
-writes pictures Tutorial*.png; the program of the C++ tutorial is that of Testing/Package.
+The page of a filter has a python block that leaves the variables `before` and `after`, data to be
+drawn side by side, and perhaps `color`, an array for each of them, or None: then it is not cut
+open. The picture Page<Filter>.png is compared with its baseline, which is the one that the page
+shows. The python blocks of a tutorial are one script, which writes pictures Tutorial*.png; the
+program of the C++ tutorial is that of Testing/Package.
 """
 
 import glob
@@ -170,7 +171,8 @@ def DrawPage(name, text):
         half.UpdatePipeline()
         boxes.append(half.GetDataInformation().GetBounds())
     bounds = [(min if i % 2 == 0 else max)(box[i] for box in boxes) for i in range(6)]
-    picture = numpy.hstack([Draw(half, color, bounds) for half, color in zip(halves, variables["color"])])
+    picture = numpy.hstack([Draw(half, color, bounds)
+                            for half, color in zip(halves, variables["color"])])
     WritePixels(os.path.join(OUTPUT, "Page%s.png" % name), picture)
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The real ParaView: loads the plugin, makes a device, meshes it by the menus, takes a picture.
 
-Starts ParaView with the command of the README, and plays the events of Gui.xml; looks at the picture,
-at the states that it saves after a change, its undoing and its redoing, and at the picture of
-Plugin/Examples/mos_transistor.pvsm.
+Starts ParaView with the command of the README, and plays the events of Gui.xml; looks at the
+picture, at the states that it saves after a change, its undoing and its redoing, and at the
+picture of Plugin/Examples/mos_transistor.pvsm.
 """
 
 import os

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every filter of the plugin explains itself, and the plugin offers what the classes offer.
 
-Parses the server-manager XML, and compares it with the wrapped classes: each proxy and property has
-a help text, real numbers with their unit, each class has a proxy, each option of a class has a
-property with the same default, and output ports have names. What groups and decorators of the panels
-speak of is there. ParaView's help file, if it was built, has a page and a picture for each proxy.
+Parses the server-manager XML, and compares it with the wrapped classes: each proxy and property
+has a help text, real numbers with their unit, each class has a proxy, each option of a class has a
+property with the same default, and output ports have names. What groups and decorators of the
+panels speak of is there. ParaView's help file, if it was built, has a page and a picture for each
+proxy.
 """
 
 import glob

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """States and traces: a pipeline with every source and filter of the plugin comes back as it was.
 
-Makes the pipeline with options that differ from their defaults, and then again from a ParaView state
-(.pvsm), from a Python state (.py) and from the trace of its making, each in an empty session. Options,
-connections and numbers of points and cells have to be the same.
+Makes the pipeline with options that differ from their defaults, and then again from a ParaView
+state (.pvsm), from a Python state (.py) and from the trace of its making, each in an empty
+session. Options, connections and numbers of points and cells have to be the same.
 
-The state Plugin/Examples/mos_transistor.pvsm, of a mesh that the macro region_cut has cut open, loads and
-shows the picture RegionCut.png. With CDM_UPDATE_BASELINES=1 in the environment it is made anew.
+The state Plugin/Examples/mos_transistor.pvsm, of a mesh that the macro region_cut has cut open,
+loads and shows the picture RegionCut.png. With CDM_UPDATE_BASELINES=1 in the environment it is
+made anew.
 """
 
 import glob
@@ -121,7 +122,7 @@ def CheckPicture(view):
 
 
 def CheckExample():
-    """The macro as ParaView runs it, on the active source, in the active view; and the state of that."""
+    """The macro as ParaView runs it, on what is active; and the state of that."""
     Start()
     view = CreateRenderView(ViewSize=[600, 450])
     # Without a layout the window stays empty.
