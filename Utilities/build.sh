@@ -11,6 +11,7 @@ packages=(
   libcgal-dev                      # exact predicates
   libgtest-dev                     # unit tests
   xvfb libqt5svg5                  # a display, and the icons of the GUI on it
+  qttools5-dev qtxmlpatterns5-dev-tools   # help pages in ParaView
 )
 if [ "$1" = ON ]; then
   packages+=(libeigen3-dev gmsh)   # solvers, and meshes to compare with

@@ -75,7 +75,7 @@ public:
     output->SetVerts(this->Vertices.Cells);
     output->SetLines(this->Lines.Cells);
     output->SetPolys(this->Polygons.Cells);
-    output->GetCellData()->AddArray(kinds);
+    output->GetCellData()->SetScalars(kinds);
     output->GetCellData()->AddArray(cells);
     output->GetCellData()->AddArray(otherCells);
   }

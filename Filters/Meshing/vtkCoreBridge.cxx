@@ -1009,6 +1009,7 @@ void FromStructuralEdges(
   {
     output->GetCellData()->AddArray(array);
   }
+  output->GetCellData()->SetScalars(kinds);
   CopyTuples(surface->GetPointData(), selection.GetSources(), output->GetPointData(),
     { SurfacePointIdName });
   output->GetPointData()->AddArray(surfacePoints);

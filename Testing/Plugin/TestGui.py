@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The real ParaView: loads the plugin, makes a device, meshes it by the menus, takes a picture.
 
-Starts ParaView with the command of the README, and plays the events of Gui.xml.
+Starts ParaView with the command of the README, and plays the events of Gui.xml; looks at the
+picture, at the states that it saves after a change, its undoing and its redoing, and at the
+picture of Plugin/Examples/mos_transistor.pvsm.
 """
 
 import os
@@ -11,6 +13,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree as ElementTree
 
 import numpy
 import ImageComparison
@@ -36,9 +39,20 @@ def CheckPicture(path):
     assert shades > 20, "the picture shows no mesh"
 
 
+def GetOptions(path):
+    """The options of the mesher that Gui.xml changes, as a state has them."""
+    (mesher,) = [proxy for proxy in ElementTree.parse(path).getroot().iter("Proxy")
+                 if proxy.get("type") == "ConformingDelaunayMesher"]
+    values = {option.get("name"): [element.get("value") for element in option.iter("Element")]
+              for option in mesher.iter("Property")}
+    return [float(values[name][0]) for name in ("AddSteinerPoints", "MaximumVolume")]
+
+
 with tempfile.TemporaryDirectory() as folder:
     # The README's command speaks of build/ in the folder of the project.
     os.symlink(os.environ["CDM_BINARY_DIR"], os.path.join(folder, "build"))
+    shutil.copy(os.path.join(os.environ["CDM_SOURCE_DIR"], "Plugin", "Examples",
+                             "mos_transistor.pvsm"), folder)
     script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "Gui.xml")
     command = GetCommand() + [
         "--dr", "--test-directory=" + folder, "--test-script=" + script, "--exit"]
@@ -50,6 +64,14 @@ with tempfile.TemporaryDirectory() as folder:
     assert "ERROR" not in run.stdout and "ERR|" not in run.stdout, "ParaView reports an error"
     picture = os.path.join(folder, "Gui.png")
     CheckPicture(picture)
+    difference = ImageComparison.FindDifference(
+        os.path.join(folder, "State.png"),
+        os.path.join(os.environ["CDM_DATA_DIR"], "Baselines", "RegionCut.png"))
+    assert difference is None, difference
+    for name, expected in (("changed", [1.0, 0.0005]), ("undone", [0.0, 0.0]),
+                           ("redone", [1.0, 0.0005])):
+        found = GetOptions(os.path.join(folder, name + ".pvsm"))
+        assert found == expected, (name, found)
     shutil.copy(picture, os.path.join(os.environ["CDM_OUTPUT_DIR"], "Gui.png"))
 print("gui: ok")
 sys.exit(0)

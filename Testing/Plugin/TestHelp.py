@@ -1,18 +1,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every filter of the plugin explains itself, and the plugin offers what the classes offer.
 
-Parses the server-manager XML, and compares it with the wrapped classes: each proxy and property has
-a help text, each class has a proxy, each option of a class has a property with the same default,
-and output ports have names.
+Parses the server-manager XML, and compares it with the wrapped classes: each proxy and property
+has a help text, real numbers with their unit, each class has a proxy, each option of a class has a
+property with the same default, and output ports have names. What groups and decorators of the
+panels speak of is there. ParaView's help file, if it was built, has a page and a picture for each
+proxy.
 """
 
 import glob
 import os
+import re
+import sqlite3
 import sys
 import xml.etree.ElementTree as ElementTree
 
 import conforming_delaunay
 
+UNITS = re.compile(r"\bunits?\b|degrees|micrometres|\bratio\b|part of|spacings|at these [xyz]|"
+                   r"direction|sizes may grow", re.IGNORECASE)
 problems = []
 
 
@@ -67,6 +73,21 @@ for name, proxy in sorted(proxies.items()):
             properties[child.get("name")] = child
             Check(HasText(child.find("Documentation")), name, child.get("name"), "has no help text")
 
+        if child.tag == "DoubleVectorProperty":
+            Check(UNITS.search(child.find("Documentation").text), name, child.get("name"),
+                  "has no unit in its help text")
+        # Otherwise the value of a new filter would depend on whether its input is up to date, and a
+        # script that asks for the default of the class would not get it.
+        Check(child.find("BoundsDomain") is None or child.find("Hints/NoDefault") is not None,
+              name, child.get("name"), "takes its default from its input")
+    grouped = [entry.get("name") for entry in proxy.iter("Property")
+               if entry.get("function") is None]
+    Check(len(grouped) == len(set(grouped)), name, "has properties in two groups", grouped)
+    deciders = [decorator.get("property") for decorator in proxy.iter("PropertyWidgetDecorator")
+                if decorator.get("property")]
+    for mentioned in {*grouped, *deciders}:
+        Check(mentioned in properties, name, "has no property", mentioned)
+
     if name not in classes:
         continue
     options = GetOptions(classes[name])
@@ -94,6 +115,17 @@ for name, proxy in sorted(proxies.items()):
               if child.tag == "InputProperty"]
     Check(sorted(inputs) == list(range(instance.GetNumberOfInputPorts())),
           name, "has the input ports", inputs)
+
+if os.environ.get("CDM_HELP_FILE"):
+    # A Qt help file is a database.
+    with sqlite3.connect(os.environ["CDM_HELP_FILE"]) as database:
+        files = {row[0] for row in database.execute("SELECT Name FROM FileNameTable")}
+    for path in sorted(glob.glob(os.path.join(os.environ["CDM_PLUGIN_XML_DIR"], "*.xml"))):
+        for group in ElementTree.parse(path).getroot().iter("ProxyGroup"):
+            for proxy in group:
+                page = "%s.%s.html" % (group.get("name"), proxy.get("name"))
+                picture = "Page%s.png" % proxy.get("name")
+                Check({page, picture} <= files, "the help file lacks", page, "or", picture)
 
 for problem in problems:
     print(problem)

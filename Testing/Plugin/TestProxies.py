@@ -25,6 +25,11 @@ def Volume(proxy):
     return sum(values)
 
 
+def GetScalars(proxy, port=0):
+    """The cell array that ParaView colors new data by."""
+    return servermanager.Fetch(proxy, idx=port).GetCellData().GetScalars().GetName()
+
+
 cube = Box(XLength=1.0, YLength=2.0, ZLength=3.0)
 
 surface = BoundaryTriangulator(Input=cube)
@@ -35,6 +40,7 @@ assert surface.GetDataInformation().GetNumberOfPoints() == 8, "coincident points
 edges = StructuralEdgeExtractor(Input=surface)
 edges.UpdatePipeline()
 assert Count(edges, 1) == 12, "a box has 12 edges, not %d" % Count(edges, 1)
+assert GetScalars(OutputPort(edges, 1), 1) == "Kind"
 
 refined = DelaunaySurfaceRefiner(Input=surface, MaximumEdgeLength=1.0)
 refined.UpdatePipeline()
@@ -90,6 +96,7 @@ with tempfile.TemporaryDirectory() as folder:
 mesher = ConformingDelaunayMesher(Input=cube, MaximumEdgeLength=1.0)
 mesher.UpdatePipeline()
 assert abs(Volume(mesher) - 6.0) < 6e-12, "volume %.17g" % Volume(mesher)
+assert GetScalars(mesher) == "RegionId"
 regions = mesher.GetCellDataInformation().GetArray("RegionId")
 assert regions is not None and regions.GetRange() == (0.0, 0.0)
 without = Count(mesher)
@@ -144,6 +151,40 @@ assert abs(Volume(voxels) - 125.0) < 1e-9, "volume %.17g" % Volume(voxels)
 assert voxels.GetCellDataInformation().GetArray("RegionId").GetRange() == (1.0, 2.0)
 # Two boxes with a common side.
 assert Count(interfaces) == 22, Count(interfaces)
+
+# A surface that intersects itself: no tetrahedra, and the problems to look at.
+crossing = AppendGeometry(Input=[Sphere(), Sphere(Center=[0.4, 0.0, 0.0])])
+failing = ConformingDelaunayMesher(Input=crossing)
+print("The next error is expected.")
+failing.UpdatePipeline()
+assert Count(failing) == 0 and Count(failing, 1) == 0
+assert Count(failing, 2) > 0, "the problems are shown"
+assert GetScalars(OutputPort(failing, 2), 2) == "ProblemKind"
+failing.ResolveSelfIntersections = 1
+failing.UpdatePipeline()
+assert Volume(failing) > 0.0
+
+
+def Abort(algorithm, event):
+    """What an abort button does: from a progress event, while the filter runs."""
+    texts.append(algorithm.GetProgressText())
+    if algorithm.GetProgress() > 0.3:
+        algorithm.SetAbortExecute(1)
+
+
+texts = []
+aborted = ConformingDelaunayMesher(Input=cube, MaximumEdgeLength=0.1)
+algorithm = aborted.GetClientSideObject()
+observer = algorithm.AddObserver("ProgressEvent", Abort)
+aborted.UpdatePipeline()
+assert Count(aborted) == 0, "an aborted run leaves no tetrahedra"
+assert any(text and text.startswith("Surface refinement: ") for text in texts), texts
+assert not any(text and text.startswith("Tetrahedralization") for text in texts), texts
+algorithm.RemoveObserver(observer)
+algorithm.SetAbortExecute(0)
+aborted.MaximumEdgeLength = 0.5
+aborted.UpdatePipeline()
+assert abs(Volume(aborted) - 6.0) < 6e-12, "after an abort it runs again"
 
 device = TechnologyStructureSource()
 device.UpdatePipeline()

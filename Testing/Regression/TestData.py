@@ -31,13 +31,18 @@ def GetFiles():
 
 
 def GetOrigin(name):
-    """The image test that draws a baseline."""
-    folder = os.path.dirname(os.path.abspath(__file__))
-    for script in sorted(os.listdir(folder)):
-        if script.startswith("Test") and script.endswith(".py"):
-            with open(os.path.join(folder, script), encoding="utf-8") as file:
-                if '"%s"' % os.path.basename(name) in file.read():
-                    return "drawn by `Testing/Regression/%s`" % script
+    """The test that draws a baseline."""
+    # The manual's pictures are named in its pages, not in the test.
+    if re.match(r"Baselines/(Page|Tutorial)\w+\.png$", name):
+        return "drawn by `Testing/Plugin/TestDocumentation.py`"
+    testing = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    for folder in ("Regression", "Plugin"):
+        for script in sorted(os.listdir(os.path.join(testing, folder))):
+            if script.startswith("Test") and script.endswith(".py"):
+                with open(os.path.join(testing, folder, script), encoding="utf-8") as file:
+                    text = file.read()
+                if '"%s"' % os.path.basename(name) in text and "AssertSameAsBaseline" in text:
+                    return "drawn by `Testing/%s/%s`" % (folder, script)
     sys.exit("no test draws Data/%s" % name)
 
 

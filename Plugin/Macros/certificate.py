@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A macro: has the selected tetrahedra certified, and writes the certificate into the view.
+
+In ParaView: Macros > Import New Macro, once; then select a mesh and choose the macro. It adds the
+filter Delaunay Mesh Criteria, whose output Faults shows what is wrong with the mesh, if anything
+is.
+"""
+from paraview.simple import *
+
+
+def Certify(source, view):
+    """The certificate as text in the view; returns the criteria and the text."""
+    # Not by its name, which paraview.simple lacks if the plugin was loaded later.
+    criteria = servermanager.filters.DelaunayMeshCriteria(Input=source)
+    servermanager.ParaViewPipelineController().RegisterPipelineProxy(criteria.SMProxy)
+    criteria.UpdatePipeline()
+    # No cell passes, but the field data do.
+    nothing = Threshold(Input=criteria, Scalars=["CELLS", "IsDelaunay"],
+                        ThresholdMethod="Below Lower Threshold", LowerThreshold=-1)
+    certificate = servermanager.Fetch(nothing).GetFieldData().GetAbstractArray("Certificate")
+    Delete(nothing)
+    if certificate is None:
+        raise RuntimeError("Select tetrahedra: the messages above say what is wrong with this.")
+    text = Text(Text=certificate.GetValue(0).replace("; ", "\n"))
+    display = Show(text, view)
+    display.WindowLocation = "Upper Left Corner"
+    display.Justification = "Left"
+    display.FontSize = 10
+    return criteria, text
+
+
+# A macro runs in ParaView's console; anything else only imports this.
+if __name__ in ("__main__", "__vtkconsole__"):
+    activeView = GetActiveViewOrCreate("RenderView")
+    activeCriteria, _ = Certify(GetActiveSource(), activeView)
+    SetActiveSource(activeCriteria)
+    Render(activeView)
