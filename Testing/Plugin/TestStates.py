@@ -39,6 +39,9 @@ OPTIONS = {
     "Moving": {"FollowRatio": 3.0, "Displacement": ["POINTS", "Displacement"]},
     "Criteria": {},
     "Volumes": {"GenerateBoxes": 1},
+    "Distributed": {},
+    "Interfaces": {"MaximumDeviation": 0.5, "Labels": ["POINTS", "Material"]},
+    "Layout": {"Steps": [-1.0, 0.0, 1.0, 0.0, 0.0, 0.2, 0.8, 1.0], "Margin": 0.1},
     "Mesher": {"MaximumEdgeLength": 0.2}}
 
 
@@ -65,6 +68,12 @@ def MakePipeline():
     Make("Moving", MovingBoundaryRemesher, Input=calculator)
     Make("Criteria", DelaunayMeshCriteria, Input=front, Boundary=OutputPort(front, 1))
     Make("Volumes", VoronoiControlVolumes, Input=front)
+    Make("Distributed", DistributedTetrahedralizer, Input=refiner,
+         MeshPoints=OutputPort(refiner, 2))
+    halves = Calculator(registrationName="Halves", Input=wavelet, ResultArrayName="Material",
+                        Function="if(coordsX>0.5,2,1)")
+    Make("Interfaces", MaterialInterfaceExtractor, Input=halves)
+    Make("Layout", LayoutExtruder, Input=Disk(registrationName="Disk"))
     mesher = Make("Mesher", ConformingDelaunayMesher, Input=device, Sizing=sizing)
     Show(mesher)
 
