@@ -12,8 +12,10 @@
 #include "vtkSliverRemover.h"
 #include "vtkSteinerPointRefiner.h"
 
+#include "Core/Measures.h"
 #include "Core/MeshBoundary.h"
 #include "Core/MeshChecks.h"
+#include "Core/StructuralEdges.h"
 
 #include <vtkAppendFilter.h>
 #include <vtkCellData.h>
@@ -39,6 +41,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <string>
@@ -208,6 +211,26 @@ cdm::TriangleMesh UpdateBoundary(const cdm::TetMesh& mesh, const cdm::TriangleMe
   return after;
 }
 
+/** How much of a region peeling may take, at most: a layer as thin as what counts as flat. */
+double GetPeeledVolumeRatio(const cdm::TriangleMesh& boundary, const cdm::MeshCheckReport& report)
+{
+  double area = 0.0;
+  for (const cdm::TriangleIds& ids : boundary.Triangles)
+  {
+    area += cdm::GetTriangleArea(
+      boundary.Points[ids[0]], boundary.Points[ids[1]], boundary.Points[ids[2]]);
+  }
+  double smallest = std::numeric_limits<double>::max();
+  for (const cdm::RegionVolume& region : report.Regions)
+  {
+    smallest = std::min(smallest, region.Volume);
+  }
+  vtkNew<vtkSliverRemover> remover;
+  const double thickness =
+    remover->GetFlatnessRatio() * cdm::GetBoundingBoxDiagonal(boundary.Points);
+  return thickness * area / smallest;
+}
+
 /** The spacing of mesh points along the axes; 0 is the longest edge of the boundary. */
 std::array<double, 3> ChooseSpacing(const double (&spacing)[3], double longestEdge)
 {
@@ -236,16 +259,20 @@ cdm::Status Finish(const Run& run, vtkUnstructuredGrid* grid, vtkPolyData* surfa
   const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(run.Filter).Part(0.95, 1.0);
   if (isPeeled)
   {
-    // Volumes are those of the boundary before: a patch that was peeled has none.
-    cdm::MeshCheckReport volumes;
-    status = cdm::CheckTetMesh(mesh, &boundary, context.Part(0.0, 0.5), volumes);
+    cdm::MeshCheckReport before;
+    status = cdm::CheckTetMesh(mesh, &boundary, context.Part(0.0, 0.5), before);
+    const double allowed = GetPeeledVolumeRatio(boundary, before);
     boundary = UpdateBoundary(mesh, boundary);
     if (status.IsOk())
     {
       status = cdm::CheckTetMesh(mesh, &boundary, context.Part(0.5, 1.0), report);
     }
-    report.Regions = volumes.Regions;
-    report.LargestVolumeError = volumes.LargestVolumeError;
+    // The new facets are the mesh's own: only those before tell whether more is missing.
+    if (before.LargestVolumeError > allowed)
+    {
+      report.Regions = before.Regions;
+      report.LargestVolumeError = before.LargestVolumeError;
+    }
     vtkCoreBridge::FromTriangleMesh(boundary, boundaryOutput);
     vtkCoreBridge::CopyTriangleTuples(surface, boundary.SourceCells, boundaryOutput);
     boundaryOutput->GetPointData()->PassData(grid->GetPointData());

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FilterTesting.h"
 
+#include <vtkCleanPolyData.h>
 #include <vtkConformingDelaunayMesher.h>
 #include <vtkFieldData.h>
 #include <vtkMath.h>
 #include <vtkSphereSource.h>
 #include <vtkStringArray.h>
+#include <vtkSuperquadricSource.h>
+#include <vtkTriangleFilter.h>
 
 #include <cmath>
 
@@ -105,6 +108,28 @@ TEST(ConformingDelaunayMesherFilter, MeshesTurnedBoxes)
 TEST(ConformingDelaunayMesherFilter, MeshesTurnedBoxesWithShortEdges)
 {
   ExpectTurnedBoxes(0.4);
+}
+
+/** Of coordinates in single precision: the tetrahedra peeled off have a volume, 1e-10 of the whole. */
+TEST(ConformingDelaunayMesherFilter, PeelingLeavesAValidMesh)
+{
+  vtkNew<vtkSuperquadricSource> source;
+  source->ToroidalOn();
+  source->SetThetaResolution(24);
+  source->SetPhiResolution(24);
+  source->SetSize(10.0);
+  vtkNew<vtkTriangleFilter> triangles;
+  triangles->SetInputConnection(source->GetOutputPort());
+  vtkNew<vtkCleanPolyData> surface;
+  surface->SetInputConnection(triangles->GetOutputPort());
+  vtkNew<vtkConformingDelaunayMesher> filter;
+  filter->SetInputConnection(surface->GetOutputPort());
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->Update();
+  EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+  EXPECT_TRUE(Contains(GetCertificate(filter->GetOutput()), ": valid"))
+    << GetCertificate(filter->GetOutput());
 }
 
 TEST(ConformingDelaunayMesherFilter, WorksWithoutSliverRemoval)

@@ -41,7 +41,9 @@ def GetOrigin(name):
             if script.startswith("Test") and script.endswith(".py"):
                 with open(os.path.join(testing, folder, script), encoding="utf-8") as file:
                     text = file.read()
-                if '"%s"' % os.path.basename(name) in text and "AssertSameAsBaseline" in text:
+                # The gallery's tests leave the comparison to GalleryExample.
+                if ('"%s"' % os.path.basename(name) in text
+                        and re.search("AssertSameAsBaseline|GalleryExample", text)):
                     return "drawn by `Testing/%s/%s`" % (folder, script)
     sys.exit("no test draws Data/%s" % name)
 
