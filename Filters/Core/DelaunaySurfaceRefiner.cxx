@@ -35,6 +35,9 @@ constexpr double CrumplingRatio = 1.0 / 8.0;
 /** After so many attempts all edges of curved facets are structural. */
 constexpr int LargestNumberOfAttempts = 20;
 
+/** Flips on curved facets may go in circles: so many are allowed for each triangle and new point. */
+constexpr std::int64_t FlipsPerTriangle = 50;
+
 /** New points keep this distance, as a ratio of the edge, from the ends of an edge they split. */
 constexpr double SmallestPiece = 0.05;
 /** A disturbing point this close to the plane of a triangle, in units of its circumradius, is
@@ -392,7 +395,7 @@ private:
   BallIndex EmptyEdges;
   /** Segments that are disturbed and cannot be split. */
   std::vector<char> IsDisturbed;
-  Id FlipBudget = 0;
+  std::int64_t FlipBudget = 0;
 };
 
 Status SurfaceRefiner::Prepare()
@@ -1118,6 +1121,7 @@ Id SurfaceRefiner::AddPoint(
 {
   const Id point = static_cast<Id>(this->Points.size());
   this->Points.push_back(position);
+  this->FlipBudget += FlipsPerTriangle;
   this->Octree.Insert(point, position);
   this->NewPointFacets.push_back(facet);
   this->NewPointEdges.push_back(inputEdge);
@@ -1922,7 +1926,7 @@ Status SurfaceRefiner::Run()
   {
     return status;
   }
-  this->FlipBudget = 100000 + 50 * this->Surface->GetNumberOfTriangles();
+  this->FlipBudget = 100000 + FlipsPerTriangle * this->Surface->GetNumberOfTriangles();
   this->Saturate();
   status = this->Refine();
   // One by one, so that points which match those are made before the next one.

@@ -200,6 +200,19 @@ TEST(DelaunaySurfaceRefiner, HonoursAreaAngleAndSizing)
   MeshAndCheck(refined);
 }
 
+/** Many more flips than the few triangles of the input have need of. */
+TEST(DelaunaySurfaceRefiner, RefinesFewLargeTrianglesToManySmallOnes)
+{
+  DelaunaySurfaceRefinerOptions options;
+  options.MaximumEdgeLength = 0.012;
+  const DelaunaySurfaceRefinerOutput output =
+    Refine(Triangulate(MakeLayers({ 0.3, 0.31 }, 0.4)), options);
+  EXPECT_GT(output.Report.Flips, 200000);
+  // Not many more than equilateral triangles with such edges would be.
+  EXPECT_LT(output.Surface.Triangles.size() * std::sqrt(0.1875) * 0.012 * 0.012,
+    8.0 * GetArea(output.Surface));
+}
+
 TEST(DelaunaySurfaceRefiner, KeepsMeshPointsAndDropsThoseTooClose)
 {
   const TriangleMesh box = Triangulate(MakeBox({ 1.0, 1.0, 1.0 }));
