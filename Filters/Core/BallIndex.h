@@ -10,7 +10,7 @@
  *
  * Cost: O(1) to add or remove; O(levels) cells for a query, which looks at most balls in them: that
  * was a third of the time of refining a surface while they were in double precision and tested one
- * by one, and is a twentieth now. About 100 bytes per ball.
+ * by one, and is an eighth now. About 100 bytes per ball.
  */
 #ifndef cdmBallIndex_h
 #define cdmBallIndex_h

@@ -36,6 +36,18 @@ struct Box
     this->Add(box.Low);
     this->Add(box.High);
   }
+  /** Of a point to the nearest one of the box; 0 inside. */
+  double GetSquaredDistance(const Vec3& p) const
+  {
+    double distance = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double nearest =
+        std::min(std::max(p[axis], this->Low[axis]), this->High[axis]) - p[axis];
+      distance += nearest * nearest;
+    }
+    return distance;
+  }
   bool Overlaps(const Box& box) const
   {
     return this->Low.X <= box.High.X && box.Low.X <= this->High.X && this->Low.Y <= box.High.Y &&

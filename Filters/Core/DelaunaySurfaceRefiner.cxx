@@ -4,8 +4,10 @@
 #include "BallIndex.h"
 #include "DuplicateTriangles.h"
 #include "IdLists.h"
+#include "MatchingPoints.h"
 #include "Measures.h"
 #include "ParallelLoop.h"
+#include "PointSearches.h"
 #include "Predicates.h"
 #include "RefinableSurface.h"
 #include "SpatialSort.h"
@@ -55,204 +57,6 @@ constexpr double CloseMatchRatio = 0.5;
 /** Among the edges around so many triangles one is looked for that a new point would disturb. */
 constexpr std::size_t LargestCavity = 1000;
 
-/** Distance from a position to the nearest point other than one. */
-class NearestPointVisitor
-{
-public:
-  NearestPointVisitor(const Vec3& position, Id except) : Position(position), Except(except) {}
-
-  double Order(const Box& box) const
-  {
-    double distance = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const double c = this->Position[axis];
-      const double nearest = std::min(std::max(c, box.Low[axis]), box.High[axis]) - c;
-      distance += nearest * nearest;
-    }
-    return distance < this->SquaredDistance ? distance : Infinity;
-  }
-
-  void Visit(Id id, const Vec3& p)
-  {
-    const double distance = SquaredNorm(p - this->Position);
-    if (id != this->Except && distance < this->SquaredDistance)
-    {
-      this->SquaredDistance = distance;
-      this->Nearest = id;
-    }
-  }
-
-  Id Nearest = NoId;
-  double SquaredDistance = Infinity;
-
-private:
-  Vec3 Position;
-  Id Except;
-};
-
-/** Points within a distance of a triangle. */
-class NearTriangleVisitor
-{
-public:
-  NearTriangleVisitor(
-    const Vec3& a, const Vec3& b, const Vec3& c, double distance, std::vector<char>& isNear)
-    : Corners{ a, b, c }, Distance(distance), IsNear(isNear)
-  {
-    this->Bounds.Add(a);
-    this->Bounds.Add(b);
-    this->Bounds.Add(c);
-  }
-
-  double Order(const Box& box) const
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      if (box.Low[axis] > this->Bounds.High[axis] + this->Distance ||
-        box.High[axis] < this->Bounds.Low[axis] - this->Distance)
-      {
-        return Infinity;
-      }
-    }
-    return 0.0;
-  }
-
-  void Visit(Id id, const Vec3& p)
-  {
-    if (!this->IsNear[id] &&
-      GetDistanceToTriangle(p, this->Corners[0], this->Corners[1], this->Corners[2]) <=
-        this->Distance)
-    {
-      this->IsNear[id] = 1;
-    }
-  }
-
-private:
-  Vec3 Corners[3];
-  Box Bounds;
-  double Distance;
-  std::vector<char>& IsNear;
-};
-
-/**
- * Takes over each coordinate that differs from that of a matching point by rounding errors only:
- * what is parallel to an axis stays so exactly, and the cells in between become exactly
- * cospherical, which stage 4 can make good tetrahedra of.
- */
-Vec3 SnapToCoordinates(Vec3 position, const Vec3& model, double size)
-{
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (std::abs(position[axis] - model[axis]) <= 1e-15 * size)
-    {
-      position[axis] = model[axis];
-    }
-  }
-  return position;
-}
-
-/**
- * Two points that match across a narrow gap leave the pieces at them alone only if they differ along
- * the gap by less than its squared width over the size of the pieces. Where that is less than
- * rounding leaves, one of the doubles next to the position is taken.
- * @param getOffset distance from the model along the gap, in extended precision
- * @param range at most so many units in the last place are gone from the position
- */
-template <typename GetOffset>
-Vec3 MatchExactly(
-  const Vec3& position, const Vec3& model, double size, int range, GetOffset&& getOffset)
-{
-  const auto getOffsetAt = [&](const Vec3& p)
-  {
-    return getOffset(static_cast<long double>(p.X - model.X),
-      static_cast<long double>(p.Y - model.Y), static_cast<long double>(p.Z - model.Z));
-  };
-  const long double allowed = SquaredNorm(position - model) / (8.0 * size);
-  Vec3 best = position;
-  long double smallest = getOffsetAt(position);
-  if (smallest <= allowed)
-  {
-    return best;
-  }
-  std::vector<double> steps[3];
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    steps[axis].resize(2 * range + 1, position[axis]);
-    for (int i = 1; i <= range; ++i)
-    {
-      steps[axis][range + i] = std::nextafter(steps[axis][range + i - 1], Infinity);
-      steps[axis][range - i] = std::nextafter(steps[axis][range - i + 1], -Infinity);
-    }
-  }
-  // Shell by shell: no farther than needed.
-  for (int shell = 1; shell <= range && smallest > allowed; ++shell)
-  {
-    for (int i = -shell; i <= shell; ++i)
-    {
-      for (int j = -shell; j <= shell; ++j)
-      {
-        const bool isFace = std::abs(i) == shell || std::abs(j) == shell;
-        for (int k = -shell; k <= shell; k += isFace ? 1 : 2 * shell)
-        {
-          const Vec3 candidate{ steps[0][range + i], steps[1][range + j], steps[2][range + k] };
-          const long double offset = getOffsetAt(candidate);
-          if (offset < smallest)
-          {
-            smallest = offset;
-            best = candidate;
-          }
-        }
-      }
-    }
-  }
-  return best;
-}
-
-/** Points strictly inside the diametral sphere of an edge, other than its ends. */
-class DiametralSphereVisitor
-{
-public:
-  DiametralSphereVisitor(const std::vector<Vec3>& points, const EdgeIds& edge)
-    : Edge(edge), A(points[edge[0]]), B(points[edge[1]]), Center(0.5 * (this->A + this->B)),
-      Reach(0.5 * Distance(this->A, this->B) * (1.0 + 1e-9))
-  {
-  }
-
-  double Order(const Box& box) const
-  {
-    double distance = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const double c = this->Center[axis];
-      const double nearest = std::min(std::max(c, box.Low[axis]), box.High[axis]) - c;
-      distance += nearest * nearest;
-    }
-    return distance <= this->Reach * this->Reach ? distance : Infinity;
-  }
-
-  void Visit(Id id, const Vec3& p)
-  {
-    const double distance = SquaredNorm(p - this->Center);
-    if (id != this->Edge[0] && id != this->Edge[1] && distance < this->Deepest &&
-      InDiametralSphere(this->A, this->B, p) > 0)
-    {
-      this->Found = id;
-      this->Deepest = distance;
-    }
-  }
-
-  /** The deepest one, or NoId. */
-  Id Found = NoId;
-
-private:
-  EdgeIds Edge;
-  Vec3 A;
-  Vec3 B;
-  Vec3 Center;
-  double Reach;
-  double Deepest = Infinity;
-};
-
 /** Two facets in one number, in any order. */
 std::uint64_t GetFacetPair(Id a, Id b)
 {
@@ -291,7 +95,7 @@ private:
   Status SplitRequested();
   Status Refine();
   void Process(Id t);
-  void NoteCrumpling(Id t, Id newPoints);
+  void NoteCrumpling(Id t, Id newPoint);
   void ProcessEdge();
   bool AreEdgesTested() const
   {

@@ -46,13 +46,7 @@ public:
 
   double Order(const Box& box) const
   {
-    double distance = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const double c = this->Center[axis];
-      const double nearest = std::min(std::max(c, box.Low[axis]), box.High[axis]) - c;
-      distance += nearest * nearest;
-    }
+    const double distance = box.GetSquaredDistance(this->Center);
     if (this->Found.InsideSmallestSphere.size() >= EnoughPoints &&
       (this->IsOneEnough || this->IsCoplanarInside || (this->IsFrontInside && this->IsBackInside)))
     {

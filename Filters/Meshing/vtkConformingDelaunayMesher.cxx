@@ -212,7 +212,8 @@ cdm::TriangleMesh UpdateBoundary(const cdm::TetMesh& mesh, const cdm::TriangleMe
 }
 
 /** How much of a region peeling may take, at most: a layer as thin as what counts as flat. */
-double GetPeeledVolumeRatio(const cdm::TriangleMesh& boundary, const cdm::MeshCheckReport& report)
+double GetPeeledVolumeRatio(
+  const cdm::TriangleMesh& boundary, const cdm::MeshCheckReport& report, double flatnessRatio)
 {
   double area = 0.0;
   for (const cdm::TriangleIds& ids : boundary.Triangles)
@@ -225,10 +226,7 @@ double GetPeeledVolumeRatio(const cdm::TriangleMesh& boundary, const cdm::MeshCh
   {
     smallest = std::min(smallest, region.Volume);
   }
-  vtkNew<vtkSliverRemover> remover;
-  const double thickness =
-    remover->GetFlatnessRatio() * cdm::GetBoundingBoxDiagonal(boundary.Points);
-  return thickness * area / smallest;
+  return flatnessRatio * cdm::GetBoundingBoxDiagonal(boundary.Points) * area / smallest;
 }
 
 /** The spacing of mesh points along the axes; 0 is the longest edge of the boundary. */
@@ -241,8 +239,8 @@ std::array<double, 3> ChooseSpacing(const double (&spacing)[3], double longestEd
 }
 
 /** Check the mesh, bring its boundary up to date if tetrahedra were peeled off, make outputs. */
-cdm::Status Finish(const Run& run, vtkUnstructuredGrid* grid, vtkPolyData* surface, bool isPeeled,
-  vtkUnstructuredGrid* output, vtkPolyData* boundaryOutput)
+cdm::Status Finish(const Run& run, vtkUnstructuredGrid* grid, vtkPolyData* surface,
+  vtkSliverRemover* remover, vtkUnstructuredGrid* output, vtkPolyData* boundaryOutput)
 {
   cdm::TetMesh mesh;
   cdm::TriangleMesh boundary;
@@ -257,11 +255,11 @@ cdm::Status Finish(const Run& run, vtkUnstructuredGrid* grid, vtkPolyData* surfa
     return status;
   }
   const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(run.Filter).Part(0.95, 1.0);
-  if (isPeeled)
+  if (remover->GetNumberOfPeeledTetrahedra() > 0)
   {
     cdm::MeshCheckReport before;
     status = cdm::CheckTetMesh(mesh, &boundary, context.Part(0.0, 0.5), before);
-    const double allowed = GetPeeledVolumeRatio(boundary, before);
+    const double allowed = GetPeeledVolumeRatio(boundary, before, remover->GetFlatnessRatio());
     boundary = UpdateBoundary(mesh, boundary);
     if (status.IsOk())
     {
@@ -614,8 +612,7 @@ cdm::Status vtkConformingDelaunayMesher::MeshPolygons(const std::string& prefix,
         return Finish(run,
           vtkUnstructuredGrid::SafeDownCast(
             (this->RemoveSlivers ? remover.Get() : maker)->GetOutputDataObject(0)),
-          vtkPolyData::SafeDownCast(maker->GetOutputDataObject(1)),
-          remover->GetNumberOfPeeledTetrahedra() > 0, mesh, boundary);
+          vtkPolyData::SafeDownCast(maker->GetOutputDataObject(1)), remover, mesh, boundary);
       });
   }
   problems->ShallowCopy(triangulator->GetOutputDataObject(1));

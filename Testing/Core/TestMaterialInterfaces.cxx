@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BoundaryTriangulator.h"
 #include "BoxTree.h"
+#include "EnclosedVolumes.h"
 #include "MaterialInterfaces.h"
 #include "Measures.h"
 #include "SurfaceOrientation.h"
@@ -72,22 +73,6 @@ TriangleMesh Extract(const LabelledGrid& grid, const MaterialInterfacesOptions& 
     ExtractMaterialInterfaces(grid, options, {}, surface, report ? *report : unused);
   EXPECT_TRUE(status.IsOk()) << status.Message;
   return surface;
-}
-
-/** Six times the volumes that the labels enclose: exact for small integers as coordinates. */
-std::map<Id, double> GetSixVolumes(const TriangleMesh& surface)
-{
-  std::map<Id, double> volumes;
-  for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
-  {
-    const TriangleIds& ids = surface.Triangles[t];
-    const double volume =
-      Dot(surface.Points[ids[0]], Cross(surface.Points[ids[1]], surface.Points[ids[2]]));
-    volumes[surface.Labels[t].Back] += volume;
-    volumes[surface.Labels[t].Front] -= volume;
-  }
-  volumes.erase(OutsideRegion);
-  return volumes;
 }
 
 /** Six times the number of cells of each region. */
@@ -248,7 +233,7 @@ TEST(MaterialInterfaces, OneCellIsACube)
       EXPECT_EQ(surface.Points.size(), 8u);
       EXPECT_EQ(surface.Triangles.size(), 12u);
       EXPECT_EQ(report.Faces, 6);
-      EXPECT_EQ(GetSixVolumes(surface), CountCells(grid));
+      EXPECT_EQ(testing_core::GetEnclosedSixVolumes(surface), CountCells(grid));
       ExpectSound(surface);
     }
   }
@@ -265,7 +250,7 @@ TEST(MaterialInterfaces, RandomGridsHaveTheirExactVolumes)
     {
       const TriangleMesh surface = Extract(grid, MakeOptions(0, reduce, 0.0));
       ExpectSound(surface);
-      EXPECT_EQ(GetSixVolumes(surface), CountCells(grid));
+      EXPECT_EQ(testing_core::GetEnclosedSixVolumes(surface), CountCells(grid));
       ExpectTriangulatorTakes(surface);
       if (testing::Test::HasFailure())
       {
@@ -290,7 +275,7 @@ TEST(MaterialInterfaces, RandomGridsStaySoundWhenSmoothedAndReduced)
       MaterialInterfacesReport report;
       const TriangleMesh surface = Extract(grid, MakeOptions(10, true, deviation), &report);
       ExpectSound(surface);
-      EXPECT_EQ(GetSixVolumes(surface).size(), CountCells(grid).size());
+      EXPECT_EQ(testing_core::GetEnclosedSixVolumes(surface).size(), CountCells(grid).size());
       EXPECT_LE(report.LargestDeviation, deviation);
       const double bound = report.LargestDeviation + 1e-12;
       EXPECT_LE(GetLargestDistance(surface, smooth, bound + 0.1), bound);
@@ -328,7 +313,7 @@ TEST(MaterialInterfaces, ThinLayersKeepHalfOfTheirThickness)
     });
   const TriangleMesh surface = Extract(grid, MakeOptions(10, false, 0.0));
   ExpectSound(surface);
-  const std::map<Id, double> volumes = GetSixVolumes(surface);
+  const std::map<Id, double> volumes = testing_core::GetEnclosedSixVolumes(surface);
   EXPECT_GE(volumes.at(1), 0.5 * CountCells(grid).at(1));
   EXPECT_GE(volumes.at(3), 0.25 * CountCells(grid).at(3));
 }
@@ -478,7 +463,8 @@ TEST(MaterialInterfaces, ABallIsRound)
     return std::sqrt(sum / count);
   };
   EXPECT_LT(getRoughness(smooth), 0.2 * getRoughness(stairs));
-  EXPECT_NEAR(GetSixVolumes(smooth).at(1), CountCells(grid).at(1), 0.01 * CountCells(grid).at(1));
+  EXPECT_NEAR(testing_core::GetEnclosedSixVolumes(smooth).at(1), CountCells(grid).at(1),
+    0.01 * CountCells(grid).at(1));
   for (const double deviation : { 0.1, 0.25 })
   {
     MaterialInterfacesReport report;

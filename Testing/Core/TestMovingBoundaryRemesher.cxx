@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "EnclosedVolumes.h"
 #include "HullMeshes.h"
 #include "MeshBoundary.h"
 #include "MeshChecks.h"
@@ -400,17 +401,11 @@ TEST(MovingBoundaryRemesher, RandomMotionsGiveValidMeshes)
     if (output.Report.TopologyChanges == 0)
     {
       const TriangleMesh boundary = MoveBoundary(mesh, displacements);
-      std::map<Id, double> expected;
-      for (std::size_t t = 0; t < boundary.Triangles.size(); ++t)
+      std::map<Id, double> expected = testing_core::GetEnclosedSixVolumes(boundary);
+      for (auto& [region, volume] : expected)
       {
-        const TriangleIds& ids = boundary.Triangles[t];
-        const double volume =
-          Dot(boundary.Points[ids[0]], Cross(boundary.Points[ids[1]], boundary.Points[ids[2]])) /
-          6.0;
-        expected[boundary.Labels[t].Back] += volume;
-        expected[boundary.Labels[t].Front] -= volume;
+        volume /= 6.0;
       }
-      expected.erase(OutsideRegion);
       ExpectVolumes(volumes, expected);
     }
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "../Support/PointSets.h"
 #include "DelaunayTetrahedralization.h"
 #include "PartTetrahedralization.h"
 #include "Predicates.h"
@@ -238,35 +239,8 @@ void ExpectSame(const std::vector<Vec3>& points, const char* name)
   }
 }
 
-std::vector<Vec3> MakeRandom(int count, unsigned seed)
-{
-  std::mt19937 generator(seed);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  std::vector<Vec3> points(static_cast<std::size_t>(count));
-  for (Vec3& p : points)
-  {
-    p = { uniform(generator), uniform(generator), uniform(generator) };
-  }
-  return points;
-}
-
-/** In random order, so that the numbers say nothing about places. */
-std::vector<Vec3> MakeGrid(int size, double spacing, double angle, unsigned seed)
-{
-  std::vector<Vec3> points;
-  for (int i = 0; i < size * size * size; ++i)
-  {
-    const double x = spacing * (i % size);
-    const double y = spacing * (i / size % size);
-    const double z = spacing * (i / size / size);
-    const double c = std::cos(angle);
-    const double s = std::sin(angle);
-    points.push_back(angle == 0.0 ? Vec3{ x, y, z } : Vec3{ c * x - s * y, s * x + c * y, z });
-  }
-  std::mt19937 generator(seed);
-  std::shuffle(points.begin(), points.end(), generator);
-  return points;
-}
+constexpr auto MakeRandom = testing_points::MakeRandom<Vec3>;
+constexpr auto MakeGrid = testing_points::MakeGrid<Vec3>;
 } // namespace
 
 TEST(PartTetrahedralization, RandomPoints)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "EnclosedVolumes.h"
 #include "Predicates.h"
 #include "SurfaceCoarsening.h"
 #include "TriangleIntersection.h"
@@ -63,21 +64,6 @@ TriangleMesh MakeCubes(int size)
   return surface;
 }
 
-/** Six times the volumes that the labels enclose. */
-std::map<Id, double> GetVolumes(const TriangleMesh& surface)
-{
-  std::map<Id, double> volumes;
-  for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
-  {
-    const TriangleIds& ids = surface.Triangles[t];
-    const double volume =
-      Dot(surface.Points[ids[0]], Cross(surface.Points[ids[1]], surface.Points[ids[2]]));
-    volumes[surface.Labels[t].Back] += volume;
-    volumes[surface.Labels[t].Front] -= volume;
-  }
-  return volumes;
-}
-
 std::set<Id> GetUsedPoints(const TriangleMesh& surface)
 {
   std::set<Id> used;
@@ -98,7 +84,7 @@ TEST(SurfaceCoarsening, LeavesTheCorners)
     CoarsenSurface(std::vector<char>(surface.Points.size(), 1), 1e-9, surface);
     EXPECT_EQ(GetUsedPoints(surface).size(), 12u);
     EXPECT_EQ(surface.Triangles.size(), 22u);
-    const std::map<Id, double> volumes = GetVolumes(surface);
+    const std::map<Id, double> volumes = testing_core::GetEnclosedSixVolumes(surface);
     EXPECT_NEAR(volumes.at(0), 6.0, 1e-12);
     EXPECT_NEAR(volumes.at(1), 6.0, 1e-12);
     std::vector<TrianglePair> pairs;
@@ -126,7 +112,7 @@ TEST(SurfaceCoarsening, KeepsPointsThatAreToStay)
   {
     EXPECT_EQ(used.count(static_cast<Id>(i)), 1u);
   }
-  EXPECT_NEAR(GetVolumes(surface).at(1), 6.0, 1e-12);
+  EXPECT_NEAR(testing_core::GetEnclosedSixVolumes(surface).at(1), 6.0, 1e-12);
 }
 
 TEST(SurfaceCoarsening, KeepsTheShape)
@@ -139,8 +125,8 @@ TEST(SurfaceCoarsening, KeepsTheShape)
     ++lifted;
   }
   surface.Points[lifted].Z = 2.25;
-  const double volume = GetVolumes(surface).at(1);
+  const double volume = testing_core::GetEnclosedSixVolumes(surface).at(1);
   CoarsenSurface(std::vector<char>(surface.Points.size(), 1), 1e-9, surface);
-  EXPECT_NEAR(GetVolumes(surface).at(1), volume, 1e-12);
+  EXPECT_NEAR(testing_core::GetEnclosedSixVolumes(surface).at(1), volume, 1e-12);
   EXPECT_EQ(GetUsedPoints(surface).size(), 12u + 1u + 6u);
 }

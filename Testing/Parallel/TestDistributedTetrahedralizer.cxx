@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ParallelTesting.h"
 
+#include "../Support/PointSets.h"
+
 #include <vtkAdvancingFrontTetrahedralizer.h>
 #include <vtkBoundaryTriangulator.h>
 #include <vtkDelaunaySurfaceRefiner.h>
@@ -20,35 +22,8 @@ namespace
 {
 using Keys = std::vector<CellKey<4>>;
 
-std::vector<Point> MakeRandomPoints(int count, unsigned seed)
-{
-  std::mt19937 generator(seed);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  std::vector<Point> points(static_cast<std::size_t>(count));
-  for (Point& p : points)
-  {
-    p = { uniform(generator), uniform(generator), uniform(generator) };
-  }
-  return points;
-}
-
-/** A regular grid in random order. */
-std::vector<Point> MakeGridPoints(int size, double spacing, double angle, unsigned seed)
-{
-  std::vector<Point> points;
-  for (int i = 0; i < size * size * size; ++i)
-  {
-    const double x = spacing * (i % size);
-    const double y = spacing * (i / size % size);
-    const double z = spacing * (i / size / size);
-    points.push_back(angle == 0.0 ? Point{ x, y, z }
-                                  : Point{ std::cos(angle) * x - std::sin(angle) * y,
-                                      std::sin(angle) * x + std::cos(angle) * y, z });
-  }
-  std::mt19937 generator(seed);
-  std::shuffle(points.begin(), points.end(), generator);
-  return points;
-}
+constexpr auto MakeRandomPoints = testing_points::MakeRandom<Point>;
+constexpr auto MakeGridPoints = testing_points::MakeGrid<Point>;
 
 /** Points and cells of a piece: every process takes its share, or one has all. */
 enum class Sharing

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file PointSearches.h
+ * @brief Visitors of a PointOctree: what the surface refiner looks for among its points.
+ *
+ * Each is given to PointOctree::Visit() and holds what it has found afterwards. Order() says how near
+ * a box is, infinity where nothing is to be found.
+ */
+#ifndef cdmPointSearches_h
+#define cdmPointSearches_h
+
+#include "Box.h"
+#include "Measures.h"
+#include "Predicates.h"
+#include "Types.h"
+#include "Vec3.h"
+
+#include <limits>
+#include <vector>
+
+namespace cdm
+{
+/** Distance from a position to the nearest point other than one. */
+class NearestPointVisitor
+{
+public:
+  NearestPointVisitor(const Vec3& position, Id except) : Position(position), Except(except) {}
+
+  double Order(const Box& box) const
+  {
+    const double distance = box.GetSquaredDistance(this->Position);
+    return distance < this->SquaredDistance ? distance : std::numeric_limits<double>::infinity();
+  }
+
+  void Visit(Id id, const Vec3& p)
+  {
+    const double distance = SquaredNorm(p - this->Position);
+    if (id != this->Except && distance < this->SquaredDistance)
+    {
+      this->SquaredDistance = distance;
+      this->Nearest = id;
+    }
+  }
+
+  Id Nearest = NoId;
+  double SquaredDistance = std::numeric_limits<double>::infinity();
+
+private:
+  Vec3 Position;
+  Id Except;
+};
+
+/** Points within a distance of a triangle. */
+class NearTriangleVisitor
+{
+public:
+  NearTriangleVisitor(
+    const Vec3& a, const Vec3& b, const Vec3& c, double distance, std::vector<char>& isNear)
+    : Corners{ a, b, c }, Distance(distance), IsNear(isNear)
+  {
+    this->Bounds.Add(a);
+    this->Bounds.Add(b);
+    this->Bounds.Add(c);
+  }
+
+  double Order(const Box& box) const
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (box.Low[axis] > this->Bounds.High[axis] + this->Distance ||
+        box.High[axis] < this->Bounds.Low[axis] - this->Distance)
+      {
+        return std::numeric_limits<double>::infinity();
+      }
+    }
+    return 0.0;
+  }
+
+  void Visit(Id id, const Vec3& p)
+  {
+    if (!this->IsNear[id] &&
+      GetDistanceToTriangle(p, this->Corners[0], this->Corners[1], this->Corners[2]) <=
+        this->Distance)
+    {
+      this->IsNear[id] = 1;
+    }
+  }
+
+private:
+  Vec3 Corners[3];
+  Box Bounds;
+  double Distance;
+  std::vector<char>& IsNear;
+};
+
+/** Points strictly inside the diametral sphere of an edge, other than its ends. */
+class DiametralSphereVisitor
+{
+public:
+  DiametralSphereVisitor(const std::vector<Vec3>& points, const EdgeIds& edge)
+    : Edge(edge), A(points[edge[0]]), B(points[edge[1]]), Center(0.5 * (this->A + this->B)),
+      Reach(0.5 * Distance(this->A, this->B) * (1.0 + 1e-9))
+  {
+  }
+
+  double Order(const Box& box) const
+  {
+    const double distance = box.GetSquaredDistance(this->Center);
+    return distance <= this->Reach * this->Reach ? distance
+                                                 : std::numeric_limits<double>::infinity();
+  }
+
+  void Visit(Id id, const Vec3& p)
+  {
+    const double distance = SquaredNorm(p - this->Center);
+    if (id != this->Edge[0] && id != this->Edge[1] && distance < this->Deepest &&
+      InDiametralSphere(this->A, this->B, p) > 0)
+    {
+      this->Found = id;
+      this->Deepest = distance;
+    }
+  }
+
+  /** The deepest one, or NoId. */
+  Id Found = NoId;
+
+private:
+  EdgeIds Edge;
+  Vec3 A;
+  Vec3 B;
+  Vec3 Center;
+  double Reach;
+  double Deepest = std::numeric_limits<double>::infinity();
+};
+} // namespace cdm
+
+#endif
