@@ -8,7 +8,10 @@
  *
  * Every measurement runs in a process of its own; the programs take turns, so that what else the
  * machine does falls on all of them. Prints the median of each, and ratios to ours. A program that
- * took longer than the limit on some input is left out on the larger ones.
+ * took longer than the limit on some input is not repeated, and left out on the larger ones.
+ *
+ * With several threads there is a row for as many copies with one thread each at the same time, too:
+ * what they lose is lost to the machine, and no number of threads can win it back.
  */
 #include "Core/AdvancingFrontTetrahedralizer.h"
 
@@ -180,12 +183,19 @@ struct Result
 /** A program converts the points, starts the clock, and returns the number of its tetrahedra. */
 using Program = std::function<std::size_t(const PointSet&, Clock& clock)>;
 
-Result Measure(const std::string& input, std::size_t count, const Program& program)
+/** A measurement under way. */
+struct Run
+{
+  pid_t Process = -1;
+  int End = -1;
+};
+
+Run Start(const std::string& input, std::size_t count, const Program& program)
 {
   int ends[2];
   if (pipe(ends) != 0)
   {
-    return Result();
+    return Run();
   }
   const pid_t child = fork();
   if (child == 0)
@@ -202,18 +212,42 @@ Result Measure(const std::string& input, std::size_t count, const Program& progr
     _exit(isWritten ? 0 : 1);
   }
   close(ends[1]);
+  return { child, ends[0] };
+}
+
+Result Finish(const Run& run)
+{
   Result result;
-  const bool isRead = read(ends[0], &result, sizeof(result)) == sizeof(result);
-  close(ends[0]);
+  const bool isRead = read(run.End, &result, sizeof(result)) == sizeof(result);
+  close(run.End);
   int status = 0;
   rusage usage;
-  wait4(child, &status, 0, &usage);
+  wait4(run.Process, &status, 0, &usage);
   if (!isRead || !WIFEXITED(status) || WEXITSTATUS(status) != 0 || result.Tetrahedra == 0.0)
   {
     return Result();
   }
   result.Megabytes = static_cast<double>(usage.ru_maxrss) / 1024.0;
   return result;
+}
+
+/** Several copies at the same time: the wall time is that of the slowest, the rest that of one. */
+Result Measure(const std::string& input, std::size_t count, const Program& program, int copies)
+{
+  std::vector<Run> runs;
+  for (int i = 0; i < copies; ++i)
+  {
+    runs.push_back(Start(input, count, program));
+  }
+  Result slowest;
+  bool hasFailed = false;
+  for (const Run& run : runs)
+  {
+    const Result result = Finish(run);
+    hasFailed = hasFailed || result.Seconds < 0.0;
+    slowest = result.WallSeconds > slowest.WallSeconds ? result : slowest;
+  }
+  return hasFailed ? Result() : slowest;
 }
 
 std::size_t RunOurs(const PointSet& points, Clock& clock, int threads)
@@ -284,12 +318,26 @@ std::size_t RunVtk(const PointSet& points, Clock& clock)
 }
 #endif
 
+/** Of each quantity by itself. */
 Result GetMedian(std::vector<Result> results)
 {
-  std::sort(results.begin(), results.end(),
-    [](const Result& a, const Result& b) { return a.Seconds < b.Seconds; });
-  return results[results.size() / 2];
+  const auto middle = results.begin() + static_cast<std::ptrdiff_t>(results.size() / 2);
+  Result median = results.front();
+  for (double Result::*quantity : { &Result::Seconds, &Result::WallSeconds, &Result::Megabytes })
+  {
+    std::nth_element(results.begin(), middle, results.end(),
+      [quantity](const Result& a, const Result& b) { return a.*quantity < b.*quantity; });
+    median.*quantity = (*middle).*quantity;
+  }
+  return median;
 }
+
+struct Entry
+{
+  std::string Name;
+  Program Make;
+  int Copies = 1;
+};
 } // namespace
 
 int main(int argc, char* argv[])
@@ -342,26 +390,28 @@ int main(int argc, char* argv[])
     return [threads](const PointSet& points, Clock& clock)
     { return RunOurs(points, clock, threads); };
   };
-  std::vector<std::pair<std::string, Program>> programs{ { "ours", makeOurs(1) } };
+  std::vector<Entry> programs{ { "ours", makeOurs(1) } };
   if (threads > 1)
   {
-    programs.emplace_back("ours, " + std::to_string(threads) + " threads", makeOurs(threads));
+    const std::string number = std::to_string(threads);
+    programs.push_back({ "ours, " + number + " threads", makeOurs(threads) });
+    programs.push_back({ "ours, " + number + " copies", makeOurs(1), threads });
   }
   const std::size_t own = programs.size();
 #ifdef CDM_HAS_CGAL_TRIANGULATION
-  programs.emplace_back("CGAL", RunCgal);
+  programs.push_back({ "CGAL", RunCgal });
 #endif
 #ifdef CDM_HAS_TETGEN
-  programs.emplace_back("TetGen", RunTetgen);
+  programs.push_back({ "TetGen", RunTetgen });
 #endif
 #ifdef CDM_HAS_VTK_DELAUNAY3D
-  programs.emplace_back("vtkDelaunay3D", RunVtk);
+  programs.push_back({ "vtkDelaunay3D", RunVtk });
 #endif
   programs.erase(std::remove_if(programs.begin() + static_cast<std::ptrdiff_t>(own), programs.end(),
                    [&chosen](const auto& program)
                    {
                      return !chosen.empty() &&
-                       std::find(chosen.begin(), chosen.end(), program.first) == chosen.end();
+                       std::find(chosen.begin(), chosen.end(), program.Name) == chosen.end();
                    }),
     programs.end());
 
@@ -376,17 +426,17 @@ int main(int argc, char* argv[])
       std::map<std::string, std::vector<Result>> results;
       for (int repetition = 0; repetition < repetitions; ++repetition)
       {
-        for (const auto& [name, program] : programs)
+        for (const auto& [name, program, copies] : programs)
         {
           if (!isTooSlow[{ name, input }])
           {
-            results[name].push_back(Measure(input, size, program));
+            results[name].push_back(Measure(input, size, program, copies));
             isTooSlow[{ name, input }] = results[name].back().Seconds > limit;
           }
         }
       }
       const double ours = results["ours"].empty() ? -1.0 : GetMedian(results["ours"]).Seconds;
-      for (const auto& [name, program] : programs)
+      for (const auto& [name, program, copies] : programs)
       {
         if (results[name].empty())
         {
