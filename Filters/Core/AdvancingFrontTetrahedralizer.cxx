@@ -118,6 +118,26 @@ private:
     ParallelLoop(size, { numberOfThreads, part }, {}, "",
       [&work](std::size_t begin, std::size_t end, std::size_t) { work(begin, end); });
   }
+  /** Whether a condition holds for all numbers below size. */
+  template <typename Condition>
+  bool HoldForAll(std::size_t size, const Condition& condition) const
+  {
+    std::atomic<bool> isTrue{ true };
+    this->ForAll(size,
+      [&](std::size_t begin, std::size_t end)
+      {
+        bool isTrueHere = true;
+        for (std::size_t i = begin; i < end && isTrueHere; ++i)
+        {
+          isTrueHere = condition(i);
+        }
+        if (!isTrueHere)
+        {
+          isTrue = false;
+        }
+      });
+    return isTrue;
+  }
   bool HasSurface() const { return this->NumberOfSurfaceTriangles > 0; }
   bool HasSeeds() const { return this->Input.Seeds != nullptr && !this->Input.Seeds->empty(); }
 
@@ -167,11 +187,8 @@ Status AdvancingFront::CollectPoints()
 
   this->Points = std::move(this->Surface.Points);
   this->Surface.Points.clear();
-  std::vector<Id> meshPoints;
   if (this->Input.MeshPoints != nullptr)
   {
-    meshPoints.resize(this->Input.MeshPoints->size());
-    std::iota(meshPoints.begin(), meshPoints.end(), 0);
     this->Points.insert(
       this->Points.end(), this->Input.MeshPoints->begin(), this->Input.MeshPoints->end());
   }
@@ -181,7 +198,9 @@ Status AdvancingFront::CollectPoints()
       "The surface is empty: it has no triangles. Switch CloseOpenBoundary on to mesh the convex "
       "hull of points.");
   }
-  for (std::size_t i = 0; i < this->Points.size(); ++i)
+  const bool areFinite = this->HoldForAll(
+    this->Points.size(), [this](std::size_t i) { return IsFinite(this->Points[i]); });
+  for (std::size_t i = 0; i < this->Points.size() && !areFinite; ++i)
   {
     if (!IsFinite(this->Points[i]))
     {
@@ -217,6 +236,12 @@ Status AdvancingFront::CollectPoints()
         this->VertexPoints[vertex] = this->Points[this->Order[vertex]];
       }
     });
+  const bool areDistinct = this->HoldForAll(this->Order.size(),
+    [this](std::size_t i) { return i == 0 || this->VertexPoints[i] != this->VertexPoints[i - 1]; });
+  if (areDistinct)
+  {
+    return Status();
+  }
   std::vector<Id> coincident;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < this->Order.size(); ++i)

@@ -9,11 +9,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <string>
+#include <thread>
 
 namespace cdm
 {
@@ -30,6 +32,11 @@ constexpr Id FirstRound = 100;
 constexpr const char* Activity = "Tetrahedralizing the points";
 /** How often the context is asked, in vertices. */
 constexpr std::size_t ReportInterval = 4096;
+/** How often a thread looks whether another one has nothing left to do, in vertices. */
+constexpr std::size_t HandOverInterval = 64;
+/** Fewer vertices are not worth handing over. */
+constexpr std::size_t SmallestHandOver = 512;
+constexpr std::chrono::microseconds IdleTime(200);
 /** Facet ids of 4 * tetrahedron + i have to fit into an Id. */
 constexpr std::size_t MaximumTetrahedra = std::size_t(1) << 29;
 
@@ -116,6 +123,12 @@ private:
         vertex == this->Infinite;
     }
   };
+  enum class Answer
+  {
+    None,
+    TryAgain,
+    Take
+  };
   /** What a thread has for itself: a part of the curve, and room for tetrahedra. */
   struct Worker
   {
@@ -130,6 +143,8 @@ private:
     Id Last = 0;
     bool HasInserted = false;
     bool HasTies = false;
+    /** Answer of another worker to this one, which has nothing left to do. */
+    std::atomic<Answer> Received{ Answer::None };
 
     /**
      * Tetrahedra of the hole, by the facet that each was found through, and facets of the hole: the
@@ -157,6 +172,8 @@ private:
   Status InsertRound(const std::vector<Id>& vertices, int numberOfThreads);
   template <bool IsShared>
   bool Work(Worker& worker, const std::function<bool(std::size_t)>& mayContinue);
+  bool HandOver(Worker& from, std::size_t next, Worker& to);
+  bool WaitForMore(Worker& worker, const std::function<bool(std::size_t)>& mayContinue);
   template <bool IsShared>
   bool Locate(Id vertex, Worker& worker, Id& tetrahedron) const;
   template <bool IsShared>
@@ -203,6 +220,9 @@ private:
   /** Where a vertex may stand among those of the hole. */
   std::vector<Id> Places;
   std::vector<Worker> Workers;
+  /** A thread that has nothing left to do, and how many have. */
+  std::atomic<Worker*> Idle{ nullptr };
+  std::atomic<int> NumberOfBusy{ 0 };
 };
 
 /**
@@ -594,11 +614,18 @@ void Builder::MovePlaces(Worker& from, Worker& to, std::size_t wanted)
   }
   while (to.NumberOfPlaces < wanted && !from.Rooms.empty())
   {
-    const std::pair<Id, Id> room = from.Rooms.back();
-    from.Rooms.pop_back();
-    to.Rooms.push_back(room);
-    from.NumberOfPlaces -= static_cast<std::size_t>(room.second - room.first);
-    to.NumberOfPlaces += static_cast<std::size_t>(room.second - room.first);
+    std::pair<Id, Id>& room = from.Rooms.back();
+    const std::size_t size =
+      std::min(wanted - to.NumberOfPlaces, static_cast<std::size_t>(room.second - room.first));
+    const Id begin = room.second - static_cast<Id>(size);
+    to.Rooms.emplace_back(begin, room.second);
+    room.second = begin;
+    if (room.first == room.second)
+    {
+      from.Rooms.pop_back();
+    }
+    from.NumberOfPlaces -= size;
+    to.NumberOfPlaces += size;
   }
 }
 
@@ -663,6 +690,15 @@ bool Builder::Work(Worker& worker, const std::function<bool(std::size_t)>& mayCo
     {
       return false;
     }
+    if (IsShared && i % HandOverInterval == 0 && worker.Todo.size() - i >= 2 * SmallestHandOver)
+    {
+      Worker* idle = this->Idle.load(std::memory_order_relaxed);
+      // Nobody else may serve it.
+      if (idle != nullptr && this->Idle.compare_exchange_strong(idle, nullptr))
+      {
+        idle->Received = this->HandOver(worker, i, *idle) ? Answer::Take : Answer::TryAgain;
+      }
+    }
     const Id vertex = worker.Todo[i];
     Id first = NoId;
     bool isDone = this->Locate<IsShared>(vertex, worker, first);
@@ -686,6 +722,77 @@ bool Builder::Work(Worker& worker, const std::function<bool(std::size_t)>& mayCo
     }
   }
   return true;
+}
+
+/**
+ * The second half of what is left to do, from next on, with that part of the curve and the places that
+ * go with it. False if no tetrahedron is found there to start from.
+ */
+bool Builder::HandOver(Worker& from, std::size_t next, Worker& to)
+{
+  const std::size_t middle = next + (from.Todo.size() - next) / 2;
+  const auto getPlace = [&](Id vertex)
+  {
+    const Id place = vertex - from.Own.First;
+    return place < 0 ? place + this->Infinite : place;
+  };
+  const Id begin = getPlace(from.Todo[middle]);
+  const Part kept{ from.Own.First, begin, this->Infinite };
+  const Part given{ from.Todo[middle], from.Own.Count - begin, this->Infinite };
+  // Both need a tetrahedron of their own to start from.
+  const auto findStart = [&](const Part& own, std::size_t first, std::size_t last, Id& start)
+  {
+    bool isFound = false;
+    for (std::size_t i = first; i < last && !isFound; i += 1 + (last - first) / 8)
+    {
+      isFound = this->Locate<true>(from.Todo[i], from, start) && this->IsOwned(start, own);
+      const TetrahedronIds& ids = this->Output.Tetrahedra[isFound ? start : 0];
+      isFound = isFound && std::find(ids.begin(), ids.end(), this->Infinite) == ids.end();
+    }
+    return isFound;
+  };
+  Id keptStart = NoId;
+  Id givenStart = NoId;
+  if (!findStart(kept, next, middle, keptStart) ||
+    !findStart(given, middle, from.Todo.size(), givenStart))
+  {
+    return false;
+  }
+  to.Todo.assign(from.Todo.begin() + static_cast<std::ptrdiff_t>(middle), from.Todo.end());
+  from.Todo.resize(middle);
+  from.Own = kept;
+  from.Last = keptStart;
+  to.Own = given;
+  to.Last = givenStart;
+  MovePlaces(from, to, to.NumberOfPlaces + from.NumberOfPlaces / 2);
+  ++this->NumberOfBusy;
+  return true;
+}
+
+/** False when nobody has anything left to do. */
+bool Builder::WaitForMore(Worker& worker, const std::function<bool(std::size_t)>& mayContinue)
+{
+  // Not later, when another one may be writing.
+  const std::size_t done = worker.Todo.size();
+  --this->NumberOfBusy;
+  bool isAsking = false;
+  for (;;)
+  {
+    const Answer answer = worker.Received.exchange(Answer::None);
+    if (answer == Answer::Take)
+    {
+      return true;
+    }
+    if (this->NumberOfBusy <= 0)
+    {
+      return false;
+    }
+    Worker* nobody = nullptr;
+    isAsking =
+      (isAsking && answer == Answer::None) || this->Idle.compare_exchange_strong(nobody, &worker);
+    mayContinue(done);
+    std::this_thread::sleep_for(IdleTime);
+  }
 }
 
 Status Builder::FindFirst(TetrahedronIds& ids) const
@@ -775,6 +882,8 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
       worker.Todo.clear();
       worker.Postponed.clear();
     }
+    // Along the curve, from where the first part begins.
+    std::rotate(left.begin(), std::lower_bound(left.begin(), left.end(), shift), left.end());
     for (Id vertex : left)
     {
       const Id shifted = vertex - shift;
@@ -805,6 +914,8 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
         this->AddRoom(wanted - worker.NumberOfPlaces, worker);
       }
     }
+    this->Idle = nullptr;
+    this->NumberOfBusy = numberOfThreads;
     RunOnThreads(numberOfThreads,
       [&](int w)
       {
@@ -813,7 +924,20 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
           isAborted = isAborted || (w == 0 && !report(done * count));
           return !isAborted;
         };
-        this->Work<true>(this->Workers[static_cast<std::size_t>(w)], mayContinue);
+        Worker& worker = this->Workers[static_cast<std::size_t>(w)];
+        try
+        {
+          do
+          {
+            this->Work<true>(worker, mayContinue);
+          } while (this->WaitForMore(worker, mayContinue));
+        }
+        catch (...)
+        {
+          isAborted = true;
+          --this->NumberOfBusy;
+          throw;
+        }
       });
     if (isAborted)
     {
@@ -955,7 +1079,7 @@ Status Builder::InsertOthers(int numberOfThreads)
   }
   this->SetUnit();
   this->Places.assign(static_cast<std::size_t>(this->Infinite) + 1, 0);
-  this->Workers.resize(static_cast<std::size_t>(std::max(1, numberOfThreads)));
+  this->Workers = std::vector<Worker>(static_cast<std::size_t>(std::max(1, numberOfThreads)));
   Status status;
   for (std::vector<Id>& round : vertices)
   {

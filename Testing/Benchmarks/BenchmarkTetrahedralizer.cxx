@@ -8,7 +8,8 @@
  *
  * Every measurement runs in a process of its own; the programs take turns, so that what else the
  * machine does falls on all of them. Prints the median of each, and ratios to ours. A program that
- * took longer than the limit on some input is not repeated, and left out on the larger ones.
+ * took longer than the limit (100 s) is not repeated, and ended when it takes twice that. It is left
+ * out where its time, if it only grew with the number of points, would be above the limit.
  *
  * With several threads there is a row for as many copies with one thread each at the same time, too:
  * what they lose is lost to the machine, and no number of threads can win it back.
@@ -39,6 +40,7 @@
 #include <functional>
 #include <map>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -190,7 +192,7 @@ struct Run
   int End = -1;
 };
 
-Run Start(const std::string& input, std::size_t count, const Program& program)
+Run Start(const std::string& input, std::size_t count, const Program& program, double limit)
 {
   int ends[2];
   if (pipe(ends) != 0)
@@ -202,6 +204,9 @@ Run Start(const std::string& input, std::size_t count, const Program& program)
   {
     close(ends[0]);
     const PointSet points = MakePoints(input, count);
+    const rlim_t seconds = static_cast<rlim_t>(std::ceil(GetUserTime() + 2.0 * limit));
+    const rlimit bound{ seconds, seconds };
+    setrlimit(RLIMIT_CPU, &bound);
     Clock clock;
     Result result;
     result.Tetrahedra = static_cast<double>(program(points, clock));
@@ -232,12 +237,13 @@ Result Finish(const Run& run)
 }
 
 /** Several copies at the same time: the wall time is that of the slowest, the rest that of one. */
-Result Measure(const std::string& input, std::size_t count, const Program& program, int copies)
+Result Measure(
+  const std::string& input, std::size_t count, const Program& program, int copies, double limit)
 {
   std::vector<Run> runs;
   for (int i = 0; i < copies; ++i)
   {
-    runs.push_back(Start(input, count, program));
+    runs.push_back(Start(input, count, program, limit));
   }
   Result slowest;
   bool hasFailed = false;
@@ -347,7 +353,7 @@ int main(int argc, char* argv[])
   std::vector<std::string> chosen;
   int repetitions = 5;
   int threads = 1;
-  double limit = 60.0;
+  double limit = 100.0;
   for (int i = 1; i + 1 < argc; i += 2)
   {
     const std::string option = argv[i];
@@ -379,7 +385,7 @@ int main(int argc, char* argv[])
   }
   if (sizes.empty())
   {
-    sizes = { 100000, 1000000 };
+    sizes = { 10000, 100000, 1000000 };
   }
   if (inputs.empty())
   {
@@ -418,20 +424,36 @@ int main(int argc, char* argv[])
   std::printf("| input | points | program | s | ratio to ours | wall s | tetrahedra/s | MB | "
               "B/tetrahedron |\n"
               "|---|---:|---|---:|---:|---:|---:|---:|---:|\n");
-  std::map<std::pair<std::string, std::string>, bool> isTooSlow;
+  // Seconds for each point, of the largest set so far.
+  std::map<std::pair<std::string, std::string>, double> costs;
   for (std::size_t size : sizes)
   {
     for (const std::string& input : inputs)
     {
       std::map<std::string, std::vector<Result>> results;
+      std::set<std::string> tooSlow;
+      for (const Entry& program : programs)
+      {
+        if (costs[{ program.Name, input }] * static_cast<double>(size) > limit)
+        {
+          tooSlow.insert(program.Name);
+        }
+      }
       for (int repetition = 0; repetition < repetitions; ++repetition)
       {
         for (const auto& [name, program, copies] : programs)
         {
-          if (!isTooSlow[{ name, input }])
+          if (tooSlow.count(name) == 0)
           {
-            results[name].push_back(Measure(input, size, program, copies));
-            isTooSlow[{ name, input }] = results[name].back().Seconds > limit;
+            const Result result = Measure(input, size, program, copies, limit);
+            results[name].push_back(result);
+            const bool isFast = result.Seconds >= 0.0 && result.Seconds <= limit;
+            costs[{ name, input }] =
+              (isFast ? result.Seconds : 2.0 * limit) / static_cast<double>(size);
+            if (!isFast)
+            {
+              tooSlow.insert(name);
+            }
           }
         }
       }
@@ -445,7 +467,8 @@ int main(int argc, char* argv[])
         const Result median = GetMedian(results[name]);
         if (median.Seconds < 0.0)
         {
-          std::printf("| %s | %zu | %s | failed | | | | | |\n", input.c_str(), size, name.c_str());
+          std::printf("| %s | %zu | %s | fails, or > %g | | | | | |\n", input.c_str(), size,
+            name.c_str(), 2.0 * limit);
           continue;
         }
         std::printf("| %s | %zu | %s | %.3f | %.2f | %.3f | %.0f | %.0f | %.0f |\n", input.c_str(),
