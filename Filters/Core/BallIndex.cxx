@@ -20,6 +20,12 @@ constexpr double Rounding = 2e-6;
 /** Cells farther away than doubles tell apart are not used. */
 constexpr double LargestIndex = 4e15;
 
+/** Of a cell in its slot: most of those that are not looked for are told from it by that alone. */
+std::uint32_t GetMark(std::uint64_t hash)
+{
+  return static_cast<std::uint32_t>(hash >> 32);
+}
+
 int GetLevel(double radius)
 {
   // Powers of four: half of the levels of powers of two cost less than the larger cells.
@@ -27,28 +33,26 @@ int GetLevel(double radius)
 }
 } // namespace
 
-bool BallIndex::CellPlace::operator==(const CellPlace& other) const
-{
-  return this->Level == other.Level && std::equal(this->Index, this->Index + 3, other.Index);
-}
-
 std::uint64_t BallIndex::CellPlace::GetHash() const
 {
-  std::uint64_t hash = static_cast<std::uint64_t>(this->Level);
-  for (std::int64_t index : this->Index)
-  {
-    hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x9E3779B97F4A7C15ull;
-    hash ^= hash >> 29;
-  }
-  return hash;
+  // A sum, of which neighbors have most in common.
+  std::uint64_t hash = static_cast<std::uint64_t>(this->Level) * 0x9E3779B97F4A7C15ull +
+    static_cast<std::uint64_t>(this->Index[0]) * 0xC2B2AE3D27D4EB4Full +
+    static_cast<std::uint64_t>(this->Index[1]) * 0x165667B19E3779F9ull +
+    static_cast<std::uint64_t>(this->Index[2]) * 0xD6E8FEB86659FD93ull;
+  hash = (hash ^ (hash >> 32)) * 0xD6E8FEB86659FD93ull;
+  return hash ^ (hash >> 32);
 }
 
 /** The slot of a cell, or the free one where it belongs. */
 std::size_t BallIndex::FindSlot(const CellPlace& place) const
 {
   const std::size_t mask = this->Slots.size() - 1;
-  std::size_t slot = place.GetHash() & mask;
-  while (this->Slots[slot] != NoId && !(this->Cells[this->Slots[slot]].Place == place))
+  const std::uint64_t hash = place.GetHash();
+  const std::uint32_t mark = GetMark(hash);
+  std::size_t slot = hash & mask;
+  while (this->Slots[slot].Cell != NoId &&
+    !(this->Slots[slot].Mark == mark && this->Cells[this->Slots[slot].Cell].Place == place))
   {
     slot = (slot + 1) & mask;
   }
@@ -57,10 +61,11 @@ std::size_t BallIndex::FindSlot(const CellPlace& place) const
 
 void BallIndex::Resize(std::size_t numberOfSlots)
 {
-  this->Slots.assign(numberOfSlots, NoId);
+  this->Slots.assign(numberOfSlots, Slot());
   for (std::size_t cell = 0; cell < this->Cells.size(); ++cell)
   {
-    this->Slots[this->FindSlot(this->Cells[cell].Place)] = static_cast<Id>(cell);
+    const CellPlace& place = this->Cells[cell].Place;
+    this->Slots[this->FindSlot(place)] = { static_cast<Id>(cell), GetMark(place.GetHash()) };
   }
 }
 
@@ -84,15 +89,17 @@ void BallIndex::Put(const Ball& ball)
       corner = Vec3();
     }
   }
-  Id& slot = this->Slots[this->FindSlot(where)];
-  if (slot == NoId)
+  Slot& slot = this->Slots[this->FindSlot(where)];
+  if (slot.Cell == NoId)
   {
-    slot = static_cast<Id>(this->Cells.size());
-    this->Cells.push_back({ where, corner, {}, {} });
+    slot = { static_cast<Id>(this->Cells.size()), GetMark(where.GetHash()) };
+    this->Cells.emplace_back();
+    this->Cells.back().Place = where;
+    this->Cells.back().Corner = corner;
   }
-  Cell& cell = this->Cells[slot];
+  Cell& cell = this->Cells[slot.Cell];
   const std::size_t place = cell.Numbers.size();
-  this->Places[ball.Number] = { slot, static_cast<Id>(place) };
+  this->Places[ball.Number] = { slot.Cell, static_cast<Id>(place) };
   cell.Numbers.push_back(ball.Number);
   if (place % BlockSize == 0)
   {
@@ -107,6 +114,14 @@ void BallIndex::Put(const Ball& ball)
   block.Z[i] = static_cast<float>(center.Z);
   block.SquaredRadius[i] = where.Level == InfiniteLevel ? std::numeric_limits<float>::infinity()
                                                         : static_cast<float>(radius * radius);
+  const float reach = std::sqrt(block.SquaredRadius[i]) * 1.0001f;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const float middle = static_cast<float>(center[axis]);
+    const bool isFirst = place == 0;
+    cell.Low[axis] = isFirst ? middle - reach : std::min(cell.Low[axis], middle - reach);
+    cell.High[axis] = isFirst ? middle + reach : std::max(cell.High[axis], middle + reach);
+  }
   ++this->Levels[where.Level];
   if (2 * this->Cells.size() > this->Slots.size())
   {
@@ -178,6 +193,11 @@ void BallIndex::Find(const Cell& cell, const Vec3& point, std::vector<Id>& ids)
   const float x = static_cast<float>(p.X);
   const float y = static_cast<float>(p.Y);
   const float z = static_cast<float>(p.Z);
+  if (x < cell.Low[0] || y < cell.Low[1] || z < cell.Low[2] || x > cell.High[0] ||
+    y > cell.High[1] || z > cell.High[2])
+  {
+    return;
+  }
   for (std::size_t b = 0; b < cell.Blocks.size(); ++b)
   {
     const Block& block = cell.Blocks[b];
@@ -221,7 +241,7 @@ void BallIndex::Find(const Vec3& point, std::vector<Id>& ids)
   }
   const auto visit = [this, &point, &ids](const CellPlace& place)
   {
-    const Id cell = this->Slots[this->FindSlot(place)];
+    const Id cell = this->Slots[this->FindSlot(place)].Cell;
     if (cell != NoId)
     {
       BallIndex::Find(this->Cells[cell], point, ids);

@@ -62,7 +62,11 @@ private:
     int Level;
     std::int64_t Index[3];
 
-    bool operator==(const CellPlace& other) const;
+    bool operator==(const CellPlace& other) const
+    {
+      return this->Level == other.Level && this->Index[0] == other.Index[0] &&
+        this->Index[1] == other.Index[1] && this->Index[2] == other.Index[2];
+    }
     std::uint64_t GetHash() const;
   };
 
@@ -70,6 +74,9 @@ private:
   {
     CellPlace Place;
     Vec3 Corner;
+    /** A box that all its balls have been within, coordinates as in the blocks. */
+    float Low[3];
+    float High[3];
     std::vector<Id> Numbers;
     /** As many as the numbers need. */
     std::vector<Block> Blocks;
@@ -80,6 +87,13 @@ private:
   {
     Id Cell = NoId;
     Id Index = NoId;
+  };
+
+  /** A cell and the upper half of the hash of its place. */
+  struct Slot
+  {
+    Id Cell = NoId;
+    std::uint32_t Mark = 0;
   };
 
   static void Find(const Cell& cell, const Vec3& point, std::vector<Id>& ids);
@@ -95,7 +109,7 @@ private:
    * Hash table of the cells by open addressing, NoId in slots that are free. A power of two of them,
    * at most half of them used; none before the first query.
    */
-  std::vector<Id> Slots;
+  std::vector<Slot> Slots;
   /** Balls that wait for the first query. */
   std::vector<Ball> Waiting;
   /** How many balls there are of each level in the cells. */

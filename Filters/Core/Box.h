@@ -21,6 +21,17 @@ struct Box
   Vec3 High{ -std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
     -std::numeric_limits<double>::infinity() };
 
+  static Box MakeInfinite()
+  {
+    const Box none;
+    return { none.High, none.Low };
+  }
+  static Box MakeAround(const Vec3& center, double radius)
+  {
+    const Vec3 half{ radius, radius, radius };
+    return { center - half, center + half };
+  }
+
   bool IsEmpty() const { return this->Low.X > this->High.X; }
 
   void Add(const Vec3& p)

@@ -1594,7 +1594,7 @@ void SurfaceRefiner::ProcessEdge()
     return;
   }
   DiametralSphereVisitor visitor(this->Points, ends);
-  this->Octree.Visit(visitor);
+  this->Octree.Visit(visitor, visitor.GetReach());
   if (visitor.Found == NoId)
   {
     this->EmptyEdges.Set(segment, 0.5 * (a + b), 0.5 * length * (1.0 + 1e-6));

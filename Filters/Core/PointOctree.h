@@ -42,13 +42,15 @@ public:
    *                                  visited first; a node for which it is infinite, now or when
    *                                  its turn comes, is left out;
    *   void Visit(Id, const Vec3&)    a point.
+   * Points outside of the reach need not be visited: to know it saves looking at most of the nodes
+   * on the way down.
    */
   template <typename Search>
-  void Visit(Search& search) const
+  void Visit(Search& search, const Box& reach = Box::MakeInfinite()) const
   {
     if (!this->Nodes.empty())
     {
-      this->VisitNode(0, search);
+      this->VisitNode(0, search, reach);
     }
   }
 
@@ -94,8 +96,17 @@ private:
   }
 
   template <typename Search>
-  void VisitNode(Id index, Search& search) const
+  void VisitNode(Id index, Search& search, const Box& reach) const
   {
+    // As long as all of the reach is within one child, only centers are looked at.
+    int lowest = GetChild(this->Nodes[index], reach.Low);
+    int highest = GetChild(this->Nodes[index], reach.High);
+    while (lowest == highest && this->Nodes[index].FirstChild != NoId)
+    {
+      index = this->Nodes[index].FirstChild + lowest;
+      lowest = GetChild(this->Nodes[index], reach.Low);
+      highest = GetChild(this->Nodes[index], reach.High);
+    }
     const Node& node = this->Nodes[index];
     if (node.FirstChild == NoId)
     {
@@ -105,8 +116,14 @@ private:
     double orders[8];
     Id children[8];
     int count = 0;
-    for (Id child = node.FirstChild; child < node.FirstChild + 8; ++child)
+    for (int i = 0; i < 8; ++i)
     {
+      // On each axis the children in reach lie between the two.
+      if ((i & ~highest) != 0 || (lowest & ~i) != 0)
+      {
+        continue;
+      }
+      const Id child = node.FirstChild + i;
       const Box& bounds = this->Nodes[child].Bounds;
       if (bounds.IsEmpty())
       {
@@ -132,7 +149,7 @@ private:
       if (i == 0 ||
         search.Order(this->Nodes[children[i]].Bounds) != std::numeric_limits<double>::infinity())
       {
-        this->VisitNode(children[i], search);
+        this->VisitNode(children[i], search, reach);
       }
     }
   }

@@ -110,6 +110,8 @@ public:
                                                  : std::numeric_limits<double>::infinity();
   }
 
+  Box GetReach() const { return Box::MakeAround(this->Center, this->Reach); }
+
   void Visit(Id id, const Vec3& p)
   {
     const double distance = SquaredNorm(p - this->Center);

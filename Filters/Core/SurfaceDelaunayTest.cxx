@@ -38,6 +38,8 @@ public:
     const double reach = this->Radius + Norm(u) + Norm(v);
     const double size = std::abs(this->A.X) + std::abs(this->A.Y) + std::abs(this->A.Z);
     this->Slack = error * reach + 16.0 * Epsilon * (size + reach);
+    this->SquaredReach = (this->Radius + this->Slack) * (this->Radius + this->Slack);
+    this->SquaredCore = (this->Radius - this->Slack) * (this->Radius - this->Slack);
     if (!(this->Slack < 1e-6 * this->Radius))
     {
       this->Form.emplace(this->A, this->B, this->C);
@@ -56,8 +58,14 @@ public:
     {
       return this->Form->MayTouch(box.Low, box.High) ? distance : Infinity;
     }
-    const double reach = this->Radius + this->Slack;
-    return distance > reach * reach ? Infinity : distance;
+    return distance > this->SquaredReach ? Infinity : distance;
+  }
+
+  /** Beyond it nothing matters. */
+  Box GetReach() const
+  {
+    return this->Form ? Box::MakeInfinite()
+                      : Box::MakeAround(this->Center, this->Radius + 2.0 * this->Slack);
   }
 
   void Visit(Id id, const Vec3& q)
@@ -66,11 +74,11 @@ public:
     {
       return;
     }
-    const double distance = Distance(q, this->Center);
-    int position = this->Form                 ? this->Form->GetSide(q)
-      : distance > this->Radius + this->Slack ? -1
-      : distance < this->Radius - this->Slack ? 1
-                                              : 0;
+    const double distance = SquaredNorm(q - this->Center);
+    int position = this->Form         ? this->Form->GetSide(q)
+      : distance > this->SquaredReach ? -1
+      : distance < this->SquaredCore  ? 1
+                                      : 0;
     if (position < 0)
     {
       return;
@@ -121,6 +129,9 @@ private:
   Vec3 C;
   /** The sphere in twice the working precision, for needles. */
   std::optional<SphereForm> Form;
+  /** Squared distances from the center: beyond the first points lie outside, below the second inside. */
+  double SquaredReach;
+  double SquaredCore;
   double Deepest = Infinity;
   SurfaceDelaunayTest::Result& Found;
 };
@@ -131,15 +142,31 @@ private:
 class OtherSideVisitor
 {
 public:
-  OtherSideVisitor(const std::vector<Vec3>& points, const TriangleIds& triangle, Id front)
+  /** The sphere lies within a ball, of infinite radius if that is not certain. */
+  OtherSideVisitor(const std::vector<Vec3>& points, const TriangleIds& triangle, Id front,
+    const Vec3& center, double radius)
     : A(points[triangle[0]]), B(points[triangle[1]]), C(points[triangle[2]]), D(points[front]),
-      Form(this->A, this->B, this->C, this->D)
+      Center(center), Radius(radius), Form(this->A, this->B, this->C, this->D)
   {
+    const Vec3 u = this->B - this->A;
+    const Vec3 v = this->C - this->A;
+    this->Normal = Cross(u, v);
+    // Far more than rounding leaves of a distance from the plane, in units of the normal.
+    this->Tolerance = 1e-13 * Norm(u) * Norm(v);
   }
 
   double Order(const Box& box) const
   {
-    return !this->IsFound && this->Form.MayTouch(box.Low, box.High) ? 0.0 : Infinity;
+    const bool mayHold = this->Radius < Infinity
+      ? box.GetSquaredDistance(this->Center) <= this->Radius * this->Radius
+      : this->Form.MayTouch(box.Low, box.High);
+    return !this->IsFound && mayHold && !this->IsInFront(box) ? 0.0 : Infinity;
+  }
+
+  Box GetReach() const
+  {
+    return this->Radius < Infinity ? Box::MakeAround(this->Center, this->Radius)
+                                   : Box::MakeInfinite();
   }
 
   void Visit(Id, const Vec3& q)
@@ -156,10 +183,28 @@ public:
   bool IsFound = false;
 
 private:
+  /** False if any point of the box may lie behind the triangle. */
+  bool IsInFront(const Box& box) const
+  {
+    double height = 0.0;
+    double size = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double nearest = this->Normal[axis] > 0.0 ? box.Low[axis] : box.High[axis];
+      height += this->Normal[axis] * (nearest - this->A[axis]);
+      size += std::abs(nearest) + std::abs(this->A[axis]);
+    }
+    return height > this->Tolerance * size;
+  }
+
   Vec3 A;
   Vec3 B;
   Vec3 C;
   Vec3 D;
+  Vec3 Center;
+  double Radius;
+  Vec3 Normal;
+  double Tolerance;
   SphereForm Form;
 };
 } // namespace
@@ -171,7 +216,7 @@ void SurfaceDelaunayTest::Run(
   result.OnSmallestSphere.clear();
   result.Cocircular.clear();
   SmallestSphereVisitor visitor(this->Points, triangle, isSmallestSphereWanted, result);
-  this->Octree.Visit(visitor);
+  this->Octree.Visit(visitor, visitor.GetReach());
   std::sort(result.Cocircular.begin(), result.Cocircular.end());
   // The proof may be a little larger than the empty sphere: that costs a needless test at most.
   constexpr double Inflation = 1.0 + 1e-6;
@@ -205,24 +250,26 @@ void SurfaceDelaunayTest::Run(
       best = candidate;
     }
   }
-  OtherSideVisitor otherSide(this->Points, turned, best);
-  this->Octree.Visit(otherSide);
+  const Vec3 normal = Cross(b - a, c - a);
+  const Vec3 arm = this->Points[best] - a;
+  const double height = Dot(normal, arm);
+  const double lambda = Dot(arm, arm - 2.0 * (visitor.Center - a)) / (2.0 * height);
+  const Vec3 center = visitor.Center + lambda * normal;
+  const double radius =
+    std::max(Distance(center, a), Distance(center, this->Points[best])) * Inflation +
+    2.0 * visitor.Slack;
+  // Rounding moves the center by far less than the inflation, unless the four points are almost in
+  // a plane.
+  const double condition = Norm(b - a) * Norm(c - a) * Norm(arm) / height;
+  const bool isCertain =
+    std::isfinite(radius) && condition < 1e7 && condition * visitor.Slack < 1e-7 * radius;
+  OtherSideVisitor otherSide(this->Points, turned, best, center, isCertain ? radius : Infinity);
+  this->Octree.Visit(otherSide, otherSide.GetReach());
   result.IsDelaunay = !otherSide.IsFound;
   if (result.IsDelaunay)
   {
-    const Vec3 normal = Cross(b - a, c - a);
-    const Vec3 arm = this->Points[best] - a;
-    const double lambda = Dot(arm, arm - 2.0 * (visitor.Center - a)) / (2.0 * Dot(normal, arm));
-    result.ProofCenter = visitor.Center + lambda * normal;
-    result.ProofRadius =
-      std::max(Distance(result.ProofCenter, a), Distance(result.ProofCenter, this->Points[best])) *
-        Inflation +
-      2.0 * visitor.Slack;
-    if (!std::isfinite(result.ProofRadius))
-    {
-      result.ProofCenter = visitor.Center;
-      result.ProofRadius = Infinity;
-    }
+    result.ProofCenter = std::isfinite(radius) ? center : visitor.Center;
+    result.ProofRadius = std::isfinite(radius) ? radius : Infinity;
   }
 }
 } // namespace cdm
