@@ -172,6 +172,7 @@ void AbortBehavior::OfferAgain(pqPipelineSource* source, vtkAlgorithm* algorithm
       {
         QObject::disconnect(*applied);
         kept->Modified();
+        source->getProxy()->MarkDirty(source->getProxy());
       }
     });
 }

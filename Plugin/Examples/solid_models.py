@@ -133,7 +133,7 @@ def DrawFront(folder, front, colour):
                   (Paint(front.GetOutputDataObject(2), place), (FRONT,), True)]
     front.SetMaximumNumberOfTetrahedra(0)
     front.Update()
-    gallery.Draw(os.path.join(folder, "hand_front.png"), parts, (0.0, -1.0, 0.0), 2.15)
+    gallery.Draw(os.path.join(folder, "hand_front.png"), parts, (0.0, -1.0, 0.0), 2.0)
 
 
 def DrawTubes(folder, mesh, colour):

@@ -55,7 +55,7 @@ with tempfile.TemporaryDirectory() as folder:
         process = GuiTesting.Start(folder, "Abort.xml", output)
         try:
             for _ in range(RUNS):
-                (x, y), _ = WaitFor(FindAbortButton, 200)
+                (x, y), _ = WaitFor(FindAbortButton, 90)
                 # Well into the run.
                 time.sleep(2)
                 subprocess.run([os.environ["CDM_XDOTOOL"], "mousemove", str(x), str(y),

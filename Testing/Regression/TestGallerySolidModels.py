@@ -20,4 +20,4 @@ for kind, name, pictures in MODELS:
         "solid_models.py", (kind + ".vtu",),
         [("%s_%s.png" % (kind, picture), "Gallery%s%s.png" % (kind.title(), picture.title()))
          for picture in pictures],
-        arguments=(kind, os.path.join(folder, name)), certificate=": valid")
+        arguments=(kind, os.path.join(folder, name)), certificate="0 inverted, 0 flat, 0 non-Delaunay;")
