@@ -5,6 +5,7 @@ import os
 import re
 import shlex
 import subprocess
+import time
 
 import ImageComparison
 import numpy
@@ -41,6 +42,25 @@ def Run(folder, events, seconds=240):
             text = output.read()
             print(text)
         CheckOutput(status, text)
+
+
+def GrabScreen():
+    grab = subprocess.run([os.environ["CDM_IMPORT"], "-window", "root", "-depth", "8", "ppm:-"],
+                          stdout=subprocess.PIPE, check=True)
+    _, size, _, pixels = grab.stdout.split(b"\n", 3)
+    width, height = map(int, size.split())
+    return numpy.frombuffer(pixels, numpy.uint8).reshape(height, width, 3).astype(int)
+
+
+def WaitFor(condition, seconds):
+    """The first answer of `condition` that is not None, and after how long it came."""
+    start = time.monotonic()
+    while time.monotonic() - start < seconds:
+        answer = condition()
+        if answer is not None:
+            return answer, time.monotonic() - start
+        time.sleep(0.5)
+    raise AssertionError("nothing happened for %d seconds" % seconds)
 
 
 def CheckOutput(status, text):

@@ -20,17 +20,9 @@ RUNS = 2
 SECONDS = 15
 
 
-def GrabScreen():
-    grab = subprocess.run([os.environ["CDM_IMPORT"], "-window", "root", "-depth", "8", "ppm:-"],
-                          stdout=subprocess.PIPE, check=True)
-    _, size, _, pixels = grab.stdout.split(b"\n", 3)
-    width, height = map(int, size.split())
-    return numpy.frombuffer(pixels, numpy.uint8).reshape(height, width, 3).astype(int)
-
-
 def FindAbortButton():
     """The middle of the red cross below the render view: (x, y); None while it is gray."""
-    red, green, blue = numpy.moveaxis(GrabScreen(), 2, 0)
+    red, green, blue = numpy.moveaxis(GuiTesting.GrabScreen(), 2, 0)
     top = 2 * red.shape[0] // 3
     rows, columns = numpy.nonzero((red > 150) & (green < 90) & (blue < 90) &
                                   (numpy.arange(red.shape[0])[:, None] > top))
@@ -39,28 +31,17 @@ def FindAbortButton():
     return int(numpy.median(columns)), int(numpy.median(rows))
 
 
-def WaitFor(condition, seconds):
-    """The first answer of `condition` that is not None, and after how long it came."""
-    start = time.monotonic()
-    while time.monotonic() - start < seconds:
-        answer = condition()
-        if answer is not None:
-            return answer, time.monotonic() - start
-        time.sleep(0.5)
-    raise AssertionError("nothing happened for %d seconds" % seconds)
-
-
 with tempfile.TemporaryDirectory() as folder:
     with open(os.path.join(folder, "output.txt"), "w+", encoding="utf-8") as output:
         process = GuiTesting.Start(folder, "Abort.xml", output)
         try:
             for _ in range(RUNS):
-                (x, y), _ = WaitFor(FindAbortButton, 90)
+                (x, y), _ = GuiTesting.WaitFor(FindAbortButton, 90)
                 # Well into the run.
                 time.sleep(2)
                 subprocess.run([os.environ["CDM_XDOTOOL"], "mousemove", str(x), str(y),
                                 "click", "1"], check=True)
-                _, seconds = WaitFor(lambda: True if FindAbortButton() is None else None, SECONDS)
+                _, seconds = GuiTesting.WaitFor(lambda: True if FindAbortButton() is None else None, SECONDS)
                 print("aborted after %.1f seconds" % seconds)
             status = process.wait(120)
         finally:
