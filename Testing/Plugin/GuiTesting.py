@@ -18,14 +18,14 @@ def GetCommand():
     return [os.environ["CDM_PARAVIEW"]] + shlex.split(command.group(1))
 
 
-def Start(folder, events, output):
+def Start(folder, events, output, *options):
     """ParaView in `folder`, where it plays a file of events beside this one, and writes what the
     events ask for; all that it says goes into the file `output`."""
     # The README's command speaks of build/ in the folder of the project.
     os.symlink(os.environ["CDM_BINARY_DIR"], os.path.join(folder, "build"))
     script = os.path.join(os.path.dirname(os.path.abspath(__file__)), events)
     command = GetCommand() + [
-        "--dr", "--test-directory=" + folder, "--test-script=" + script, "--exit"]
+        "--dr", "--test-directory=" + folder, "--test-script=" + script, "--exit", *options]
     print(" ".join(command))
     return subprocess.Popen(command, cwd=folder, stdout=output, stderr=subprocess.STDOUT)
 

@@ -14,17 +14,8 @@ import time
 import GuiTesting
 import ImageComparison
 
-WINDOW = "1280", "1024"
+WINDOW = "1280x1024+0+0"
 PANEL = "300x560+0+440"  # width, height, left and top
-
-
-def FillScreen():
-    """Asks ParaView's window for the size of the screen; True once it has it."""
-    search = subprocess.run([os.environ["CDM_XDOTOOL"], "search", "--onlyvisible", "--name", "^ParaView"],
-                            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-    for window in search.stdout.split():
-        subprocess.run([os.environ["CDM_XDOTOOL"], "windowsize", window, *WINDOW], check=True)
-    return bool(GuiTesting.GrabScreen()[-1].any()) or None
 
 
 def WaitForState(folder, name):
@@ -33,10 +24,8 @@ def WaitForState(folder, name):
 
 with tempfile.TemporaryDirectory() as folder:
     with open(os.path.join(folder, "output.txt"), "w+", encoding="utf-8") as output:
-        process = GuiTesting.Start(folder, "Panel.xml", output)
+        process = GuiTesting.Start(folder, "Panel.xml", output, "-qwindowgeometry", WINDOW)
         try:
-            WaitForState(folder, "Started")
-            GuiTesting.WaitFor(FillScreen, 25)
             for name in ("PanelDefault", "PanelAdvanced"):
                 WaitForState(folder, name)
                 # Time for ParaView to draw what it shows.
