@@ -29,6 +29,7 @@
 #include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -428,16 +429,24 @@ namespace vtkCoreBridge
 //--------------------------------------------------------------------------------------------------
 cdm::ExecutionContext MakeContext(vtkAlgorithm* filter)
 {
-  // Stages may call in inner loops; observers (a GUI redraws) hear of steps that can be seen.
+  // Stages may call in inner loops; observers (a GUI redraws) hear of steps that can be seen, and
+  // now and then of none: they may want to abort.
+  using Clock = std::chrono::steady_clock;
   constexpr double smallestStep = 0.005;
+  static constexpr std::chrono::milliseconds longestSilence(200);
   double last = -1.0;
   std::string lastActivity;
-  auto progress = [filter, last, lastActivity](double fraction, const char* activity) mutable
+  Clock::time_point lastTime;
+  auto progress = [filter, last, lastActivity, lastTime](
+                    double fraction, const char* activity) mutable
   {
-    if (std::abs(fraction - last) >= smallestStep || lastActivity != activity)
+    const Clock::time_point now = Clock::now();
+    if (std::abs(fraction - last) >= smallestStep || lastActivity != activity ||
+      now - lastTime >= longestSilence)
     {
       last = fraction;
       lastActivity = activity;
+      lastTime = now;
       filter->SetProgressText(activity);
       filter->UpdateProgress(fraction);
     }

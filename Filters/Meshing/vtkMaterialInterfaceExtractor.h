@@ -12,7 +12,8 @@
  *     within MaximumDeviation. Lines where materials meet, edges sharper than FeatureAngle, the
  *     edges of the image and the corners of all these are kept.
  * Without smoothing and with a MaximumDeviation of 0 the result is the exact staircase with its
- * coplanar faces merged.
+ * coplanar faces merged. vtkSurfaceNets3D of VTK 9.3 and later is not used: it smooths without a look
+ * at self-intersections, which no mesh could conform to, and leaves some neighborhoods unresolved.
  *
  * Inputs: port 0: vtkImageData or vtkRectilinearGrid, a volume. The array to process (default: the
  * active scalars of the points, otherwise of the cells) has one component with whole numbers: the

@@ -3,11 +3,11 @@
 
 The scripts are locos.py, layout_interconnect.py, dram_interconnect.py, two_layer_interconnect.py,
 vapor_deposition.py, nmos_transistor.py and cmos_inverter.py: the devices of P. Fleischmann's thesis
-(TU Wien 1999). Each runs as
+(TU Wien 1999); and solid_models.py, for its models of a hand, a bust, a cow and a skull. Each runs as
 
     pvpython SCRIPT [FOLDER]
 
-with the Python package conforming_delaunay in PYTHONPATH, writes its meshes as FOLDER/*.vtu (inline
+(solid_models.py with a model before the folder) with the Python package conforming_delaunay in PYTHONPATH, writes its meshes as FOLDER/*.vtu (inline
 binary) and its pictures as FOLDER/*.png, and ends with an error if a mesh is not what it should be.
 """
 
@@ -80,9 +80,14 @@ def MakeMesh(device, length=0.0, sizing=None, points=None):
     mesher.SetDihedralAngleTarget(TARGET)
     mesher.RemoveSliversOff()
     mesher.Update()
+    return Certify(mesher.GetOutputDataObject(0), mesher.GetOutputDataObject(1))
+
+
+def Certify(mesh, boundary):
+    """The tetrahedra with the arrays of the certificate."""
     criteria = vtkDelaunayMeshCriteria()
-    criteria.SetInputData(0, mesher.GetOutputDataObject(0))
-    criteria.SetInputData(1, mesher.GetOutputDataObject(1))
+    criteria.SetInputData(0, mesh)
+    criteria.SetInputData(1, boundary)
     criteria.Update()
     return criteria.GetOutput()
 
@@ -137,6 +142,22 @@ def Report(title, mesh, thesis):
     if angles[~inevitable].min() < TARGET:
         wrong.append("%d slivers" % (angles[~inevitable] < TARGET).sum())
     print("  certificate:", summary.GetAbstractArray("Certificate").GetValue(0))
+    if wrong:
+        print("  wrong:", "; ".join(wrong))
+    return wrong
+
+
+def Compare(title, mesh, limit):
+    """As Report(), for a mesh that is Delaunay but not refined: shapes of tetrahedra do not count."""
+    number = mesh.GetNumberOfCells()
+    summary = mesh.GetFieldData()
+    print("%-44s %12s %12s" % (title, "tetrahedra", "thesis"))
+    print("  %-42s %12d %12d" % ("all", number, limit))
+    print("  certificate:", summary.GetAbstractArray("Certificate").GetValue(0))
+    wrong = ["%d %s" % (summary.GetArray(name).GetValue(0), name) for name in FAULTS[:3]
+             if summary.GetArray(name).GetValue(0)]
+    if number > limit:
+        wrong.append("%d tetrahedra" % number)
     if wrong:
         print("  wrong:", "; ".join(wrong))
     return wrong
@@ -225,8 +246,14 @@ def Draw(path, parts, direction, height):
         Delete(proxy)
 
 
-def Main(run):
-    """Call run(folder), which returns what is wrong, and end the program accordingly."""
-    folder = sys.argv[1] if len(sys.argv) > 1 else "."
+def Main(run, *words):
+    """Call run(folder), which returns what is wrong, and end the program accordingly.
+
+    words: what has to come before the folder in the command, and is given to run before it.
+    """
+    if len(sys.argv) <= len(words):
+        sys.exit("%s %s [FOLDER]" % (os.path.basename(sys.argv[0]), " ".join(words)))
+    values, rest = sys.argv[1:1 + len(words)], sys.argv[1 + len(words):]
+    folder = rest[0] if rest else "."
     os.makedirs(folder, exist_ok=True)
-    sys.exit(1 if run(folder) else 0)
+    sys.exit(1 if run(*values, folder) else 0)

@@ -4,7 +4,8 @@
 Parses the server-manager XML, and compares it with the wrapped classes: each proxy and property
 has a help text, real numbers with their unit, each class has a proxy, each option of a class has a
 property with the same default, and output ports have names. What groups and decorators of the
-panels speak of is there. ParaView's help file, if it was built, has a page and a picture for each
+panels speak of is there. Angles have their unit in the label, lengths in that of their group, and no
+label changes the name that an option has in Python. ParaView's help file, if it was built, has a page and a picture for each
 proxy.
 """
 
@@ -16,9 +17,13 @@ import sys
 import xml.etree.ElementTree as ElementTree
 
 import conforming_delaunay
+import paraview
 
 UNITS = re.compile(r"\bunits?\b|degrees|micrometres|\bratio\b|part of|spacings|at these [xyz]|"
                    r"direction|sizes may grow", re.IGNORECASE)
+ANGLES = re.compile(r"in degrees|more degrees", re.IGNORECASE)
+MODEL_UNITS = re.compile(r"in (square |cubic )?model units", re.IGNORECASE)
+MICROMETRES = re.compile(r"in micrometres", re.IGNORECASE)
 problems = []
 
 
@@ -80,6 +85,17 @@ for name, proxy in sorted(proxies.items()):
         # script that asks for the default of the class would not get it.
         Check(child.find("BoundsDomain") is None or child.find("Hints/NoDefault") is not None,
               name, child.get("name"), "takes its default from its input")
+    groups = {entry.get("name"): group.get("label")
+              for group in proxy.iter("PropertyGroup") for entry in group.iter("Property")}
+    for option, element in properties.items():
+        label = element.get("label") or option
+        text = " ".join((element.findtext("Documentation") or "").split())
+        Check(paraview.make_name_valid(label) == option, name, option, "has another name in Python")
+        Check(("°" in label) == bool(ANGLES.search(text)), name, option, "has the label", label)
+        for unit, words in (("(model units)", MODEL_UNITS), ("(µm)", MICROMETRES)):
+            Check(element.tag != "DoubleVectorProperty" or not words.search(text)
+                  or unit in (groups.get(option) or ""),
+                  name, option, "is in the group", groups.get(option))
     grouped = [entry.get("name") for entry in proxy.iter("Property")
                if entry.get("function") is None]
     Check(len(grouped) == len(set(grouped)), name, "has properties in two groups", grouped)

@@ -13,19 +13,20 @@ import ImageComparison
 ImageComparison.FRACTION = 20 / (900 * 700)
 
 
-def Check(script, meshes, pictures):
+def Check(script, meshes, pictures, arguments=(), certificate=": clean"):
     """The script ends well, as it does if all its meshes are as they should be, and writes these.
 
-    meshes: names of files; pictures: names in the script's folder and of their baselines.
+    meshes: names of files; pictures: names in the script's folder and of their baselines;
+    arguments: what comes before the folder; certificate: how those of the meshes end.
     """
     path = os.path.join(os.environ["CDM_SOURCE_DIR"], "Plugin", "Examples", script)
     with tempfile.TemporaryDirectory() as folder:
-        run = subprocess.run([os.environ["CDM_PVPYTHON"], path, folder], timeout=280,
+        run = subprocess.run([os.environ["CDM_PVPYTHON"], path, *arguments, folder], timeout=280,
                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         print(run.stdout)
         if run.returncode != 0 or "ERR|" in run.stdout or "Traceback" in run.stdout:
             sys.exit("exit code %d" % run.returncode)
-        assert run.stdout.count(": clean") == len(meshes), "a certificate for each mesh"
+        assert run.stdout.count(certificate) == len(meshes), "a certificate for each mesh"
         written = sorted([*meshes, *(name for name, _ in pictures)])
         assert sorted(os.listdir(folder)) == written, os.listdir(folder)
         for name, baseline in pictures:
