@@ -17,13 +17,15 @@
  *
  * --run: a single measurement, in this process, for Suite.py; one line of "name value" pairs. Its mesh
  * goes to name.node and name.ele, the files of TetGen.
- * --list programs: those that there are, one on each line.
+ * --list programs: those that there are, one on each line, with the version where the program tells it.
  */
 #include "Core/AdvancingFrontTetrahedralizer.h"
+#include "TetgenFiles.h"
 
 #ifdef CDM_HAS_CGAL_TRIANGULATION
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/version.h>
 #endif
 #ifdef CDM_HAS_TETGEN
 #include <tetgen.h>
@@ -203,17 +205,11 @@ struct Clock
   }
 };
 
-struct Mesh
-{
-  PointSet Points;
-  std::vector<std::array<std::size_t, 4>> Tetrahedra;
-};
-
 /**
  * A program converts the points, starts the clock, meshes, and stops it. Then it gives its result to
  * mesh, unless that is null.
  */
-using Program = std::function<void(const PointSet&, Clock& clock, Mesh* mesh)>;
+using Program = std::function<void(const PointSet&, Clock& clock, TetgenMesh* mesh)>;
 
 /** A measurement under way. */
 struct Run
@@ -273,7 +269,7 @@ Result Measure(const std::string& input, std::size_t count, const Program& progr
   return hasFailed ? Result() : slowest;
 }
 
-void RunOurs(const PointSet& points, Clock& clock, int threads, Mesh* mesh)
+void RunOurs(const PointSet& points, Clock& clock, int threads, TetgenMesh* mesh)
 {
   clock.Start();
   cdm::AdvancingFrontTetrahedralizerInput input;
@@ -296,7 +292,7 @@ void RunOurs(const PointSet& points, Clock& clock, int threads, Mesh* mesh)
 }
 
 #ifdef CDM_HAS_CGAL_TRIANGULATION
-void RunCgal(const PointSet& points, Clock& clock, Mesh* mesh)
+void RunCgal(const PointSet& points, Clock& clock, TetgenMesh* mesh)
 {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   std::vector<Kernel::Point_3> converted;
@@ -328,7 +324,7 @@ void RunCgal(const PointSet& points, Clock& clock, Mesh* mesh)
 #endif
 
 #ifdef CDM_HAS_TETGEN
-void RunTetgen(const PointSet& points, Clock& clock, Mesh* mesh)
+void RunTetgen(const PointSet& points, Clock& clock, TetgenMesh* mesh)
 {
   tetgenio in;
   tetgenio out;
@@ -358,7 +354,7 @@ void RunTetgen(const PointSet& points, Clock& clock, Mesh* mesh)
 #endif
 
 #ifdef CDM_HAS_VTK_DELAUNAY3D
-void RunVtk(const PointSet& points, Clock& clock, Mesh* mesh)
+void RunVtk(const PointSet& points, Clock& clock, TetgenMesh* mesh)
 {
   vtkNew<vtkPoints> converted;
   converted->SetDataTypeToDouble();
@@ -392,35 +388,6 @@ void RunVtk(const PointSet& points, Clock& clock, Mesh* mesh)
 }
 #endif
 
-void WriteMesh(const Mesh& mesh, const std::string& name)
-{
-  std::FILE* nodes = std::fopen((name + ".node").c_str(), "w");
-  std::FILE* elements = std::fopen((name + ".ele").c_str(), "w");
-  if (nodes && elements)
-  {
-    std::fprintf(nodes, "%zu 3 0 0\n", mesh.Points.size());
-    for (std::size_t i = 0; i < mesh.Points.size(); ++i)
-    {
-      const Vec3& p = mesh.Points[i];
-      std::fprintf(nodes, "%zu %.17g %.17g %.17g\n", i, p.X, p.Y, p.Z);
-    }
-    std::fprintf(elements, "%zu 4 0\n", mesh.Tetrahedra.size());
-    for (std::size_t i = 0; i < mesh.Tetrahedra.size(); ++i)
-    {
-      const std::array<std::size_t, 4>& t = mesh.Tetrahedra[i];
-      std::fprintf(elements, "%zu %zu %zu %zu %zu\n", i, t[0], t[1], t[2], t[3]);
-    }
-  }
-  for (std::FILE* file : { nodes, elements })
-  {
-    if (!file || std::fclose(file) != 0)
-    {
-      std::fprintf(stderr, "cannot write %s.node and .ele\n", name.c_str());
-      std::exit(2);
-    }
-  }
-}
-
 /** Of each quantity by itself. */
 Result GetMedian(std::vector<Result> results)
 {
@@ -442,6 +409,18 @@ struct Entry
   int Copies = 1;
 };
 
+/** Where the program tells it. */
+const char* GetVersion(const std::string& name)
+{
+#ifdef CDM_HAS_CGAL_TRIANGULATION
+  if (name == "CGAL")
+  {
+    return CGAL_VERSION_STR;
+  }
+#endif
+  return "";
+}
+
 /** The exit status. */
 int RunSingle(const std::vector<Entry>& programs, const std::string& name, const std::string& input,
   std::size_t count, const std::string& meshName)
@@ -455,14 +434,14 @@ int RunSingle(const std::vector<Entry>& programs, const std::string& name, const
   }
   const PointSet points = MakePoints(input, count);
   Clock clock;
-  Mesh mesh;
+  TetgenMesh mesh;
   program->Make(points, clock, meshName.empty() ? nullptr : &mesh);
   std::printf("points %zu seconds %g wall %g megabytes %g tetrahedra %.0f\n", points.size(),
     clock.Measured.Seconds, clock.Measured.WallSeconds, clock.Measured.Megabytes,
     clock.Measured.Tetrahedra);
   if (!meshName.empty())
   {
-    WriteMesh(mesh, meshName);
+    WriteTetgenFiles(mesh, meshName);
   }
   return clock.Measured.Tetrahedra > 0.0 ? 0 : 1;
 }
@@ -530,7 +509,7 @@ int main(int argc, char* argv[])
   }
   const auto makeOurs = [](int threads) -> Program
   {
-    return [threads](const PointSet& points, Clock& clock, Mesh* mesh)
+    return [threads](const PointSet& points, Clock& clock, TetgenMesh* mesh)
     { RunOurs(points, clock, threads, mesh); };
   };
   std::vector<Entry> programs{ { "ours", makeOurs(1) } };
@@ -554,7 +533,7 @@ int main(int argc, char* argv[])
   {
     for (const Entry& program : programs)
     {
-      std::printf("%s\n", program.Name.c_str());
+      std::printf("%s %s\n", program.Name.c_str(), GetVersion(program.Name));
     }
     return 0;
   }

@@ -1,10 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The commands behind Suite.py; see Suite.md.
+add_custom_target(BenchmarkSuite)
 add_executable(SuiteMeasure SuiteMeasure.cxx)
 add_executable(SuiteMesher SuiteMesher.cxx)
 target_link_libraries(SuiteMesher PRIVATE ConformingDelaunay::Meshing VTK::CommonCore
   VTK::CommonDataModel VTK::CommonExecutionModel VTK::IOXML)
+add_dependencies(BenchmarkSuite BenchmarkTetrahedralizer SuiteMeasure SuiteMesher)
+if (CDM_TETGEN_DIR AND CDM_TETGEN_LIBRARY)
+  add_executable(SuiteTetgen SuiteTetgen.cxx)
+  target_compile_definitions(SuiteTetgen PRIVATE TETLIBRARY)
+  target_include_directories(SuiteTetgen PRIVATE "${CDM_TETGEN_DIR}")
+  target_link_libraries(SuiteTetgen PRIVATE ConformingDelaunay::Core "${CDM_TETGEN_LIBRARY}")
+  add_dependencies(BenchmarkSuite SuiteTetgen)
+endif ()
 if (CONFORMINGDELAUNAY_WRAP_PYTHON)
+  add_dependencies(BenchmarkSuite cdmMeshingPython)
   # Its short form: it ends with an error if one of our results is not what it should be.
   add_test(NAME bench.Suite
     COMMAND "${with_display}" "${Python3_EXECUTABLE}" "${CMAKE_CURRENT_SOURCE_DIR}/Suite.py" run
