@@ -15,9 +15,9 @@
  * With several threads there is a row for as many copies with one thread each at the same time, too:
  * what they lose is lost to the machine, and no number of threads can win it back.
  *
- * --run: a single measurement, in this process, for Suite.py; one line of "name value" pairs. Its mesh
- * goes to name.node and name.ele, the files of TetGen.
- * --list programs: those that there are, one on each line, with the version where the program tells it.
+ * --run: a single measurement, in this process, for Suite.py; one line of "name value" pairs. Its
+ * mesh goes to name.node and name.ele, the files of TetGen.
+ * --list programs: those that there are, one on each line, with the version where it is known.
  */
 #include "Core/AdvancingFrontTetrahedralizer.h"
 #include "TetgenFiles.h"
@@ -206,8 +206,8 @@ struct Clock
 };
 
 /**
- * A program converts the points, starts the clock, meshes, and stops it. Then it gives its result to
- * mesh, unless that is null.
+ * A program converts the points, starts the clock, meshes, and stops it. Then it gives its result
+ * to mesh, unless that is null.
  */
 using Program = std::function<void(const PointSet&, Clock& clock, TetgenMesh* mesh)>;
 
@@ -409,7 +409,7 @@ struct Entry
   int Copies = 1;
 };
 
-/** Where the program tells it. */
+/** Where it is known. */
 const char* GetVersion(const std::string& name)
 {
 #ifdef CDM_HAS_CGAL_TRIANGULATION

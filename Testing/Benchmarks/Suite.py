@@ -31,8 +31,7 @@ import numpy
 from SuiteReport import WriteReport
 from SurfaceBenchmark import find_models
 from conforming_delaunay import (
-    vtkBoundaryTriangulator, vtkConformingDelaunayMesher, vtkDelaunayMeshCriteria,
-    vtkTechnologyStructureSource)
+    vtkBoundaryTriangulator, vtkDelaunayMeshCriteria, vtkTechnologyStructureSource)
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints, vtkVersion
 from vtkmodules.vtkCommonDataModel import VTK_TETRA, vtkCellArray, vtkUnstructuredGrid
@@ -56,16 +55,21 @@ SHAPE = ["--criterion", "2", "--radius-edge-ratio", "1.4", "--dihedral-angle", "
 def MakePlan(isQuick):
     """Sizes of everything; of a device: its bounding box by the largest volume."""
     if isQuick:
-        return {"sets": [1000], "set_names": ("random", "grid0.1"), "devices": ("MosTransistor",),
-                "elements": 2000, "models": 3, "growth": [500, 1500, 5000], "device_growth": [500, 2000]}
-    return {"sets": [10000, 100000], "set_names": POINT_SETS, "devices": DEVICES, "elements": 10000,
-            "models": None, "growth": [1500, 4700, 15000, 47000, 150000, 470000, 1500000],
+        return {"sets": [1000], "set_names": ("random", "grid0.1"),
+                "devices": ("MosTransistor",), "elements": 2000, "models": 3,
+                "growth": [500, 1500, 5000], "device_growth": [500, 5000]}
+    return {"sets": [10000, 100000], "set_names": POINT_SETS,
+            "devices": DEVICES, "elements": 10000, "models": None,
+            "growth": [1500, 4700, 15000, 47000, 150000, 470000, 1500000],
             "device_growth": [5000, 16000, 50000, 160000, 500000]}
 
 
 class Program:
-    """A row of the tables. The words of its command line and the path of its mesh are templates with
-    the names of Prepare; clock finds the seconds in what it prints."""
+    """A row of the tables.
+
+    The words of its command line and the path of its mesh are templates with the names of Prepare;
+    clock finds the seconds in what it prints.
+    """
 
     def __init__(self, name, command, output, clock):
         self.Name = name
@@ -162,7 +166,8 @@ def DescribeMachine(programs):
     flags = ReadFirst(cache, r"CMAKE_CXX_FLAGS_%s:\w+=(.*)" % (build or "RELEASE").upper())
     return {"processor": ReadFirst("/proc/cpuinfo", r"model name\s*:(.*)"),
             "cores": os.cpu_count(),
-            "gigabytes": round(int(ReadFirst("/proc/meminfo", r"MemTotal:\s*(\d+)") or 0) / 2**20, 1),
+            "gigabytes": round(
+                int(ReadFirst("/proc/meminfo", r"MemTotal:\s*(\d+)") or 0) / 2**20, 1),
             "load": [round(load, 2) for load in os.getloadavg()],
             "system": ReadFirst("/etc/os-release", r'PRETTY_NAME="(.*)"') or platform.system(),
             "compiler": version, "build": " ".join((build, flags)).strip()}
@@ -287,7 +292,7 @@ def GetVolumeError(volumes, expected):
 def Judge(certificates, expected):
     """Adds the error of the volume, and the verdict.
 
-    Without expected volumes the right one is that which most programs find, or the larger one of two.
+    Without expected volumes the right one is that which most programs find, or the larger of two.
     """
     if not certificates:
         return
@@ -317,9 +322,9 @@ def GetVerdict(certificate):
 def PrepareSurface(surface, base):
     """Writes the input of all programs; the points and volumes of the regions for the certificate.
 
-    All get the same polygons. Gmsh takes those of a device as plane surfaces to be meshed, as TetGen
-    does, and those of a model, which are far more and not always plane, as the triangles that they
-    were cut into.
+    All get the same polygons. Gmsh takes those of a device as plane surfaces to be meshed, as
+    TetGen does, and those of a model, which are far more and not always plane, as the triangles
+    that they were cut into.
     """
     writer = vtkXMLPolyDataWriter()
     writer.SetInputData(surface)
@@ -514,7 +519,7 @@ def Run(arguments):
         print("Not installed, left out:", name)
     document = {
         "machine": DescribeMachine(arguments.programs),
-        "versions": {**versions, "VTK": vtkVersion().GetVTKVersion(), "Python": platform.python_version()},
+        "versions": {**versions, "VTK": vtkVersion().GetVTKVersion()},
         "missing": missing,
         "options": {"repetitions": arguments.repetitions, "limit": arguments.limit,
                     "quick": arguments.quick, "models": bool(arguments.models),

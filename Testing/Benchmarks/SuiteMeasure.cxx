@@ -6,9 +6,9 @@
  *     SuiteMeasure SECONDS REPORT PROGRAM [ARGUMENT]...
  *
  * The program may take SECONDS of processor time. REPORT gets one line of "name value" pairs: exit
- * (its status, or -1), signal (that ended it, or 0), user, system and wall (seconds), megabytes (its
- * peak memory). A process of its own, small on purpose: a process counts the memory of the one that it
- * was copied from.
+ * (its status, or -1), signal (that ended it, or 0), user, system and wall (seconds), megabytes
+ * (its peak memory). A process of its own, small on purpose: a process counts the memory of the one
+ * that it was copied from.
  * Exit status: 0 if the program was run, 2 if not.
  */
 #include <chrono>

@@ -5,12 +5,13 @@
  *
  *     SuiteMesher INPUT.vtp OUTPUT.vtu [--OPTION VALUE]...
  *
- * Options: criterion (one of vtkConformingDelaunayMesher::Criteria, 0), maximum-volume (0; above, with
- * Steiner points), radius-edge-ratio and dihedral-angle (of these; the filter's), remove-slivers (1).
+ * Options: criterion (one of vtkConformingDelaunayMesher::Criteria, 0), maximum-volume (0; above,
+ * with Steiner points), radius-edge-ratio and dihedral-angle (of these; the filter's),
+ * remove-slivers (1).
  *
  * Prints one line of "name value" pairs: seconds (processor time of the filter, without reading and
- * writing), megabytes (the peak until then), points and tetrahedra. Exit status: 0 meshed, 1 refused by
- * the filter, 2 wrong use or a file that cannot be read or written.
+ * writing), megabytes (the peak until then), points and tetrahedra. Exit status: 0 meshed, 1
+ * refused by the filter, 2 wrong use or a file that cannot be read or written.
  */
 #include <vtkConformingDelaunayMesher.h>
 

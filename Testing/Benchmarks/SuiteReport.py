@@ -27,44 +27,46 @@ INTRODUCTION = """# The suite beside other programs
     bash Utilities/benchmark.sh --models FOLDER
 
 Everything here is made by this command from one run, every measurement of which is in
-[Suite.json](Suite.json). For each input the programs take turns; each measurement is a process of its
-own with one thread; repetition is the outer loop. **s**: processor time of meshing alone, without reading and writing, as each
-program measures it. **MB**: peak memory of the process until then, with the input (of Gmsh: of the
-whole process) and its libraries: 27 MB in the programs of the point sets, 40 MB in ours for surfaces, which
-is one with VTK, 70 MB in Gmsh. Both are medians. **ratio**: their seconds by ours, above 1 is slower than ours.
+[Suite.json](Suite.json). For each input the programs take turns, and repetition is the outer loop;
+each measurement is a process of its own with one thread.
 
-Each mesh is judged by `vtkDelaunayMeshCriteria`, which decides spheres exactly. Verdicts: **clean**:
-valid, Delaunay, no negative coupling of the box method; **Delaunay**: valid and Delaunay; **not
-Delaunay**: some circumsphere is not empty; **invalid**: inverted or flat tetrahedra, or overlaps;
-**volume off**: the regions do not have the volumes that the input encloses (for point sets: the
-hull). "Filled spheres" are boundary and interface triangles whose smallest sphere holds a point (criterion
-3.1), "open" are tetrahedra whose circumcenter lies beyond the boundary.
+- **s**: processor time of meshing alone, without reading and writing, as each program measures it.
+- **MB**: peak memory of the process until then, its input and its libraries included: those of VTK
+  in ours and in all programs of the point sets, some 30 MB. Of Gmsh: of the whole process.
+- **ratio**: their seconds by ours; above 1 is slower than ours. Seconds and MB are medians.
+- **filled spheres**: triangles of the boundary and the interfaces whose smallest sphere holds a
+  point (criterion 3.1). **open**: tetrahedra whose circumcenter lies beyond the boundary.
+- **verdict**, by `vtkDelaunayMeshCriteria`, which decides spheres exactly: *clean*: valid,
+  Delaunay, no negative coupling of the box method; *Delaunay*: valid and Delaunay; *not Delaunay*:
+  some circumsphere is not empty; *invalid*: inverted or flat tetrahedra, or overlaps; *volume off*:
+  the regions do not have the volumes that the input encloses (of point sets: the hull).
 """
 
 TEXTS = {
     "sets": """## Point sets
 
-The Delaunay mesh of the convex hull. Couplings of the hull's tetrahedra may be negative.
+The Delaunay mesh of the convex hull. Couplings of the tetrahedra at the hull may be negative.
 """,
     "devices": """## Sample devices
 
-Devices of `vtkTechnologyStructureSource`, all materials. Ours: criterion 3.2, radius-edge ratio 1.4, dihedral
-angle 15 degrees; TetGen: its switches, V is the same largest volume (a share of the bounding box).
-Gmsh, which takes a size to be met and not a limit: the size for which its Delaunay mesh
-has as many tetrahedra as ours, as far as four tries come; both of its algorithms get the same.
+Devices of `vtkTechnologyStructureSource` with all materials. Ours: criterion 3.2, radius-edge ratio
+1.4, dihedral angle 15 degrees; TetGen: its switches; V is the same largest volume for both, a share
+of the bounding box. Gmsh takes a size to be met, not a limit: that for which its Delaunay mesh has
+as many tetrahedra as ours, as far as four tries come; both of its algorithms get the same.
 """,
     "models": """## Models
 
-Surfaces of a collection, as they are: no limit on size or shape. Ours and TetGen (`-D`) add points to make the
-boundary Delaunay, TetGen after merging facets that are flat to 0.1 degrees; Gmsh gets triangles, keeps them, and puts points
-inside, as large as the triangles around. Our time includes the check of the result, which the others do not have.
+Surfaces of a collection as they are, without limits on size or shape. Ours and TetGen (`-D`) add
+points to make the boundary Delaunay, TetGen after merging facets that are flat to 0.1 degrees; Gmsh
+gets triangles, keeps them, and puts points inside, as dense as the triangles around. Our time
+includes the check of the result, which the others do not have.
 """,
     "growth": """## Growth
 
 Size: random points. `vtkDelaunay3D` ends where the next size would take too long.
 """,
-    "device growth": """Size: the volume of the via plug's box by the largest volume of a tetrahedron. As the devices above; for Gmsh
-the edge of the regular tetrahedron of that volume.
+    "device growth": """Size: the volume of the via plug's box by the largest volume of a
+tetrahedron. As the devices above; for Gmsh the edge of the regular tetrahedron of that volume.
 """}
 
 
@@ -149,8 +151,8 @@ def WriteSummary(results, write):
                  for name in ("seconds", "tetrahedra", "each", "megabytes")]
         write("| %s | %d | %d | %s | %s |\n" % (
             program, len(rows), len(verdicts), " | ".join(map(str, counts)), " | ".join(cells)))
-    write("\nThe last four columns: by ours, median (quartiles) of the inputs that both mesh; time where "
-          "one of them takes %g s or more.\n\n" % SHORTEST)
+    write("\nThe last four columns: by ours, median (quartiles) of the inputs that both mesh; time "
+          "where one of them takes %g s or more.\n\n" % SHORTEST)
 
 
 def WriteGrowth(results, write):
@@ -265,16 +267,17 @@ def WriteReport(folder):
     with open(os.path.join(folder, "Suite.md"), "w", encoding="ascii") as file:
         write = file.write
         write(INTRODUCTION)
-        write("\nMachine: %s, %d cores, %g GB, load %s before the run; %s; %s, %s. Versions: %s.\n" % (
+        write("\nMachine: %s, %d cores, %g GB, load %s before the run; %s; %s, %s. " % (
             machine["processor"], machine["cores"], machine["gigabytes"],
             ", ".join(map(str, machine["load"])), machine["system"], machine["compiler"],
-            machine["build"], ", ".join("%s %s" % pair for pair in document["versions"].items())))
-        write("%d repetitions, fewer where a program has used %g s for an input; %g s for a "
-              "measurement.%s%s\n\n" % (
+            machine["build"]))
+        write("Versions: %s. " % ", ".join("%s %s" % it for it in document["versions"].items()))
+        if document["missing"]:
+            write("Not installed: %s. " % ", ".join(document["missing"]))
+        write("%d repetitions, fewer where a program has used %g s for an input; at most %g s for "
+              "a measurement.%s\n\n" % (
                   options["repetitions"], options["repeat_seconds"], options["limit"],
-                  " The short form." if options["quick"] else "",
-                  " Not installed: %s." % ", ".join(document["missing"])
-                  if document["missing"] else ""))
+                  " The short form." if options["quick"] else ""))
         for kind in ("sets", "devices", "models"):
             rows = [result for result in results if result["kind"] == kind]
             if rows:

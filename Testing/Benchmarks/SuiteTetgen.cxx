@@ -6,7 +6,8 @@
  *     SuiteTetgen SWITCHES INPUT.smesh OUTPUT
  *
  * Prints one line of "name value" pairs: seconds (processor time without reading and writing),
- * megabytes (the peak until then), points and tetrahedra. The mesh goes to OUTPUT.node and OUTPUT.ele.
+ * megabytes (the peak until then), points and tetrahedra. The mesh goes to OUTPUT.node and
+ * OUTPUT.ele.
  * Exit status: 0 meshed, 1 refused, 2 wrong use or a file that cannot be read or written.
  */
 #include "TetgenFiles.h"
