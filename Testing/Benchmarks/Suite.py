@@ -38,7 +38,9 @@ from vtkmodules.vtkCommonDataModel import VTK_TETRA, vtkCellArray, vtkUnstructur
 from vtkmodules.vtkIOXML import (
     vtkXMLPolyDataReader, vtkXMLPolyDataWriter, vtkXMLUnstructuredGridReader)
 
+# A program that has used this much on an input is not repeated there. Models are many.
 REPEAT_SECONDS = 6.0
+REPEAT_SECONDS_MODEL = 2.0
 VOLUME_TOLERANCE = 1e-6
 
 POINT_SETS = ("random", "graded", "sphere", "clusters", "grid", "grid0.1", "rotated")
@@ -61,7 +63,7 @@ def MakePlan(isQuick):
     return {"sets": [10000, 100000], "set_names": POINT_SETS,
             "devices": DEVICES, "elements": 10000, "models": None,
             "growth": [1500, 4700, 15000, 47000, 150000, 470000, 1500000],
-            "device_growth": [5000, 16000, 50000, 160000, 500000]}
+            "device_growth": [2000, 6000, 20000, 60000, 200000]}
 
 
 class Program:
@@ -155,8 +157,23 @@ def ReadFirst(path, pattern):
     return match[1].strip() if match else ""
 
 
+def GetCache(programs):
+    return os.path.join(os.path.dirname(os.path.abspath(programs)), "CMakeCache.txt")
+
+
+def GetOwnVersion(programs):
+    """With the commit, if there is one."""
+    version = ReadFirst(GetCache(programs), r"CMAKE_PROJECT_VERSION:\w+=(.*)")
+    if not shutil.which("git"):
+        return version
+    commit = subprocess.run(["git", "-C", os.path.dirname(os.path.abspath(__file__)), "rev-parse",
+                             "--short", "HEAD"], stdout=subprocess.PIPE, check=False,
+                            stderr=subprocess.DEVNULL, universal_newlines=True).stdout.strip()
+    return " at ".join(filter(None, (version, commit)))
+
+
 def DescribeMachine(programs):
-    cache = os.path.join(os.path.dirname(os.path.abspath(programs)), "CMakeCache.txt")
+    cache = GetCache(programs)
     compiler = ReadFirst(cache, r"CMAKE_CXX_COMPILER:\w+=(.*)")
     version = ""
     if compiler:
@@ -466,12 +483,13 @@ def RunTask(kind, name, task, programs, arguments, earlier):
             # Files of its own, which stay for the certificate.
             mesh = os.path.join(folder, "mesh%d" % len(own))
             own[program.Name] = {**files, "mesh": mesh}
+        enough = REPEAT_SECONDS_MODEL if kind == "models" else REPEAT_SECONDS
         runs = {program: [] for program in own}
         for _ in range(arguments.repetitions):
             for program in programs:
                 before = runs.get(program.Name)
                 if before is None or any(run["status"] != "done" for run in before) or sum(
-                        run["user"] + run["system"] for run in before) > REPEAT_SECONDS:
+                        run["user"] + run["system"] for run in before) > enough:
                     continue
                 before.append(Measure(program, own[program.Name], arguments.limit,
                                       arguments.programs))
@@ -517,26 +535,28 @@ def Run(arguments):
     programs, versions, missing = FindPrograms(arguments.programs)
     for name in missing:
         print("Not installed, left out:", name)
-    document = {
+    about = {
         "machine": DescribeMachine(arguments.programs),
-        "versions": {**versions, "VTK": vtkVersion().GetVTKVersion()},
+        "versions": {"ConformingDelaunay": GetOwnVersion(arguments.programs), **versions,
+                     "VTK": vtkVersion().GetVTKVersion()},
         "missing": missing,
         "options": {"repetitions": arguments.repetitions, "limit": arguments.limit,
                     "quick": arguments.quick, "models": bool(arguments.models),
-                    "repeat_seconds": REPEAT_SECONDS},
-        "results": []}
+                    "repeat_seconds": REPEAT_SECONDS,
+                    "repeat_seconds_model": REPEAT_SECONDS_MODEL}}
+    results = []
     os.makedirs(arguments.output, exist_ok=True)
     path = os.path.join(arguments.output, "Suite.json")
     earlier = {}
     for kind, name, task in MakeTasks(MakePlan(arguments.quick), arguments.models,
                                       arguments.output):
-        document["results"] += RunTask(kind, name, task, programs[kind], arguments, earlier)
-        # What there is so far stays if the run is ended.
+        results += RunTask(kind, name, task, programs[kind], arguments, earlier)
+        # What there is so far stays if the run is ended. A line for each result.
         with open(path, "w", encoding="ascii") as file:
-            json.dump(document, file, indent=1)
-            file.write("\n")
+            file.write('{"run": %s,\n"results": [\n%s\n]}\n' % (
+                json.dumps(about, indent=1), ",\n".join(map(json.dumps, results))))
     WriteReport(arguments.output)
-    failures = [result for result in document["results"]
+    failures = [result for result in results
                 if result["program"] == "ours" and not IsAsItShouldBe(result)]
     for result in failures:
         print("ours, %s: %s" % (result["input"], result["certificate"] or result["runs"][-1]))
@@ -557,6 +577,8 @@ def main():
     report.add_argument("folder")
     arguments = parser.parse_args()
     if arguments.what == "run":
+        if arguments.repetitions < 1 or arguments.limit < 1.0:
+            parser.error("--repetitions and --limit have to be 1 or more")
         if arguments.models and not find_models(arguments.models):
             parser.error("there are no models in " + arguments.models)
         return Run(arguments)

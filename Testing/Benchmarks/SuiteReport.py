@@ -263,7 +263,8 @@ def WriteReport(folder):
     with open(os.path.join(folder, "Suite.json"), encoding="ascii") as file:
         document = json.load(file)
     results = document["results"]
-    machine, options = document["machine"], document["options"]
+    run = document["run"]
+    machine, options = run["machine"], run["options"]
     with open(os.path.join(folder, "Suite.md"), "w", encoding="ascii") as file:
         write = file.write
         write(INTRODUCTION)
@@ -271,12 +272,13 @@ def WriteReport(folder):
             machine["processor"], machine["cores"], machine["gigabytes"],
             ", ".join(map(str, machine["load"])), machine["system"], machine["compiler"],
             machine["build"]))
-        write("Versions: %s. " % ", ".join("%s %s" % it for it in document["versions"].items()))
-        if document["missing"]:
-            write("Not installed: %s. " % ", ".join(document["missing"]))
-        write("%d repetitions, fewer where a program has used %g s for an input; at most %g s for "
-              "a measurement.%s\n\n" % (
-                  options["repetitions"], options["repeat_seconds"], options["limit"],
+        write("Versions: %s. " % ", ".join("%s %s" % it for it in run["versions"].items()))
+        if run["missing"]:
+            write("Not installed: %s. " % ", ".join(run["missing"]))
+        write("%d repetitions, fewer where a program has used %g s for an input (%g s for a "
+              "model); at most %g s for a measurement.%s\n\n" % (
+                  options["repetitions"], options["repeat_seconds"],
+                  options["repeat_seconds_model"], options["limit"],
                   " The short form." if options["quick"] else ""))
         for kind in ("sets", "devices", "models"):
             rows = [result for result in results if result["kind"] == kind]
