@@ -45,6 +45,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <functional>
 #include <map>
 #include <random>
@@ -175,7 +176,10 @@ double GetUserTime(const rusage& usage)
 
 struct Result
 {
+  /** User time. */
   double Seconds = -1.0;
+  /** User and system time, which the kernel cannot tell apart exactly. */
+  double ProcessorSeconds = 0.0;
   double WallSeconds = 0.0;
   double Megabytes = 0.0;
   double Tetrahedra = 0.0;
@@ -185,12 +189,14 @@ struct Result
 struct Clock
 {
   double User = 0.0;
+  std::clock_t Processor = 0;
   std::chrono::steady_clock::time_point Wall;
   Result Measured;
 
   void Start()
   {
     this->User = GetUserTime(GetUsage());
+    this->Processor = std::clock();
     this->Wall = std::chrono::steady_clock::now();
   }
 
@@ -199,6 +205,8 @@ struct Clock
     const rusage usage = GetUsage();
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - this->Wall;
     this->Measured.Seconds = GetUserTime(usage) - this->User;
+    this->Measured.ProcessorSeconds =
+      static_cast<double>(std::clock() - this->Processor) / CLOCKS_PER_SEC;
     this->Measured.WallSeconds = wall.count();
     this->Measured.Megabytes = static_cast<double>(usage.ru_maxrss) / 1024.0;
     this->Measured.Tetrahedra = static_cast<double>(tetrahedra);
@@ -437,7 +445,7 @@ int RunSingle(const std::vector<Entry>& programs, const std::string& name, const
   TetgenMesh mesh;
   program->Make(points, clock, meshName.empty() ? nullptr : &mesh);
   std::printf("points %zu seconds %g wall %g megabytes %g tetrahedra %.0f\n", points.size(),
-    clock.Measured.Seconds, clock.Measured.WallSeconds, clock.Measured.Megabytes,
+    clock.Measured.ProcessorSeconds, clock.Measured.WallSeconds, clock.Measured.Megabytes,
     clock.Measured.Tetrahedra);
   if (!meshName.empty())
   {

@@ -13,6 +13,13 @@ if (CDM_TETGEN_DIR AND CDM_TETGEN_LIBRARY)
   target_link_libraries(SuiteTetgen PRIVATE ConformingDelaunay::Core "${CDM_TETGEN_LIBRARY}")
   add_dependencies(BenchmarkSuite SuiteTetgen)
 endif ()
+find_path(CDM_CGAL_MESH_DIR CGAL/Polyhedral_complex_mesh_domain_3.h)
+if (CDM_CGAL_MESH_DIR)
+  add_executable(SuiteCgal SuiteCgal.cxx)
+  target_link_libraries(SuiteCgal PRIVATE ConformingDelaunay::Core ConformingDelaunay::Meshing
+    CGAL::CGAL VTK::CommonCore VTK::CommonDataModel VTK::CommonExecutionModel VTK::IOXML)
+  add_dependencies(BenchmarkSuite SuiteCgal)
+endif ()
 if (CONFORMINGDELAUNAY_WRAP_PYTHON)
   add_dependencies(BenchmarkSuite cdmMeshingPython)
   # Its short form: it ends with an error if one of our results is not what it should be.

@@ -39,8 +39,8 @@ from vtkmodules.vtkIOXML import (
     vtkXMLPolyDataReader, vtkXMLPolyDataWriter, vtkXMLUnstructuredGridReader)
 
 # A program that has used this much on an input is not repeated there. Models are many.
-REPEAT_SECONDS = 6.0
-REPEAT_SECONDS_MODEL = 2.0
+REPEAT_SECONDS = 4.0
+REPEAT_SECONDS_MODEL = 1.0
 VOLUME_TOLERANCE = 1e-6
 
 POINT_SETS = ("random", "graded", "sphere", "clusters", "grid", "grid0.1", "rotated")
@@ -62,7 +62,7 @@ def MakePlan(isQuick):
                 "growth": [500, 1500, 5000], "device_growth": [500, 5000]}
     return {"sets": [10000, 100000], "set_names": POINT_SETS,
             "devices": DEVICES, "elements": 10000, "models": None,
-            "growth": [1500, 4700, 15000, 47000, 150000, 470000, 1500000],
+            "growth": [1600, 4700, 15000, 47000, 150000, 470000, 1480000],
             "device_growth": [2000, 6000, 20000, 60000, 200000]}
 
 
@@ -127,6 +127,9 @@ def FindPrograms(folder):
         versions["TetGen"] = GetPackageVersion("libtet1.5-dev")
         devices += [MakeTetgen("-pq1.4/15Aa{volume}D3O0"), MakeTetgen("-pq1.4Aa{volume}")]
         models += [MakeTetgen("-pADO0")]
+    if os.path.exists(os.path.join(folder, "SuiteCgal")):
+        devices.append(Program("CGAL Mesh_3", ["{programs}/SuiteCgal", "{regular_edge}",
+                                               "{base}.vtp", "{mesh}"], "{mesh}.ele", OWN_CLOCK))
     if shutil.which("gmsh"):
         for algorithm, name in (("del3d", "Gmsh Delaunay"), ("hxt", "Gmsh HXT")):
             devices.append(MakeGmsh(algorithm, name, ["-clmax", "{edge}"]))
@@ -401,8 +404,9 @@ def PrepareDevice(name, elements, base):
     surface = MakeDevice(name)
     points, volumes = PrepareSurface(surface, base)
     volume = GetBoxVolume(surface) / elements
+    edge = "%.6g" % (REGULAR_EDGE * volume ** (1.0 / 3.0))
     return {"points": points, "volumes": volumes, "volume": "%.9f" % volume,
-            "edge": "%.6g" % (REGULAR_EDGE * volume ** (1.0 / 3.0))}
+            "edge": edge, "regular_edge": edge}
 
 
 def MatchEdge(files, programs, limit, folder):
