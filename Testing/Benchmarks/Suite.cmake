@@ -15,7 +15,8 @@ if (CDM_TETGEN_DIR AND CDM_TETGEN_LIBRARY)
 endif ()
 find_path(CDM_CGAL_MESH_DIR CGAL/Polyhedral_complex_mesh_domain_3.h)
 if (CDM_CGAL_MESH_DIR)
-  add_executable(SuiteCgal SuiteCgal.cxx)
+  # It takes minutes and 3 GB to compile: only the suite builds it.
+  add_executable(SuiteCgal EXCLUDE_FROM_ALL SuiteCgal.cxx)
   target_link_libraries(SuiteCgal PRIVATE ConformingDelaunay::Core ConformingDelaunay::Meshing
     CGAL::CGAL VTK::CommonCore VTK::CommonDataModel VTK::CommonExecutionModel VTK::IOXML)
   add_dependencies(BenchmarkSuite SuiteCgal)

@@ -130,6 +130,8 @@ def FindPrograms(folder):
     if os.path.exists(os.path.join(folder, "SuiteCgal")):
         devices.append(Program("CGAL Mesh_3", ["{programs}/SuiteCgal", "{regular_edge}",
                                                "{base}.vtp", "{mesh}"], "{mesh}.ele", OWN_CLOCK))
+    else:
+        missing.append("CGAL Mesh_3")
     if shutil.which("gmsh"):
         for algorithm, name in (("del3d", "Gmsh Delaunay"), ("hxt", "Gmsh HXT")):
             devices.append(MakeGmsh(algorithm, name, ["-clmax", "{edge}"]))
@@ -538,7 +540,7 @@ def IsAsItShouldBe(result):
 def Run(arguments):
     programs, versions, missing = FindPrograms(arguments.programs)
     for name in missing:
-        print("Not installed, left out:", name)
+        print("Not installed or not built, left out:", name)
     about = {
         "machine": DescribeMachine(arguments.programs),
         "versions": {"ConformingDelaunay": GetOwnVersion(arguments.programs), **versions,

@@ -205,6 +205,8 @@ def FillChart(chart, title, results):
     legend.SetVerticalAlignment(legend.BOTTOM)
     legend.SetLabelSize(13)
     done = [result for result in results if GetMedian(result, "seconds")]
+    if not done:
+        return
     SetUpAxis(chart.GetAxis(vtkAxis.BOTTOM), "tetrahedra", [GetTetrahedra(row) for row in done])
     SetUpAxis(chart.GetAxis(vtkAxis.LEFT), "processor time, s",
               [GetMedian(row, "seconds") for row in done])
@@ -275,7 +277,7 @@ def WriteReport(folder):
             machine["build"]))
         write("Versions: %s. " % ", ".join("%s %s" % it for it in run["versions"].items()))
         if run["missing"]:
-            write("Not installed: %s. " % ", ".join(run["missing"]))
+            write("Not there: %s. " % ", ".join(run["missing"]))
         write("%d repetitions, fewer where a program has used %g s for an input (%g s for a "
               "model); at most %g s for a measurement.%s\n\n" % (
                   options["repetitions"], options["repeat_seconds"],
