@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Sourced by demo.sh and test.sh: installs the Debian packages that are missing, configures build/
-# and builds it. Changes to the folder of the project.
+# Sourced by demo.sh, test.sh and benchmark.sh as build.sh TESTS [TARGET...]: installs the Debian
+# packages that are missing, and those in the array more_packages; configures build/, with the tests
+# if TESTS is ON, and builds the targets, or everything. Changes to the folder of the project.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -16,6 +17,7 @@ packages=(
 if [ "$1" = ON ]; then
   packages+=(libeigen3-dev gmsh)   # solvers, and meshes to compare with
 fi
+packages+=(${more_packages[@]+"${more_packages[@]}"})
 
 missing=()
 for package in "${packages[@]}"; do
@@ -44,4 +46,8 @@ cmake -G Ninja -S . -B build \
   -D CONFORMINGDELAUNAY_BUILD_TESTING="$1"
 
 echo "== building"
-cmake --build build
+if [ "$#" -gt 1 ]; then
+  cmake --build build --target "${@:2}"
+else
+  cmake --build build
+fi

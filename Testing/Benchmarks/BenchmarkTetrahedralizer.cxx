@@ -5,6 +5,8 @@
  *
  * Usage: BenchmarkTetrahedralizer [-n points]... [-r repetitions] [-i input]... [-p program]...
  *                                 [-t threads] [--limit seconds]
+ *        BenchmarkTetrahedralizer --run program -i input -n points [--mesh name]
+ *        BenchmarkTetrahedralizer --list programs
  *
  * Every measurement runs in a process of its own; the programs take turns, so that what else the
  * machine does falls on all of them. Prints the median of each, and ratios to ours. A program that
@@ -13,12 +15,18 @@
  *
  * With several threads there is a row for as many copies with one thread each at the same time, too:
  * what they lose is lost to the machine, and no number of threads can win it back.
+ *
+ * --run: a single measurement, in this process, for Suite.py; one line of "name value" pairs. Its
+ * mesh goes to name.node and name.ele, the files of TetGen.
+ * --list programs: those that there are, one on each line, with the version where it is known.
  */
 #include "Core/AdvancingFrontTetrahedralizer.h"
+#include "TetgenFiles.h"
 
 #ifdef CDM_HAS_CGAL_TRIANGULATION
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/version.h>
 #endif
 #ifdef CDM_HAS_TETGEN
 #include <tetgen.h>
@@ -32,11 +40,13 @@
 #endif
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <functional>
 #include <map>
 #include <random>
@@ -154,36 +164,62 @@ PointSet MakePoints(const std::string& input, std::size_t count)
   return points;
 }
 
-double GetUserTime()
+rusage GetUsage()
 {
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
+  return usage;
+}
+
+double GetUserTime(const rusage& usage)
+{
   return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * usage.ru_utime.tv_usec;
 }
 
-/** Started by a program when it has its input. */
-struct Clock
-{
-  double User = 0.0;
-  std::chrono::steady_clock::time_point Wall;
-
-  void Start()
-  {
-    this->User = GetUserTime();
-    this->Wall = std::chrono::steady_clock::now();
-  }
-};
-
 struct Result
 {
+  /** User time. */
   double Seconds = -1.0;
+  /** User and system time, which the kernel cannot tell apart exactly. */
+  double ProcessorSeconds = 0.0;
   double WallSeconds = 0.0;
   double Megabytes = 0.0;
   double Tetrahedra = 0.0;
 };
 
-/** A program converts the points, starts the clock, and returns the number of its tetrahedra. */
-using Program = std::function<std::size_t(const PointSet&, Clock& clock)>;
+/** Started by a program when it has its input, and stopped when it has its tetrahedra. */
+struct Clock
+{
+  double User = 0.0;
+  std::clock_t Processor = 0;
+  std::chrono::steady_clock::time_point Wall;
+  Result Measured;
+
+  void Start()
+  {
+    this->User = GetUserTime(GetUsage());
+    this->Processor = std::clock();
+    this->Wall = std::chrono::steady_clock::now();
+  }
+
+  void Stop(std::size_t tetrahedra)
+  {
+    const rusage usage = GetUsage();
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - this->Wall;
+    this->Measured.Seconds = GetUserTime(usage) - this->User;
+    this->Measured.ProcessorSeconds =
+      static_cast<double>(std::clock() - this->Processor) / CLOCKS_PER_SEC;
+    this->Measured.WallSeconds = wall.count();
+    this->Measured.Megabytes = static_cast<double>(usage.ru_maxrss) / 1024.0;
+    this->Measured.Tetrahedra = static_cast<double>(tetrahedra);
+  }
+};
+
+/**
+ * A program converts the points, starts the clock, meshes, and stops it. Then it gives its result
+ * to mesh, unless that is null.
+ */
+using Program = std::function<void(const PointSet&, Clock& clock, TetgenMesh* mesh)>;
 
 /** A measurement under way. */
 struct Run
@@ -204,15 +240,12 @@ Run Start(const std::string& input, std::size_t count, const Program& program, d
   {
     close(ends[0]);
     const PointSet points = MakePoints(input, count);
-    const rlim_t seconds = static_cast<rlim_t>(std::ceil(GetUserTime() + 2.0 * limit));
+    const rlim_t seconds = static_cast<rlim_t>(std::ceil(GetUserTime(GetUsage()) + 2.0 * limit));
     const rlimit bound{ seconds, seconds };
     setrlimit(RLIMIT_CPU, &bound);
     Clock clock;
-    Result result;
-    result.Tetrahedra = static_cast<double>(program(points, clock));
-    result.Seconds = GetUserTime() - clock.User;
-    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - clock.Wall;
-    result.WallSeconds = wall.count();
+    program(points, clock, nullptr);
+    const Result& result = clock.Measured;
     const bool isWritten = write(ends[1], &result, sizeof(result)) == sizeof(result);
     _exit(isWritten ? 0 : 1);
   }
@@ -226,14 +259,9 @@ Result Finish(const Run& run)
   const bool isRead = read(run.End, &result, sizeof(result)) == sizeof(result);
   close(run.End);
   int status = 0;
-  rusage usage;
-  wait4(run.Process, &status, 0, &usage);
-  if (!isRead || !WIFEXITED(status) || WEXITSTATUS(status) != 0 || result.Tetrahedra == 0.0)
-  {
-    return Result();
-  }
-  result.Megabytes = static_cast<double>(usage.ru_maxrss) / 1024.0;
-  return result;
+  waitpid(run.Process, &status, 0);
+  const bool isDone = isRead && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return isDone && result.Tetrahedra > 0.0 ? result : Result();
 }
 
 /** Several copies at the same time: the wall time is that of the slowest, the rest that of one. */
@@ -256,7 +284,7 @@ Result Measure(
   return hasFailed ? Result() : slowest;
 }
 
-std::size_t RunOurs(const PointSet& points, Clock& clock, int threads)
+void RunOurs(const PointSet& points, Clock& clock, int threads, TetgenMesh* mesh)
 {
   clock.Start();
   cdm::AdvancingFrontTetrahedralizerInput input;
@@ -266,11 +294,20 @@ std::size_t RunOurs(const PointSet& points, Clock& clock, int threads)
   options.NumberOfThreads = threads;
   cdm::AdvancingFrontTetrahedralizerOutput output;
   const cdm::Status status = cdm::TetrahedralizeByAdvancingFront(input, options, {}, output);
-  return status.IsOk() ? output.Mesh.Tetrahedra.size() : 0;
+  clock.Stop(status.IsOk() ? output.Mesh.Tetrahedra.size() : 0);
+  if (mesh)
+  {
+    mesh->Points.assign(output.Mesh.Points.begin(), output.Mesh.Points.end());
+    for (const auto& t : output.Mesh.Tetrahedra)
+    {
+      mesh->Tetrahedra.push_back(
+        { std::size_t(t[0]), std::size_t(t[1]), std::size_t(t[2]), std::size_t(t[3]) });
+    }
+  }
 }
 
 #ifdef CDM_HAS_CGAL_TRIANGULATION
-std::size_t RunCgal(const PointSet& points, Clock& clock)
+void RunCgal(const PointSet& points, Clock& clock, TetgenMesh* mesh)
 {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   std::vector<Kernel::Point_3> converted;
@@ -280,13 +317,29 @@ std::size_t RunCgal(const PointSet& points, Clock& clock)
   }
   clock.Start();
   // The constructor sorts the points along a curve.
-  const CGAL::Delaunay_triangulation_3<Kernel> mesh(converted.begin(), converted.end());
-  return mesh.number_of_finite_cells();
+  using Triangulation = CGAL::Delaunay_triangulation_3<Kernel>;
+  const Triangulation triangulation(converted.begin(), converted.end());
+  clock.Stop(triangulation.number_of_finite_cells());
+  if (mesh)
+  {
+    std::map<Triangulation::Vertex_handle, std::size_t> numbers;
+    for (auto vertex : triangulation.finite_vertex_handles())
+    {
+      numbers.emplace(vertex, mesh->Points.size());
+      const auto& p = vertex->point();
+      mesh->Points.push_back({ p.x(), p.y(), p.z() });
+    }
+    for (auto cell : triangulation.finite_cell_handles())
+    {
+      mesh->Tetrahedra.push_back({ numbers[cell->vertex(0)], numbers[cell->vertex(1)],
+        numbers[cell->vertex(2)], numbers[cell->vertex(3)] });
+    }
+  }
 }
 #endif
 
 #ifdef CDM_HAS_TETGEN
-std::size_t RunTetgen(const PointSet& points, Clock& clock)
+void RunTetgen(const PointSet& points, Clock& clock, TetgenMesh* mesh)
 {
   tetgenio in;
   tetgenio out;
@@ -301,12 +354,22 @@ std::size_t RunTetgen(const PointSet& points, Clock& clock)
   clock.Start();
   char switches[] = "Q";
   tetrahedralize(switches, &in, &out);
-  return static_cast<std::size_t>(out.numberoftetrahedra);
+  clock.Stop(static_cast<std::size_t>(out.numberoftetrahedra));
+  if (mesh)
+  {
+    mesh->Points = points;
+    for (int i = 0; i < out.numberoftetrahedra; ++i)
+    {
+      const int* t = out.tetrahedronlist + 4 * i;
+      mesh->Tetrahedra.push_back(
+        { std::size_t(t[0]), std::size_t(t[1]), std::size_t(t[2]), std::size_t(t[3]) });
+    }
+  }
 }
 #endif
 
 #ifdef CDM_HAS_VTK_DELAUNAY3D
-std::size_t RunVtk(const PointSet& points, Clock& clock)
+void RunVtk(const PointSet& points, Clock& clock, TetgenMesh* mesh)
 {
   vtkNew<vtkPoints> converted;
   converted->SetDataTypeToDouble();
@@ -320,7 +383,23 @@ std::size_t RunVtk(const PointSet& points, Clock& clock)
   vtkNew<vtkDelaunay3D> delaunay;
   delaunay->SetInputData(input);
   delaunay->Update();
-  return static_cast<std::size_t>(delaunay->GetOutput()->GetNumberOfCells());
+  vtkUnstructuredGrid* output = delaunay->GetOutput();
+  clock.Stop(static_cast<std::size_t>(output->GetNumberOfCells()));
+  if (mesh)
+  {
+    mesh->Points = points;
+    for (vtkIdType i = 0; i < output->GetNumberOfCells(); ++i)
+    {
+      vtkIdType size;
+      const vtkIdType* ids;
+      output->GetCellPoints(i, size, ids);
+      if (size == 4)
+      {
+        mesh->Tetrahedra.push_back(
+          { std::size_t(ids[0]), std::size_t(ids[1]), std::size_t(ids[2]), std::size_t(ids[3]) });
+      }
+    }
+  }
 }
 #endif
 
@@ -344,6 +423,43 @@ struct Entry
   Program Make;
   int Copies = 1;
 };
+
+/** Where it is known. */
+const char* GetVersion(const std::string& name)
+{
+#ifdef CDM_HAS_CGAL_TRIANGULATION
+  if (name == "CGAL")
+  {
+    return CGAL_VERSION_STR;
+  }
+#endif
+  return "";
+}
+
+/** The exit status. */
+int RunSingle(const std::vector<Entry>& programs, const std::string& name, const std::string& input,
+  std::size_t count, const std::string& meshName)
+{
+  const auto program = std::find_if(
+    programs.begin(), programs.end(), [&name](const Entry& entry) { return entry.Name == name; });
+  if (program == programs.end())
+  {
+    std::fprintf(stderr, "there is no program %s here\n", name.c_str());
+    return 2;
+  }
+  const PointSet points = MakePoints(input, count);
+  Clock clock;
+  TetgenMesh mesh;
+  program->Make(points, clock, meshName.empty() ? nullptr : &mesh);
+  std::printf("points %zu seconds %g wall %g megabytes %g tetrahedra %.0f\n", points.size(),
+    clock.Measured.ProcessorSeconds, clock.Measured.WallSeconds, clock.Measured.Megabytes,
+    clock.Measured.Tetrahedra);
+  if (!meshName.empty())
+  {
+    WriteTetgenFiles(mesh, meshName);
+  }
+  return clock.Measured.Tetrahedra > 0.0 ? 0 : 1;
+}
 } // namespace
 
 int main(int argc, char* argv[])
@@ -351,6 +467,9 @@ int main(int argc, char* argv[])
   std::vector<std::size_t> sizes;
   std::vector<std::string> inputs;
   std::vector<std::string> chosen;
+  std::string single;
+  std::string meshName;
+  bool isList = false;
   int repetitions = 5;
   int threads = 1;
   double limit = 100.0;
@@ -382,6 +501,18 @@ int main(int argc, char* argv[])
     {
       limit = std::atof(value);
     }
+    else if (option == "--run")
+    {
+      single = value;
+    }
+    else if (option == "--mesh")
+    {
+      meshName = value;
+    }
+    else if (option == "--list")
+    {
+      isList = true;
+    }
   }
   if (sizes.empty())
   {
@@ -393,8 +524,8 @@ int main(int argc, char* argv[])
   }
   const auto makeOurs = [](int threads) -> Program
   {
-    return [threads](const PointSet& points, Clock& clock)
-    { return RunOurs(points, clock, threads); };
+    return [threads](const PointSet& points, Clock& clock, TetgenMesh* mesh)
+    { RunOurs(points, clock, threads, mesh); };
   };
   std::vector<Entry> programs{ { "ours", makeOurs(1) } };
   if (threads > 1)
@@ -413,6 +544,18 @@ int main(int argc, char* argv[])
 #ifdef CDM_HAS_VTK_DELAUNAY3D
   programs.push_back({ "vtkDelaunay3D", RunVtk });
 #endif
+  if (isList)
+  {
+    for (const Entry& program : programs)
+    {
+      std::printf("%s %s\n", program.Name.c_str(), GetVersion(program.Name));
+    }
+    return 0;
+  }
+  if (!single.empty())
+  {
+    return RunSingle(programs, single, inputs.front(), sizes.front(), meshName);
+  }
   programs.erase(std::remove_if(programs.begin() + static_cast<std::ptrdiff_t>(own), programs.end(),
                    [&chosen](const auto& program)
                    {

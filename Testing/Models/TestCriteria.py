@@ -20,11 +20,11 @@ import shutil
 import subprocess
 import sys
 
+import GmshMeshes
 from conforming_delaunay import (
     vtkConformingDelaunayMesher, vtkDelaunayMeshCriteria, vtkTechnologyStructureSource)
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkIntArray, vtkPoints
-from vtkmodules.vtkCommonDataModel import VTK_TETRA, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridWriter
 
 SMALL_MODEL = 400
@@ -170,102 +170,12 @@ def RunValidator(arguments):
     return 1 if failures or compared < 30 or faults < 10 else 0
 
 
-def FindRegions(surface):
-    """The regions on both sides of each polygon, as the mesher finds them."""
-    named = surface.NewInstance()
-    named.ShallowCopy(surface)
-    ids = vtkIntArray()
-    ids.SetName("PolygonId")
-    for i in range(surface.GetNumberOfCells()):
-        ids.InsertNextValue(i)
-    named.GetCellData().AddArray(ids)
-    mesher = vtkConformingDelaunayMesher()
-    mesher.SetInputData(named)
-    mesher.Update()
-    data = mesher.GetOutputDataObject(1).GetCellData()
-    return dict(zip(vtk_to_numpy(data.GetArray("PolygonId")).tolist(),
-                    map(tuple, vtk_to_numpy(data.GetArray("BoundaryLabels")).tolist())))
-
-
-def WriteGeometry(surface, path):
-    """The polygons as Gmsh's built-in geometry, with a physical volume for each region."""
-    points = [surface.GetPoint(i) for i in range(surface.GetNumberOfPoints())]
-    distinct = {}
-    names = [distinct.setdefault(point, len(distinct) + 1) for point in points]
-    positions = {name: point for point, name in distinct.items()}
-    text = ["Point(%d) = {%.17g, %.17g, %.17g};" % ((name,) + point)
-            for point, name in distinct.items()]
-    lines, loops, surfaces = {}, {}, {}
-
-    def Split(a, b):
-        """Points of the surface on the way from a to b, both included."""
-        start, end = positions[a], positions[b]
-        edge = [y - x for x, y in zip(start, end)]
-        square = sum(x * x for x in edge)
-        on = []
-        for name, point in positions.items():
-            arm = [y - x for x, y in zip(start, point)]
-            along = sum(x * y for x, y in zip(arm, edge)) / square
-            off = sum((x - along * y) ** 2 for x, y in zip(arm, edge))
-            if 0.0 <= along <= 1.0 and off < 1e-20 * square:
-                on.append((along, name))
-        return [name for _, name in sorted(on)]
-
-    for cell, regions in sorted(FindRegions(surface).items()):
-        ids = surface.GetCell(cell).GetPointIds()
-        ring = [names[ids.GetId(i)] for i in range(ids.GetNumberOfIds())]
-        loop = []
-        for a, b in zip(ring, ring[1:] + ring[:1]):
-            way = Split(a, b)
-            for first, second in zip(way[:-1], way[1:]):
-                key = min(first, second), max(first, second)
-                if key not in lines:
-                    lines[key] = len(lines) + 1
-                    text.append("Line(%d) = {%d, %d};" % ((lines[key],) + key))
-                loop.append(lines[key] if first < second else -lines[key])
-        sides = frozenset(abs(line) for line in loop)
-        if sides not in surfaces:
-            # Two polygons on the same place are one interface.
-            surfaces[sides] = len(surfaces) + 1
-            text.append("Line Loop(%d) = {%s}; Plane Surface(%d) = {%d};" % (
-                surfaces[sides], ", ".join(map(str, loop)), surfaces[sides], surfaces[sides]))
-        for region in regions:
-            loops.setdefault(region, set()).add(surfaces[sides])
-    for region, members in sorted(loops.items()):
-        if region >= 0:
-            text.append("Surface Loop(%d) = {%s};" % (
-                region + 1, ", ".join(map(str, sorted(members)))))
-            text.append("Volume(%d) = {%d}; Physical Volume(%d) = {%d};" % ((region + 1,) * 4))
-    with open(path, "w", encoding="ascii") as file:
-        file.write("\n".join(text) + "\n")
-
-
 def RunGmsh(geometry, edge):
     """The tetrahedra of Gmsh's default mesh, with regions."""
     path = geometry[:-4] + ".msh"
     subprocess.run(["gmsh", "-3", geometry, "-o", path, "-format", "msh22", "-clmax", str(edge)],
                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True)
-    mesh, points, regions = vtkUnstructuredGrid(), vtkPoints(), vtkIntArray()
-    points.SetDataTypeToDouble()
-    regions.SetName("RegionId")
-    nodes = {}
-    with open(path, encoding="ascii") as file:
-        words = iter(file.read().split("\n"))
-    for line in words:
-        if line == "$Nodes":
-            for _ in range(int(next(words))):
-                name, *position = next(words).split()
-                nodes[name] = points.InsertNextPoint([float(x) for x in position])
-        elif line == "$Elements":
-            for _ in range(int(next(words))):
-                element = next(words).split()
-                if element[1] == "4":
-                    corners = [nodes[name] for name in element[-4:]]
-                    mesh.InsertNextCell(VTK_TETRA, 4, corners)
-                    regions.InsertNextValue(int(element[3]) - 1)
-    mesh.SetPoints(points)
-    mesh.GetCellData().AddArray(regions)
-    return mesh
+    return GmshMeshes.ReadMesh(path)
 
 
 def MakeDevice(name):
@@ -297,7 +207,7 @@ def CompareWithGmsh(arguments):
             with open(geometry, "w", encoding="ascii") as file:
                 file.write(SPHERE)
         else:
-            WriteGeometry(surface, geometry)
+            GmshMeshes.WriteGeometry(surface, geometry)
         theirs, certificate = Certify(RunGmsh(geometry, edge))
         print("%s, Gmsh: %s" % (name, certificate))
         if theirs["IsClean"][0]:
