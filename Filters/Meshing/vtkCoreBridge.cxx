@@ -32,6 +32,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <sstream>
 #include <stdexcept>
@@ -281,7 +282,7 @@ void FindPrincipalAxes(
   vtkMath::Transpose3x3(columns, directions);
 }
 
-/** Interpolates the array Sizing of a data set; see ToSizing(). */
+/** Interpolates the array Sizing of a data set, for several threads at once; see ToSizing(). */
 class SizingInterpolator
 {
 public:
@@ -301,41 +302,89 @@ public:
     }
     this->Points->SetDataSet(this->Data);
     this->Points->BuildLocator();
+    // What data sets make at the first query of its kind must be there before several threads ask.
     this->Data->GetBounds(this->Bounds);
-    this->Weights.resize(std::max(8, this->Data->GetMaxCellSize()));
+    if (data->GetNumberOfCells() > 0)
+    {
+      vtkNew<vtkGenericCell> cell;
+      this->Data->GetCell(0, cell);
+    }
+    this->NumberOfWeights = std::max(8, this->Data->GetMaxCellSize());
   }
 
-  cdm::LocalSpacing operator()(const cdm::Vec3& position)
+  cdm::LocalSpacing operator()(const cdm::Vec3& position) const
   {
-    double x[3] = { position.X, position.Y, position.Z };
-    const vtkIdType cell = this->FindCell(x);
-    if (cell < 0)
-    {
-      this->Values->GetTuple(this->Points->FindClosestPoint(x), this->Tuple);
-      std::copy_n(this->Tuple, this->Components, this->Sum);
-      std::fill_n(this->Low, this->Components, 0.0);
-      std::fill_n(this->High, this->Components, std::numeric_limits<double>::infinity());
-      return this->MakeSpacing();
-    }
-    std::fill_n(this->Sum, this->Components, 0.0);
-    std::fill_n(this->Low, this->Components, std::numeric_limits<double>::infinity());
-    std::fill_n(this->High, this->Components, 0.0);
-    for (vtkIdType i = 0; i < this->Cell->GetNumberOfPoints(); ++i)
-    {
-      this->Values->GetTuple(this->Cell->GetPointId(i), this->Tuple);
-      for (int j = 0; j < this->Components; ++j)
-      {
-        this->Sum[j] += this->Weights[i] * this->Tuple[j];
-        this->Low[j] = std::min(this->Low[j], this->Tuple[j]);
-        this->High[j] = std::max(this->High[j], this->Tuple[j]);
-      }
-    }
-    return this->MakeSpacing();
+    std::unique_ptr<Place> place = this->TakePlace();
+    const cdm::LocalSpacing spacing = this->Find(position, *place);
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->FreePlaces.push_back(std::move(place));
+    return spacing;
   }
 
 private:
+  /** A cell and the weights of its points at a position. */
+  struct Place
+  {
+    vtkNew<vtkGenericCell> Cell;
+    std::vector<double> Weights;
+  };
+
+  struct Sum
+  {
+    double Value[MaximumSizingComponents];
+    /** What the values lie between. */
+    double Low[MaximumSizingComponents];
+    double High[MaximumSizingComponents];
+    /** One of the values. */
+    double Tuple[MaximumSizingComponents];
+  };
+
+  /** Each is used by one query at a time. */
+  std::unique_ptr<Place> TakePlace() const
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    if (this->FreePlaces.empty())
+    {
+      auto place = std::make_unique<Place>();
+      place->Weights.resize(this->NumberOfWeights);
+      return place;
+    }
+    std::unique_ptr<Place> place = std::move(this->FreePlaces.back());
+    this->FreePlaces.pop_back();
+    return place;
+  }
+
+  cdm::LocalSpacing Find(const cdm::Vec3& position, Place& place) const
+  {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    double x[3] = { position.X, position.Y, position.Z };
+    Sum sum;
+    if (this->FindCell(x, place) < 0)
+    {
+      this->Values->GetTuple(this->Points->FindClosestPoint(x), sum.Tuple);
+      std::copy_n(sum.Tuple, this->Components, sum.Value);
+      std::fill_n(sum.Low, this->Components, 0.0);
+      std::fill_n(sum.High, this->Components, infinity);
+      return this->MakeSpacing(sum);
+    }
+    std::fill_n(sum.Value, this->Components, 0.0);
+    std::fill_n(sum.Low, this->Components, infinity);
+    std::fill_n(sum.High, this->Components, 0.0);
+    for (vtkIdType i = 0; i < place.Cell->GetNumberOfPoints(); ++i)
+    {
+      this->Values->GetTuple(place.Cell->GetPointId(i), sum.Tuple);
+      for (int j = 0; j < this->Components; ++j)
+      {
+        sum.Value[j] += place.Weights[i] * sum.Tuple[j];
+        sum.Low[j] = std::min(sum.Low[j], sum.Tuple[j]);
+        sum.High[j] = std::max(sum.High[j], sum.Tuple[j]);
+      }
+    }
+    return this->MakeSpacing(sum);
+  }
+
   /** The cell that holds a position, or is nearest to it, with its weights there; or -1. */
-  vtkIdType FindCell(double x[3])
+  vtkIdType FindCell(double x[3], Place& place) const
   {
     if (this->Data->GetNumberOfCells() == 0)
     {
@@ -351,53 +400,53 @@ private:
         x[axis] = std::min(std::max(x[axis], this->Bounds[2 * axis]), this->Bounds[2 * axis + 1]);
       }
       const vtkIdType cell = this->Data->FindCell(
-        x, nullptr, this->Cell, -1, 0.0, subId, parametric, this->Weights.data());
+        x, nullptr, place.Cell, -1, 0.0, subId, parametric, place.Weights.data());
       if (cell >= 0)
       {
-        this->Data->GetCell(cell, this->Cell);
+        this->Data->GetCell(cell, place.Cell);
       }
       return cell;
     }
-    vtkIdType cell = this->Cells->FindCell(x, 0.0, this->Cell, parametric, this->Weights.data());
+    vtkIdType cell = this->Cells->FindCell(x, 0.0, place.Cell, parametric, place.Weights.data());
     if (cell < 0)
     {
       double closest[3];
-      this->Cells->FindClosestPoint(x, closest, this->Cell, cell, subId, distance2);
+      this->Cells->FindClosestPoint(x, closest, place.Cell, cell, subId, distance2);
       if (cell >= 0)
       {
-        this->Cell->EvaluatePosition(
-          closest, nullptr, subId, parametric, distance2, this->Weights.data());
+        place.Cell->EvaluatePosition(
+          closest, nullptr, subId, parametric, distance2, place.Weights.data());
       }
     }
     return cell;
   }
 
   /** Of the sum, within the bounds: a degenerate cell gives weights of any kind. */
-  cdm::LocalSpacing MakeSpacing()
+  cdm::LocalSpacing MakeSpacing(Sum& sum) const
   {
     if (this->Components <= 3)
     {
       for (int j = 0; j < this->Components; ++j)
       {
-        this->Sum[j] = std::isfinite(this->Sum[j])
-          ? std::min(std::max(this->Sum[j], this->Low[j]), this->High[j])
-          : this->Low[j];
+        sum.Value[j] = std::isfinite(sum.Value[j])
+          ? std::min(std::max(sum.Value[j], sum.Low[j]), sum.High[j])
+          : sum.Low[j];
       }
       return this->Components == 1
-        ? cdm::LocalSpacing(this->Sum[0])
-        : cdm::LocalSpacing(cdm::Vec3{ this->Sum[0], this->Sum[1], this->Sum[2] });
+        ? cdm::LocalSpacing(sum.Value[0])
+        : cdm::LocalSpacing(cdm::Vec3{ sum.Value[0], sum.Value[1], sum.Value[2] });
     }
     double lengths[3];
     double directions[3][3];
-    if (!std::all_of(this->Sum, this->Sum + this->Components,
+    if (!std::all_of(sum.Value, sum.Value + this->Components,
           [](double value) { return std::isfinite(value); }))
     {
-      std::copy_n(this->Tuple, this->Components, this->Sum);
+      std::copy_n(sum.Tuple, this->Components, sum.Value);
     }
-    FindPrincipalAxes(this->Sum, this->Components, lengths, directions);
+    FindPrincipalAxes(sum.Value, this->Components, lengths, directions);
     if (!(std::min({ lengths[0], lengths[1], lengths[2] }) > 0.0))
     {
-      FindPrincipalAxes(this->Tuple, this->Components, lengths, directions);
+      FindPrincipalAxes(sum.Tuple, this->Components, lengths, directions);
     }
     cdm::Vec3 axes[3];
     for (int i = 0; i < 3; ++i)
@@ -412,14 +461,11 @@ private:
   int Components;
   bool IsGrid = false;
   double Bounds[6];
+  std::size_t NumberOfWeights;
   vtkNew<vtkStaticCellLocator> Cells;
   vtkNew<vtkStaticPointLocator> Points;
-  vtkNew<vtkGenericCell> Cell;
-  std::vector<double> Weights;
-  double Tuple[MaximumSizingComponents];
-  double Sum[MaximumSizingComponents];
-  double Low[MaximumSizingComponents];
-  double High[MaximumSizingComponents];
+  mutable std::mutex Mutex;
+  mutable std::vector<std::unique_ptr<Place>> FreePlaces;
 };
 } // namespace
 
@@ -862,7 +908,7 @@ cdm::Status ToSizing(vtkDataSet* input, cdm::SizingField& sizing)
         ListValues(tuple, components) + ".");
     }
   }
-  auto interpolator = std::make_shared<SizingInterpolator>(input, values);
+  const auto interpolator = std::make_shared<const SizingInterpolator>(input, values);
   sizing = [interpolator](const cdm::Vec3& position) { return (*interpolator)(position); };
   return {};
 }

@@ -14,6 +14,7 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkSMPTools.h>
 
 #include <algorithm>
 #include <cmath>
@@ -165,6 +166,7 @@ int vtkMeshPointGenerator::RequestData(
   options.Seed = static_cast<std::uint64_t>(this->Seed);
   options.BoundaryClearance = this->BoundaryClearance;
   options.MaximumNumberOfPoints = this->MaximumNumberOfPoints;
+  options.NumberOfThreads = vtkSMPTools::GetEstimatedNumberOfThreads();
   cdm::MeshPointGeneratorOutput result;
   const cdm::Status status = vtkCoreBridge::Guard(
     [&]
