@@ -146,7 +146,7 @@ bool PolyhedronMaker::Run(const ExecutionContext& context)
   {
     return false;
   }
-  const SimplexIncidence incidence = SimplexIncidence::OfEdges(this->Mesh);
+  const SimplexIncidence incidence(this->Mesh, 1);
   std::vector<SimplexIncidence::Record> scratch;
   const Id count = static_cast<Id>(this->Mesh.Points.size());
   for (Id point = 0; point < count; ++point)
@@ -155,7 +155,7 @@ bool PolyhedronMaker::Run(const ExecutionContext& context)
     {
       return false;
     }
-    incidence.ForEachGroup(point, scratch,
+    incidence.ForEachEdge(point, scratch,
       [&](const TriangleIds& points, RecordIterator begin, RecordIterator end) {
         this->AddPolygonsAround({ points[0], points[1] }, begin, end);
       });
