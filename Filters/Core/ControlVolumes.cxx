@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ControlVolumes.h"
 
+#include "IdLimits.h"
 #include "ParallelLoop.h"
 #include "Predicates.h"
 #include "SimplexIncidence.h"
@@ -309,6 +310,7 @@ Status ComputeControlVolumes(const TetMesh& mesh, const ControlVolumeOptions& op
   const ExecutionContext& context, ControlVolumes& volumes)
 {
   volumes = {};
-  return Calculator(mesh, options, volumes).Run(context);
+  const Status status = CheckNumberOfTetrahedra(mesh.Tetrahedra.size());
+  return status.IsOk() ? Calculator(mesh, options, volumes).Run(context) : status;
 }
 } // namespace cdm

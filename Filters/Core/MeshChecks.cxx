@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshChecks.h"
 
+#include "IdLimits.h"
 #include "ParallelLoop.h"
 #include "Predicates.h"
 #include "SimplexIncidence.h"
@@ -21,9 +22,6 @@ namespace
 constexpr double DegreesPerRadian = 57.29577951308232;
 constexpr std::size_t ContinueInterval = 1 << 12;
 constexpr std::size_t MaximumNumberOfExamples = 10;
-
-/** Facet ids are 4 * tetrahedron + i and have to fit into an Id. */
-constexpr std::size_t MaximumNumberOfTetrahedra = std::numeric_limits<Id>::max() / 4;
 
 /** Sort the points of a triangle; true if its normal keeps its direction. */
 bool SortPoints(TriangleIds& triangle)
@@ -115,10 +113,14 @@ std::vector<Id> FindNotFinite(const std::vector<Vec3>& points)
 
 Status CheckTetrahedra(const TetMesh& mesh)
 {
-  if (mesh.Tetrahedra.size() > MaximumNumberOfTetrahedra)
+  Status status = CheckNumberOfTetrahedra(mesh.Tetrahedra.size());
+  if (status.IsOk())
   {
-    return Status::InvalidInput("The mesh has more than " +
-      std::to_string(MaximumNumberOfTetrahedra) + " tetrahedra: split it.");
+    status = CheckIdRange(mesh.Points.size(), "points");
+  }
+  if (!status.IsOk())
+  {
+    return status;
   }
   std::vector<Id> cells = FindOutOfRange(mesh.Tetrahedra, mesh.Points.size());
   if (!cells.empty())

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshCriteria.h"
 
+#include "IdLimits.h"
 #include "Measures.h"
 #include "ParallelLoop.h"
 #include "ParallelSort.h"
@@ -29,9 +30,6 @@ constexpr double ProductError = 1e-14;
 
 /** Tangent of one degree: facets of a border that bend by less go straight on. */
 constexpr double SmoothTangent = 0.017455064928217585;
-
-/** 6 * tetrahedron + i has to fit into an Id. */
-constexpr std::size_t MaximumNumberOfTetrahedra = std::numeric_limits<Id>::max() / 6;
 
 /** An outer or interface facet. */
 struct BorderFacet
@@ -811,12 +809,11 @@ Status EvaluateMeshCriteria(const TetMesh& mesh, const TriangleMesh* boundary,
   const MeshCriteriaOptions& options, const ExecutionContext& context, MeshCriteriaReport& report)
 {
   report = {};
-  if (mesh.Tetrahedra.size() > MaximumNumberOfTetrahedra)
+  Status status = CheckNumberOfTetrahedra(mesh.Tetrahedra.size());
+  if (status.IsOk())
   {
-    return Status::InvalidInput("The mesh has more than " +
-      std::to_string(MaximumNumberOfTetrahedra) + " tetrahedra: split it.");
+    status = CheckMeshInput(mesh, boundary);
   }
-  const Status status = CheckMeshInput(mesh, boundary);
   return status.IsOk() ? Evaluator(mesh, boundary, options, report).Run(context) : status;
 }
 } // namespace cdm

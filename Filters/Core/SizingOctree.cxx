@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SizingOctree.h"
 
+#include "IdLimits.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -180,7 +182,8 @@ Status SizingOctree::Split(Id index, int axes)
     }
   }
   this->NumberOfLeaves += children - 1;
-  if (this->NumberOfLeaves > this->Options.MaximumNumberOfLeaves)
+  if (this->NumberOfLeaves > static_cast<std::uint64_t>(this->Options.MaximumNumberOfLeaves) ||
+    this->Nodes.size() + children > LargestId)
   {
     return MakeTooManyPoints(this->Options.MaximumNumberOfLeaves);
   }
@@ -480,7 +483,7 @@ Status SizingOctree::Build(const RegionLocator& locator, const SizingField& sizi
       }
     }
   }
-  this->NumberOfLeaves = static_cast<Id>(this->Nodes.size());
+  this->NumberOfLeaves = this->Nodes.size();
   Status status = this->Refine(context.Part(0.0, 0.7));
   if (status.IsOk() && this->Options.MaximumLevelDifference > 0)
   {

@@ -113,7 +113,7 @@ private:
   /** Length of a unit along each axis. */
   Vec3 UnitLengths;
   std::vector<Node> Nodes;
-  Id NumberOfLeaves = 0;
+  std::uint64_t NumberOfLeaves = 0;
   std::vector<Leaf> Leaves;
 };
 } // namespace cdm
