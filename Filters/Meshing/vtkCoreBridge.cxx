@@ -3,6 +3,7 @@
 
 #include "vtkConformingDelaunayCompatibility.h"
 
+#include "Core/IdLimits.h"
 #include "Core/MeshChecks.h"
 
 #include <vtkCellArray.h>
@@ -23,6 +24,7 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkSMPTools.h>
 #include <vtkStaticCellLocator.h>
 #include <vtkStaticPointLocator.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
@@ -40,19 +42,13 @@
 
 namespace
 {
-constexpr vtkIdType LargestId = std::numeric_limits<cdm::Id>::max();
 constexpr std::size_t NamedIds = 10;
-
-cdm::Status TooLarge(const char* what, vtkIdType number)
-{
-  return cdm::Status::InvalidInput("The input has " + std::to_string(number) + " " + what +
-    ", more than the 2147483647 that 32-bit ids can count. Mesh it in parts.");
-}
 
 /** A whole number from -1 on that fits into an id; otherwise false. */
 bool ToRegion(double value, cdm::Id& region)
 {
-  if (!(value >= cdm::OutsideRegion && value <= LargestId) || value != std::floor(value))
+  if (!(value >= cdm::OutsideRegion && value <= static_cast<double>(cdm::LargestId)) ||
+    value != std::floor(value))
   {
     return false;
   }
@@ -63,18 +59,20 @@ bool ToRegion(double value, cdm::Id& region)
 cdm::Status ToVectors(vtkPoints* input, std::vector<cdm::Vec3>& points)
 {
   const vtkIdType count = input ? input->GetNumberOfPoints() : 0;
-  if (count > LargestId)
+  const cdm::Status status = cdm::CheckIdRange(count, "points");
+  if (!status.IsOk())
   {
-    return TooLarge("points", count);
+    return status;
   }
   points.resize(count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    double x[3];
-    input->GetPoint(i, x);
-    points[i] = { x[0], x[1], x[2] };
-  }
-  return {};
+  vtkCoreBridge::ForEach(points.size(),
+    [&](std::size_t i)
+    {
+      double x[3];
+      input->GetPoint(static_cast<vtkIdType>(i), x);
+      points[i] = { x[0], x[1], x[2] };
+    });
+  return status;
 }
 
 /** Labels of the given cells; empty without the array. */
@@ -144,9 +142,13 @@ cdm::Status CheckArrays(vtkDataSet* input)
 /** What both conversions of a surface check before they look at a cell. */
 cdm::Status CheckSurface(vtkPolyData* input)
 {
-  if (input->GetNumberOfCells() > LargestId)
+  for (const cdm::Status& status : { cdm::CheckIdRange(input->GetNumberOfCells(), "cells"),
+         cdm::CheckNumberOfTriangles(input->GetNumberOfPolys() + input->GetNumberOfStrips()) })
   {
-    return TooLarge("cells", input->GetNumberOfCells());
+    if (!status.IsOk())
+    {
+      return status;
+    }
   }
   if (input->GetNumberOfPolys() + input->GetNumberOfStrips() == 0)
   {
@@ -510,6 +512,12 @@ cdm::Status Guard(const std::function<cdm::Status()>& function)
 }
 
 //--------------------------------------------------------------------------------------------------
+int GetNumberOfThreads()
+{
+  return vtkSMPTools::GetEstimatedNumberOfThreads();
+}
+
+//--------------------------------------------------------------------------------------------------
 int ReportFailure(
   vtkAlgorithm* filter, vtkInformationVector* outputs, const cdm::Status& status, vtkDataSet* input)
 {
@@ -585,9 +593,9 @@ cdm::Status ToPolygonSoup(vtkPolyData* input, cdm::PolygonSoup& soup, std::vecto
   cdm::Status status = CheckSurface(input);
   const vtkIdType corners = input->GetPolys()->GetNumberOfConnectivityIds() +
     3 * input->GetStrips()->GetNumberOfConnectivityIds();
-  if (status.IsOk() && corners > LargestId)
+  if (status.IsOk())
   {
-    status = TooLarge("polygon corners", corners);
+    status = cdm::CheckIdRange(corners, "polygon corners");
   }
   if (status.IsOk())
   {
@@ -762,52 +770,90 @@ cdm::Status ToTetrahedra(
   vtkUnstructuredGrid* input, cdm::TetMesh& mesh, std::vector<vtkIdType>& cells)
 {
   const vtkIdType count = input->GetNumberOfCells();
-  // Ids of facets and edges are up to six times as large as those of tetrahedra.
-  if (count > LargestId / 6)
+  cdm::Status status = cdm::CheckNumberOfTetrahedra(count);
+  if (status.IsOk())
   {
-    return TooLarge("edges of tetrahedra", 6 * count);
+    status = cdm::CheckIdRange(input->GetNumberOfPoints(), "points");
   }
-  cdm::Status status = CheckArrays(input);
+  if (status.IsOk())
+  {
+    status = CheckArrays(input);
+  }
   if (!status.IsOk())
   {
     return status;
   }
   vtkDataArray* regions = input->GetCellData()->GetArray(RegionIdName);
   mesh = {};
-  mesh.Tetrahedra.reserve(count);
-  mesh.Regions.reserve(count);
-  cells.clear();
-  cells.reserve(count);
+  struct Block
+  {
+    std::size_t Begin = 0;
+    std::size_t Tetrahedra = 0;
+    std::vector<cdm::Id> NotTetrahedra;
+    std::vector<cdm::Id> MissingPoints;
+    std::vector<cdm::Id> WrongRegions;
+  };
+  const cdm::ParallelLoopOptions loop{ GetNumberOfThreads(), std::size_t(1) << 14 };
+  std::vector<Block> blocks(cdm::GetNumberOfBlocks(count, loop));
+  const auto countBlock = [&](std::size_t begin, std::size_t end, std::size_t block)
+  {
+    for (std::size_t cell = begin; cell < end; ++cell)
+    {
+      const int type = input->GetCellType(static_cast<vtkIdType>(cell));
+      blocks[block].Tetrahedra += type == VTK_TETRA;
+      if (type != VTK_TETRA && GetCellDimension(type) > 2)
+      {
+        blocks[block].NotTetrahedra.push_back(static_cast<cdm::Id>(cell));
+      }
+    }
+  };
+  cdm::ParallelLoop(count, loop, {}, "", countBlock);
+  std::size_t numberOfTetrahedra = 0;
+  for (Block& block : blocks)
+  {
+    block.Begin = numberOfTetrahedra;
+    numberOfTetrahedra += block.Tetrahedra;
+  }
+  mesh.Tetrahedra.resize(numberOfTetrahedra);
+  mesh.Regions.resize(numberOfTetrahedra, 0);
+  cells.resize(numberOfTetrahedra);
+  const auto convertBlock = [&](std::size_t begin, std::size_t end, std::size_t block)
+  {
+    vtkNew<vtkIdList> ids;
+    std::size_t tetrahedron = blocks[block].Begin;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const auto cell = static_cast<vtkIdType>(i);
+      if (input->GetCellType(cell) != VTK_TETRA)
+      {
+        continue;
+      }
+      input->GetCellPoints(cell, ids);
+      cells[tetrahedron] = cell;
+      std::copy_n(ids->GetPointer(0), 4, mesh.Tetrahedra[tetrahedron].begin());
+      if (UsesMissingPoints(4, ids->GetPointer(0), input->GetNumberOfPoints()))
+      {
+        blocks[block].MissingPoints.push_back(static_cast<cdm::Id>(cell));
+      }
+      cdm::Id& region = mesh.Regions[tetrahedron];
+      if (regions && (!ToRegion(regions->GetComponent(cell, 0), region) || region < 0))
+      {
+        blocks[block].WrongRegions.push_back(static_cast<cdm::Id>(cell));
+      }
+      ++tetrahedron;
+    }
+  };
+  cdm::ParallelLoop(count, loop, {}, "", convertBlock);
   std::vector<cdm::Id> notTetrahedra;
   std::vector<cdm::Id> missingPoints;
   std::vector<cdm::Id> wrongRegions;
-  vtkNew<vtkIdList> ids;
-  for (vtkIdType cell = 0; cell < count; ++cell)
+  for (const Block& block : blocks)
   {
-    const auto id = static_cast<cdm::Id>(cell);
-    if (input->GetCellType(cell) != VTK_TETRA)
-    {
-      if (GetCellDimension(input->GetCellType(cell)) > 2)
-      {
-        notTetrahedra.push_back(id);
-      }
-      continue;
-    }
-    input->GetCellPoints(cell, ids);
-    if (UsesMissingPoints(4, ids->GetPointer(0), input->GetNumberOfPoints()))
-    {
-      missingPoints.push_back(id);
-      continue;
-    }
-    cells.push_back(cell);
-    mesh.Tetrahedra.emplace_back();
-    std::copy_n(ids->GetPointer(0), 4, mesh.Tetrahedra.back().begin());
-    mesh.Regions.push_back(0);
-    if (regions &&
-      (!ToRegion(regions->GetComponent(cell, 0), mesh.Regions.back()) || mesh.Regions.back() < 0))
-    {
-      wrongRegions.push_back(id);
-    }
+    const auto append = [](std::vector<cdm::Id>& all, const std::vector<cdm::Id>& some)
+    { all.insert(all.end(), some.begin(), some.end()); };
+    append(notTetrahedra, block.NotTetrahedra);
+    append(missingPoints, block.MissingPoints);
+    append(wrongRegions, block.WrongRegions);
   }
   if (!notTetrahedra.empty())
   {
@@ -848,21 +894,22 @@ cdm::Status ToTetrahedra(
 //--------------------------------------------------------------------------------------------------
 cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh)
 {
+  std::vector<vtkIdType> cells;
+  const cdm::Status status = ToTetrahedra(input, mesh, cells);
+  const vtkIdType count = input->GetNumberOfCells();
+  if (status.IsOk() && static_cast<vtkIdType>(cells.size()) == count)
+  {
+    return cdm::BuildNeighbors(mesh, GetNumberOfThreads());
+  }
   std::vector<cdm::Id> others;
-  for (vtkIdType cell = 0; cell < std::min(input->GetNumberOfCells(), LargestId); ++cell)
+  for (vtkIdType cell = 0; cell < std::min<vtkIdType>(count, cdm::LargestId); ++cell)
   {
     if (input->GetCellType(cell) != VTK_TETRA)
     {
       others.push_back(static_cast<cdm::Id>(cell));
     }
   }
-  if (!others.empty())
-  {
-    return NotTetrahedra(std::move(others));
-  }
-  std::vector<vtkIdType> cells;
-  const cdm::Status status = ToTetrahedra(input, mesh, cells);
-  return status.IsOk() ? cdm::BuildNeighbors(mesh) : status;
+  return others.empty() ? status : NotTetrahedra(std::move(others));
 }
 
 //--------------------------------------------------------------------------------------------------
@@ -916,31 +963,33 @@ cdm::Status ToSizing(vtkDataSet* input, cdm::SizingField& sizing)
 //--------------------------------------------------------------------------------------------------
 cdm::Status ToSizingCells(vtkDataSet* input, cdm::SizingCells& cells)
 {
-  const cdm::Status status = CheckArrays(input);
-  if (!status.IsOk())
-  {
-    return status;
-  }
   const vtkIdType count = input->GetNumberOfPoints();
-  if (count > LargestId)
+  for (const cdm::Status& status : { CheckArrays(input), cdm::CheckIdRange(count, "points"),
+         cdm::CheckIdRange(input->GetNumberOfCells(), "cells") })
   {
-    return TooLarge("points", count);
+    if (!status.IsOk())
+    {
+      return status;
+    }
   }
   cells.Points.resize(count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    double x[3];
-    input->GetPoint(i, x);
-    cells.Points[i] = { x[0], x[1], x[2] };
-  }
+  ForEach(cells.Points.size(),
+    [&](std::size_t i)
+    {
+      double x[3];
+      input->GetPoint(static_cast<vtkIdType>(i), x);
+      cells.Points[i] = { x[0], x[1], x[2] };
+    });
   vtkNew<vtkIdList> ids;
   for (vtkIdType cell = 0; cell < input->GetNumberOfCells(); ++cell)
   {
     input->GetCellPoints(cell, ids);
     const vtkIdType size = ids->GetNumberOfIds();
-    if (static_cast<vtkIdType>(cells.Connectivity.size()) + size > LargestId)
+    const cdm::Status status =
+      cdm::CheckIdRange(cells.Connectivity.size() + size, "corners of cells");
+    if (!status.IsOk())
     {
-      return TooLarge("corners of cells", cells.Connectivity.size() + size);
+      return status;
     }
     if (UsesMissingPoints(size, ids->GetPointer(0), count))
     {
@@ -961,10 +1010,15 @@ vtkSmartPointer<vtkPoints> FromPoints(const std::vector<cdm::Vec3>& points)
   auto output = vtkSmartPointer<vtkPoints>::New();
   output->SetDataTypeToDouble();
   output->SetNumberOfPoints(static_cast<vtkIdType>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    output->SetPoint(static_cast<vtkIdType>(i), points[i].X, points[i].Y, points[i].Z);
-  }
+  double* const coordinates = vtkDoubleArray::SafeDownCast(output->GetData())->GetPointer(0);
+  ForEach(points.size(),
+    [&](std::size_t i)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        coordinates[3 * i + axis] = points[i][axis];
+      }
+    });
   return output;
 }
 
@@ -973,14 +1027,8 @@ void FromTriangleMesh(const cdm::TriangleMesh& surface, vtkPolyData* output)
 {
   output->SetPoints(FromPoints(surface.Points));
   const auto count = static_cast<vtkIdType>(surface.Triangles.size());
-  vtkNew<vtkCellArray> cells;
-  cells->AllocateExact(count, 3 * count);
-  for (const cdm::TriangleIds& triangle : surface.Triangles)
-  {
-    const vtkIdType ids[3] = { triangle[0], triangle[1], triangle[2] };
-    cells->InsertNextCell(3, ids);
-  }
-  output->SetPolys(cells);
+  output->SetPolys(
+    MakeCells(count, 3, [&](std::size_t i, int j) { return surface.Triangles[i][j]; }));
   if (!surface.Labels.empty())
   {
     vtkNew<vtkIntArray> labels;
@@ -1000,21 +1048,11 @@ void FromTriangleMesh(const cdm::TriangleMesh& surface, vtkPolyData* output)
 void FromTetMesh(const cdm::TetMesh& mesh, vtkUnstructuredGrid* output)
 {
   output->SetPoints(FromPoints(mesh.Points));
-  const auto count = static_cast<vtkIdType>(mesh.Tetrahedra.size());
-  vtkNew<vtkCellArray> cells;
-  cells->AllocateExact(count, 4 * count);
-  vtkNew<vtkIntArray> regions;
-  regions->SetName(RegionIdName);
-  regions->SetNumberOfTuples(count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    const cdm::TetrahedronIds& tetrahedron = mesh.Tetrahedra[i];
-    const vtkIdType ids[4] = { tetrahedron[0], tetrahedron[1], tetrahedron[2], tetrahedron[3] };
-    cells->InsertNextCell(4, ids);
-    regions->SetValue(i, mesh.Regions[i]);
-  }
-  output->SetCells(VTK_TETRA, cells);
-  output->GetCellData()->SetScalars(regions);
+  const std::size_t count = mesh.Tetrahedra.size();
+  output->SetCells(
+    VTK_TETRA, MakeCells(count, 4, [&](std::size_t i, int j) { return mesh.Tetrahedra[i][j]; }));
+  output->GetCellData()->SetScalars(
+    MakeArray<vtkIntArray>(RegionIdName, count, [&](std::size_t i) { return mesh.Regions[i]; }));
 }
 
 //--------------------------------------------------------------------------------------------------
