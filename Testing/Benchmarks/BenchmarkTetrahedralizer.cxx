@@ -13,6 +13,8 @@
  * With several threads there is a row for as many copies with one thread each at the same time, too:
  * what they lose is lost to the machine, and no number of threads can win it back.
  */
+#include "Measurement.h"
+
 #include "Core/AdvancingFrontTetrahedralizer.h"
 
 #ifdef CDM_HAS_CGAL_TRIANGULATION
@@ -31,20 +33,14 @@
 #endif
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <functional>
 #include <map>
 #include <random>
 #include <string>
 #include <vector>
-
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace
 {
@@ -152,102 +148,18 @@ PointSet MakePoints(const std::string& input, std::size_t count)
   return points;
 }
 
-double GetUserTime()
-{
-  rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * usage.ru_utime.tv_usec;
-}
-
-/** Started by a program when it has its input. */
-struct Clock
-{
-  double User = 0.0;
-  std::chrono::steady_clock::time_point Wall;
-
-  void Start()
-  {
-    this->User = GetUserTime();
-    this->Wall = std::chrono::steady_clock::now();
-  }
-};
-
-struct Result
-{
-  double Seconds = -1.0;
-  double WallSeconds = 0.0;
-  double Megabytes = 0.0;
-  double Tetrahedra = 0.0;
-};
-
 /** A program converts the points, starts the clock, and returns the number of its tetrahedra. */
 using Program = std::function<std::size_t(const PointSet&, Clock& clock)>;
 
-/** A measurement under way. */
-struct Run
+Measurement MeasureProgram(
+  const std::string& input, std::size_t count, const Program& program, int copies)
 {
-  pid_t Process = -1;
-  int End = -1;
-};
-
-Run Start(const std::string& input, std::size_t count, const Program& program)
-{
-  int ends[2];
-  if (pipe(ends) != 0)
+  const Work work = [&](Clock& clock) -> std::array<double, 2>
   {
-    return Run();
-  }
-  const pid_t child = fork();
-  if (child == 0)
-  {
-    close(ends[0]);
     const PointSet points = MakePoints(input, count);
-    Clock clock;
-    Result result;
-    result.Tetrahedra = static_cast<double>(program(points, clock));
-    result.Seconds = GetUserTime() - clock.User;
-    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - clock.Wall;
-    result.WallSeconds = wall.count();
-    const bool isWritten = write(ends[1], &result, sizeof(result)) == sizeof(result);
-    _exit(isWritten ? 0 : 1);
-  }
-  close(ends[1]);
-  return { child, ends[0] };
-}
-
-Result Finish(const Run& run)
-{
-  Result result;
-  const bool isRead = read(run.End, &result, sizeof(result)) == sizeof(result);
-  close(run.End);
-  int status = 0;
-  rusage usage;
-  wait4(run.Process, &status, 0, &usage);
-  if (!isRead || !WIFEXITED(status) || WEXITSTATUS(status) != 0 || result.Tetrahedra == 0.0)
-  {
-    return Result();
-  }
-  result.Megabytes = static_cast<double>(usage.ru_maxrss) / 1024.0;
-  return result;
-}
-
-/** Several copies at the same time: the wall time is that of the slowest, the rest that of one. */
-Result Measure(const std::string& input, std::size_t count, const Program& program, int copies)
-{
-  std::vector<Run> runs;
-  for (int i = 0; i < copies; ++i)
-  {
-    runs.push_back(Start(input, count, program));
-  }
-  Result slowest;
-  bool hasFailed = false;
-  for (const Run& run : runs)
-  {
-    const Result result = Finish(run);
-    hasFailed = hasFailed || result.Seconds < 0.0;
-    slowest = result.WallSeconds > slowest.WallSeconds ? result : slowest;
-  }
-  return hasFailed ? Result() : slowest;
+    return { 0.0, static_cast<double>(program(points, clock)) };
+  };
+  return Measure(work, copies);
 }
 
 std::size_t RunOurs(const PointSet& points, Clock& clock, int threads)
@@ -317,20 +229,6 @@ std::size_t RunVtk(const PointSet& points, Clock& clock)
   return static_cast<std::size_t>(delaunay->GetOutput()->GetNumberOfCells());
 }
 #endif
-
-/** Of each quantity by itself. */
-Result GetMedian(std::vector<Result> results)
-{
-  const auto middle = results.begin() + static_cast<std::ptrdiff_t>(results.size() / 2);
-  Result median = results.front();
-  for (double Result::*quantity : { &Result::Seconds, &Result::WallSeconds, &Result::Megabytes })
-  {
-    std::nth_element(results.begin(), middle, results.end(),
-      [quantity](const Result& a, const Result& b) { return a.*quantity < b.*quantity; });
-    median.*quantity = (*middle).*quantity;
-  }
-  return median;
-}
 
 struct Entry
 {
@@ -423,14 +321,14 @@ int main(int argc, char* argv[])
   {
     for (const std::string& input : inputs)
     {
-      std::map<std::string, std::vector<Result>> results;
+      std::map<std::string, std::vector<Measurement>> results;
       for (int repetition = 0; repetition < repetitions; ++repetition)
       {
         for (const auto& [name, program, copies] : programs)
         {
           if (!isTooSlow[{ name, input }])
           {
-            results[name].push_back(Measure(input, size, program, copies));
+            results[name].push_back(MeasureProgram(input, size, program, copies));
             isTooSlow[{ name, input }] = results[name].back().Seconds > limit;
           }
         }
@@ -442,7 +340,7 @@ int main(int argc, char* argv[])
         {
           continue;
         }
-        const Result median = GetMedian(results[name]);
+        const Measurement median = GetMedian(results[name]);
         if (median.Seconds < 0.0)
         {
           std::printf("| %s | %zu | %s | failed | | | | | |\n", input.c_str(), size, name.c_str());
@@ -450,8 +348,8 @@ int main(int argc, char* argv[])
         }
         std::printf("| %s | %zu | %s | %.3f | %.2f | %.3f | %.0f | %.0f | %.0f |\n", input.c_str(),
           size, name.c_str(), median.Seconds, ours > 0.0 ? median.Seconds / ours : 0.0,
-          median.WallSeconds, median.Tetrahedra / median.Seconds, median.Megabytes,
-          median.Megabytes * 1048576.0 / median.Tetrahedra);
+          median.WallSeconds, median.Counts[1] / median.Seconds, median.Megabytes,
+          median.Megabytes * 1048576.0 / median.Counts[1]);
         std::fflush(stdout);
       }
     }
