@@ -16,6 +16,20 @@ namespace cdm
 {
 namespace
 {
+/** Of the edges of a tetrahedron: plain numbers, which nobody has to set to zero first. */
+struct EdgeShares
+{
+  std::array<double, 6> High;
+  std::array<double, 6> Low;
+
+  DoubleDouble Get(int edge) const { return { this->High[edge], this->Low[edge] }; }
+  void Set(int edge, const DoubleDouble& share)
+  {
+    this->High[edge] = share.High;
+    this->Low[edge] = share.Low;
+  }
+};
+
 class Calculator
 {
 public:
@@ -45,8 +59,8 @@ private:
   SimplexIncidence Incidence;
   ParallelLoopOptions LoopOptions;
   std::vector<char> IsPositive;
-  /** Couplings of the edges of each tetrahedron. */
-  RawVector<std::array<DoubleDouble, 6>> Shares;
+  /** Of each tetrahedron in the couplings of its edges, later in six times the volumes there. */
+  RawVector<EdgeShares> Shares;
 };
 
 Status Calculator::Run(const ExecutionContext& context)
@@ -85,7 +99,11 @@ bool Calculator::ComputeShares(const ExecutionContext& context)
         this->IsPositive[i] = Orientation(a, b, c, d) > 0;
         if (this->IsPositive[i])
         {
-          this->Shares[i] = GetCouplings(a, b, c, d);
+          const std::array<DoubleDouble, 6> couplings = GetCouplings(a, b, c, d);
+          for (int edge = 0; edge < 6; ++edge)
+          {
+            this->Shares[i].Set(edge, couplings[edge]);
+          }
         }
       }
     });
@@ -130,7 +148,7 @@ void Calculator::AddCouplings(const EdgeIds& edge, RecordIterator begin, RecordI
       const Id tetrahedron = record->Simplex / 6;
       if (this->Mesh.Regions[tetrahedron] == region)
       {
-        sum.Add(this->Shares[tetrahedron][record->Simplex % 6]);
+        sum.Add(this->Shares[tetrahedron].Get(record->Simplex % 6));
       }
     }
     couplings.push_back({ edge, region, length * sum.Get(), length });
@@ -213,15 +231,12 @@ bool Calculator::SumBoxes(const ExecutionContext& context)
       auto sum = std::find_if(
         sums.begin(), sums.end(), [region](const Sum& other) { return other.Region == region; });
       sum = sum == sums.end() ? sums.insert(sum, { region, {} }) : sum;
-      const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
       for (int edge = 0; edge < 6; ++edge)
       {
         const int* ends = TetrahedronEdges[edge];
         if (ends[0] == vertex || ends[1] == vertex)
         {
-          sum->SixVolumes = sum->SixVolumes +
-            GetSquaredDistance(points[ids[ends[0]]], points[ids[ends[1]]]) *
-              this->Shares[tetrahedron][edge];
+          sum->SixVolumes = sum->SixVolumes + this->Shares[tetrahedron].Get(edge);
         }
       }
     };
@@ -238,9 +253,24 @@ bool Calculator::SumBoxes(const ExecutionContext& context)
       }
     }
   };
+  const auto multiply = [&](std::size_t begin, std::size_t end, std::size_t)
+  {
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const TetrahedronIds& ids = this->Mesh.Tetrahedra[i];
+      for (int edge = 0; edge < 6; ++edge)
+      {
+        const int* ends = TetrahedronEdges[edge];
+        this->Shares[i].Set(edge,
+          GetSquaredDistance(points[ids[ends[0]]], points[ids[ends[1]]]) *
+            this->Shares[i].Get(edge));
+      }
+    }
+  };
   const char* const activity = "Summing up control volumes";
   return ParallelLoop(
-           points.size(), this->LoopOptions, context.Part(0.0, 0.95), activity, sumBlock) &&
+           this->Shares.size(), this->LoopOptions, context.Part(0.0, 0.5), activity, multiply) &&
+    ParallelLoop(points.size(), this->LoopOptions, context.Part(0.5, 0.95), activity, sumBlock) &&
     this->Concatenate(blocks, context.Part(0.95, 1.0), activity, this->Volumes.Boxes);
 }
 
