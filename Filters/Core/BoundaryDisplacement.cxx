@@ -170,11 +170,11 @@ private:
   {
     const std::vector<Vec3>& points = this->Mesh.Points;
     const auto isInside = [this](Id point) { return !this->IsOnBoundary[point]; };
-    const SimplexIncidence edges = SimplexIncidence::OfEdges(this->Mesh);
+    const SimplexIncidence incidence(this->Mesh, 1);
     std::vector<SimplexIncidence::Record> scratch;
     for (Id point = 0; point < static_cast<Id>(points.size()); ++point)
     {
-      edges.ForEachGroup(point, scratch,
+      incidence.ForEachEdge(point, scratch,
         [&](const TriangleIds& ids, auto begin, auto end)
         {
           if (!isInside(ids[0]) && !isInside(ids[1]))

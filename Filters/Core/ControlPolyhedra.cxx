@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ControlPolyhedra.h"
 
+#include "IdLimits.h"
 #include "Measures.h"
 #include "Predicates.h"
 #include "SimplexIncidence.h"
@@ -69,7 +70,7 @@ public:
   {
   }
 
-  bool Run(const ExecutionContext& context);
+  Status Run(const ExecutionContext& context);
 
 private:
   struct Use
@@ -134,35 +135,45 @@ private:
   std::vector<Use> Uses;
 };
 
-bool PolyhedronMaker::Run(const ExecutionContext& context)
+Status PolyhedronMaker::Run(const ExecutionContext& context)
 {
   if (!context.Continue(0.0, Activity))
   {
-    return false;
+    return Status::Aborted();
   }
   this->CollectBorders();
+  const std::uint64_t borders = this->BorderFacets.size();
+  const std::uint64_t tetrahedra = this->Mesh.Tetrahedra.size();
+  // A border facet and its edges come in a few polygons each, a tetrahedron in one for each edge.
+  const Status status =
+    CheckIdRange(EdgesOfTetrahedron * tetrahedra + 15 * borders + this->Mesh.Points.size(),
+      "corners of control volumes");
+  if (!status.IsOk())
+  {
+    return status;
+  }
   this->FindFlatEdges();
   if (!this->UniteVertices(context.Part(0.1, 0.3)))
   {
-    return false;
+    return Status::Aborted();
   }
-  const SimplexIncidence incidence = SimplexIncidence::OfEdges(this->Mesh);
+  const SimplexIncidence incidence(this->Mesh, 1);
   std::vector<SimplexIncidence::Record> scratch;
   const Id count = static_cast<Id>(this->Mesh.Points.size());
   for (Id point = 0; point < count; ++point)
   {
     if (point % ContinueInterval == 0 && !context.Continue(0.3 + 0.6 * point / count, Activity))
     {
-      return false;
+      return Status::Aborted();
     }
-    incidence.ForEachGroup(point, scratch,
+    incidence.ForEachEdge(point, scratch,
       [&](const TriangleIds& points, RecordIterator begin, RecordIterator end) {
         this->AddPolygonsAround({ points[0], points[1] }, begin, end);
       });
   }
   this->AddBorderPolygons();
   this->GatherBoxes();
-  return context.Continue(1.0, Activity);
+  return context.Continue(1.0, Activity) ? Status() : Status::Aborted();
 }
 
 void PolyhedronMaker::CollectBorders()
@@ -523,6 +534,6 @@ Status MakeControlPolyhedra(const TetMesh& mesh, const ControlVolumes& volumes,
   const ExecutionContext& context, ControlPolyhedra& polyhedra)
 {
   polyhedra = {};
-  return PolyhedronMaker(mesh, volumes, polyhedra).Run(context) ? Status() : Status::Aborted();
+  return PolyhedronMaker(mesh, volumes, polyhedra).Run(context);
 }
 } // namespace cdm

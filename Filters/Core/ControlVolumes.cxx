@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ControlVolumes.h"
 
+#include "IdLimits.h"
 #include "ParallelLoop.h"
 #include "Predicates.h"
 #include "SimplexIncidence.h"
@@ -15,13 +16,25 @@ namespace cdm
 {
 namespace
 {
-constexpr std::size_t ContinueInterval = 1 << 14;
+/** Of the edges of a tetrahedron: plain numbers, which nobody has to set to zero first. */
+struct EdgeShares
+{
+  std::array<double, 6> High;
+  std::array<double, 6> Low;
+
+  DoubleDouble Get(int edge) const { return { this->High[edge], this->Low[edge] }; }
+  void Set(int edge, const DoubleDouble& share)
+  {
+    this->High[edge] = share.High;
+    this->Low[edge] = share.Low;
+  }
+};
 
 class Calculator
 {
 public:
   Calculator(const TetMesh& mesh, const ControlVolumeOptions& options, ControlVolumes& volumes)
-    : Mesh(mesh), Volumes(volumes)
+    : Mesh(mesh), Volumes(volumes), Incidence(mesh, options.NumberOfThreads)
   {
     this->LoopOptions.NumberOfThreads = options.NumberOfThreads;
   }
@@ -32,31 +45,22 @@ private:
   bool ComputeShares(const ExecutionContext& context);
   Status CheckOrientations() const;
   bool SumCouplings(const ExecutionContext& context);
-  void CollectBoxes();
   bool SumBoxes(const ExecutionContext& context);
-  void SumBoundaryAreas();
+  bool SumBoundaryAreas(const ExecutionContext& context);
+  template <typename Item, typename Block>
+  bool Concatenate(const std::vector<Block>& blocks, const ExecutionContext& context,
+    const char* activity, std::vector<Item>& items) const;
 
   using RecordIterator = std::vector<SimplexIncidence::Record>::const_iterator;
   void AddCouplings(const EdgeIds& edge, RecordIterator begin, RecordIterator end,
     std::vector<EdgeCoupling>& couplings, Id& negative) const;
-  Id FindBox(Id point, Id region) const
-  {
-    Id box = this->BoxBegin[point];
-    while (this->Volumes.Boxes[box].Region != region)
-    {
-      ++box;
-    }
-    return box;
-  }
-
   const TetMesh& Mesh;
   ControlVolumes& Volumes;
+  SimplexIncidence Incidence;
   ParallelLoopOptions LoopOptions;
   std::vector<char> IsPositive;
-  /** Couplings of the edges of each tetrahedron. */
-  std::vector<std::array<DoubleDouble, 6>> Shares;
-  /** First box of each point. */
-  std::vector<Id> BoxBegin;
+  /** Of each tetrahedron in the couplings of its edges, later in six times the volumes there. */
+  RawVector<EdgeShares> Shares;
 };
 
 Status Calculator::Run(const ExecutionContext& context)
@@ -70,17 +74,10 @@ Status Calculator::Run(const ExecutionContext& context)
   {
     return status;
   }
-  if (!this->SumCouplings(context.Part(0.5, 0.8)))
-  {
-    return Status::Aborted();
-  }
-  this->CollectBoxes();
-  if (!this->SumBoxes(context.Part(0.8, 0.95)))
-  {
-    return Status::Aborted();
-  }
-  this->SumBoundaryAreas();
-  return context.Continue(1.0, "Summing up boundary areas") ? Status() : Status::Aborted();
+  return this->SumCouplings(context.Part(0.5, 0.75)) && this->SumBoxes(context.Part(0.75, 0.95)) &&
+      this->SumBoundaryAreas(context.Part(0.95, 1.0))
+    ? Status()
+    : Status::Aborted();
 }
 
 bool Calculator::ComputeShares(const ExecutionContext& context)
@@ -102,7 +99,11 @@ bool Calculator::ComputeShares(const ExecutionContext& context)
         this->IsPositive[i] = Orientation(a, b, c, d) > 0;
         if (this->IsPositive[i])
         {
-          this->Shares[i] = GetCouplings(a, b, c, d);
+          const std::array<DoubleDouble, 6> couplings = GetCouplings(a, b, c, d);
+          for (int edge = 0; edge < 6; ++edge)
+          {
+            this->Shares[i].Set(edge, couplings[edge]);
+          }
         }
       }
     });
@@ -147,7 +148,7 @@ void Calculator::AddCouplings(const EdgeIds& edge, RecordIterator begin, RecordI
       const Id tetrahedron = record->Simplex / 6;
       if (this->Mesh.Regions[tetrahedron] == region)
       {
-        sum.Add(this->Shares[tetrahedron][record->Simplex % 6]);
+        sum.Add(this->Shares[tetrahedron].Get(record->Simplex % 6));
       }
     }
     couplings.push_back({ edge, region, length * sum.Get(), length });
@@ -157,10 +158,9 @@ void Calculator::AddCouplings(const EdgeIds& edge, RecordIterator begin, RecordI
 
 bool Calculator::SumCouplings(const ExecutionContext& context)
 {
-  const SimplexIncidence incidence = SimplexIncidence::OfEdges(this->Mesh);
   struct Block
   {
-    std::vector<EdgeCoupling> Couplings;
+    std::vector<EdgeCoupling> Items;
     Id Negative = 0;
   };
   std::vector<Block> blocks(GetNumberOfBlocks(this->Mesh.Points.size(), this->LoopOptions));
@@ -170,115 +170,153 @@ bool Calculator::SumCouplings(const ExecutionContext& context)
     Block& block = blocks[index];
     for (std::size_t point = begin; point < end; ++point)
     {
-      incidence.ForEachGroup(static_cast<Id>(point), scratch,
+      this->Incidence.ForEachEdge(static_cast<Id>(point), scratch,
         [&](const TriangleIds& points, RecordIterator first, RecordIterator last) {
-          this->AddCouplings(
-            { points[0], points[1] }, first, last, block.Couplings, block.Negative);
+          this->AddCouplings({ points[0], points[1] }, first, last, block.Items, block.Negative);
         });
     }
   };
+  const char* const activity = "Summing up couplings";
   if (!ParallelLoop(
-        this->Mesh.Points.size(), this->LoopOptions, context, "Summing up couplings", sum))
+        this->Mesh.Points.size(), this->LoopOptions, context.Part(0.0, 0.9), activity, sum))
   {
     return false;
   }
-  std::size_t size = 0;
   for (const Block& block : blocks)
   {
-    size += block.Couplings.size();
-  }
-  this->Volumes.Couplings.reserve(size);
-  for (const Block& block : blocks)
-  {
-    this->Volumes.Couplings.insert(
-      this->Volumes.Couplings.end(), block.Couplings.begin(), block.Couplings.end());
     this->Volumes.NegativeCouplings += block.Negative;
   }
-  return true;
+  return this->Concatenate(blocks, context.Part(0.9, 1.0), activity, this->Volumes.Couplings);
 }
 
-void Calculator::CollectBoxes()
+template <typename Item, typename Block>
+bool Calculator::Concatenate(const std::vector<Block>& blocks, const ExecutionContext& context,
+  const char* activity, std::vector<Item>& items) const
 {
-  // Every point of a region has an edge in it.
-  std::vector<EdgeIds> pairs;
-  pairs.reserve(2 * this->Volumes.Couplings.size());
-  for (const EdgeCoupling& coupling : this->Volumes.Couplings)
+  std::vector<std::size_t> begins(1, 0);
+  for (const Block& block : blocks)
   {
-    pairs.push_back({ coupling.Points[0], coupling.Region });
-    pairs.push_back({ coupling.Points[1], coupling.Region });
+    begins.push_back(begins.back() + block.Items.size());
   }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  this->BoxBegin.assign(this->Mesh.Points.size(), NoId);
-  this->Volumes.Boxes.reserve(pairs.size());
-  for (const EdgeIds& pair : pairs)
-  {
-    Id& begin = this->BoxBegin[pair[0]];
-    begin = begin == NoId ? static_cast<Id>(this->Volumes.Boxes.size()) : begin;
-    this->Volumes.Boxes.push_back({ pair[0], pair[1], 0.0 });
-  }
+  items.resize(begins.back());
+  return ParallelLoop(blocks.size(), { this->LoopOptions.NumberOfThreads, 16 }, context, activity,
+    [&](std::size_t first, std::size_t last, std::size_t)
+    {
+      for (std::size_t i = first; i < last; ++i)
+      {
+        std::copy(blocks[i].Items.begin(), blocks[i].Items.end(), items.begin() + begins[i]);
+      }
+    });
 }
 
 bool Calculator::SumBoxes(const ExecutionContext& context)
 {
-  std::vector<DoubleDouble> sums(this->Volumes.Boxes.size());
-  const std::vector<Vec3>& points = this->Mesh.Points;
-  const std::size_t count = this->Mesh.Tetrahedra.size();
-  for (std::size_t i = 0; i < count; ++i)
+  struct Sum
   {
-    if (i % ContinueInterval == 0 &&
-      !context.Continue(static_cast<double>(i) / count, "Summing up control volumes"))
+    Id Region;
+    DoubleDouble SixVolumes;
+  };
+  struct Block
+  {
+    std::vector<ControlBox> Items;
+  };
+  std::vector<Block> blocks(GetNumberOfBlocks(this->Mesh.Points.size(), this->LoopOptions));
+  const std::vector<Vec3>& points = this->Mesh.Points;
+  const auto sumBlock = [&](std::size_t begin, std::size_t end, std::size_t block)
+  {
+    std::vector<Sum> sums;
+    const auto add = [&](Id tetrahedron, int vertex)
     {
-      return false;
-    }
-    const TetrahedronIds& ids = this->Mesh.Tetrahedra[i];
-    for (int edge = 0; edge < 6; ++edge)
-    {
-      const int* ends = TetrahedronEdges[edge];
-      const DoubleDouble volume =
-        GetSquaredDistance(points[ids[ends[0]]], points[ids[ends[1]]]) * this->Shares[i][edge];
-      for (const int end : { ends[0], ends[1] })
+      const Id region = this->Mesh.Regions[tetrahedron];
+      auto sum = std::find_if(
+        sums.begin(), sums.end(), [region](const Sum& other) { return other.Region == region; });
+      sum = sum == sums.end() ? sums.insert(sum, { region, {} }) : sum;
+      for (int edge = 0; edge < 6; ++edge)
       {
-        DoubleDouble& sum = sums[this->FindBox(ids[end], this->Mesh.Regions[i])];
-        sum = sum + volume;
+        const int* ends = TetrahedronEdges[edge];
+        if (ends[0] == vertex || ends[1] == vertex)
+        {
+          sum->SixVolumes = sum->SixVolumes + this->Shares[tetrahedron].Get(edge);
+        }
+      }
+    };
+    for (std::size_t point = begin; point < end; ++point)
+    {
+      sums.clear();
+      this->Incidence.ForEachTetrahedron(static_cast<Id>(point), add);
+      std::sort(
+        sums.begin(), sums.end(), [](const Sum& a, const Sum& b) { return a.Region < b.Region; });
+      for (const Sum& sum : sums)
+      {
+        blocks[block].Items.push_back(
+          { static_cast<Id>(point), sum.Region, sum.SixVolumes.High / 6.0 });
       }
     }
-  }
-  for (std::size_t box = 0; box < sums.size(); ++box)
+  };
+  const auto multiply = [&](std::size_t begin, std::size_t end, std::size_t)
   {
-    this->Volumes.Boxes[box].Volume = sums[box].High / 6.0;
-  }
-  return true;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const TetrahedronIds& ids = this->Mesh.Tetrahedra[i];
+      for (int edge = 0; edge < 6; ++edge)
+      {
+        const int* ends = TetrahedronEdges[edge];
+        this->Shares[i].Set(edge,
+          GetSquaredDistance(points[ids[ends[0]]], points[ids[ends[1]]]) *
+            this->Shares[i].Get(edge));
+      }
+    }
+  };
+  const char* const activity = "Summing up control volumes";
+  return ParallelLoop(
+           this->Shares.size(), this->LoopOptions, context.Part(0.0, 0.5), activity, multiply) &&
+    ParallelLoop(points.size(), this->LoopOptions, context.Part(0.5, 0.95), activity, sumBlock) &&
+    this->Concatenate(blocks, context.Part(0.95, 1.0), activity, this->Volumes.Boxes);
 }
 
-void Calculator::SumBoundaryAreas()
+bool Calculator::SumBoundaryAreas(const ExecutionContext& context)
 {
   struct Part
   {
     BoundaryArea Area;
     DoubleDouble Exact;
   };
-  std::vector<Part> parts;
-  for (Id i = 0; i < static_cast<Id>(this->Mesh.Tetrahedra.size()); ++i)
+  struct Block
   {
-    for (int facet = 0; facet < 4; ++facet)
+    std::vector<Part> Items;
+  };
+  std::vector<Block> blocks(GetNumberOfBlocks(this->Mesh.Tetrahedra.size(), this->LoopOptions));
+  const auto collect = [&](std::size_t begin, std::size_t end, std::size_t block)
+  {
+    for (std::size_t i = begin; i < end; ++i)
     {
-      const Id neighbor = this->Mesh.Neighbors[i][facet];
-      const Id inside = this->Mesh.Regions[i];
-      const Id outside = neighbor == NoId ? OutsideRegion : this->Mesh.Regions[neighbor / 4];
-      // An interface facet is visited from the region with the larger id.
-      if (outside >= inside)
+      for (int facet = 0; facet < 4; ++facet)
       {
-        continue;
-      }
-      const TriangleIds ids = GetFacet(this->Mesh.Tetrahedra[i], facet);
-      const std::array<DoubleDouble, 3> areas = GetVertexAreas(
-        this->Mesh.Points[ids[0]], this->Mesh.Points[ids[1]], this->Mesh.Points[ids[2]]);
-      for (int vertex = 0; vertex < 3; ++vertex)
-      {
-        parts.push_back({ { ids[vertex], outside, inside, 0.0 }, areas[vertex] });
+        const Id neighbor = this->Mesh.Neighbors[i][facet];
+        const Id inside = this->Mesh.Regions[i];
+        const Id outside = neighbor == NoId ? OutsideRegion : this->Mesh.Regions[neighbor / 4];
+        // An interface facet is visited from the region with the larger id.
+        if (outside >= inside)
+        {
+          continue;
+        }
+        const TriangleIds ids = GetFacet(this->Mesh.Tetrahedra[i], facet);
+        const std::array<DoubleDouble, 3> areas = GetVertexAreas(
+          this->Mesh.Points[ids[0]], this->Mesh.Points[ids[1]], this->Mesh.Points[ids[2]]);
+        for (int vertex = 0; vertex < 3; ++vertex)
+        {
+          blocks[block].Items.push_back({ { ids[vertex], outside, inside, 0.0 }, areas[vertex] });
+        }
       }
     }
+  };
+  const char* const activity = "Summing up boundary areas";
+  std::vector<Part> parts;
+  if (!ParallelLoop(this->Mesh.Tetrahedra.size(), this->LoopOptions, context.Part(0.0, 0.6),
+        activity, collect) ||
+    !this->Concatenate(blocks, context.Part(0.6, 0.7), activity, parts))
+  {
+    return false;
   }
   const auto getKey = [](const BoundaryArea& area)
   { return std::make_tuple(area.Point, area.LowRegion, area.HighRegion); };
@@ -294,6 +332,7 @@ void Calculator::SumBoundaryAreas()
     this->Volumes.BoundaryAreas.push_back(begin->Area);
     this->Volumes.BoundaryAreas.back().Area = sum.High;
   }
+  return context.Continue(1.0, activity);
 }
 } // namespace
 
@@ -301,6 +340,7 @@ Status ComputeControlVolumes(const TetMesh& mesh, const ControlVolumeOptions& op
   const ExecutionContext& context, ControlVolumes& volumes)
 {
   volumes = {};
-  return Calculator(mesh, options, volumes).Run(context);
+  const Status status = CheckNumberOfTetrahedra(mesh.Tetrahedra.size());
+  return status.IsOk() ? Calculator(mesh, options, volumes).Run(context) : status;
 }
 } // namespace cdm

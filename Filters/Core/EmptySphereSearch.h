@@ -110,8 +110,8 @@ inline bool SphereForm::MayTouch(const Vec3& lower, const Vec3& upper) const
 class EmptySphereSearch
 {
 public:
-  /** The points have to be finite, and to outlive the search. */
-  explicit EmptySphereSearch(const std::vector<Vec3>& points);
+  /** The points have to be finite. Threads: 0: one for each processor core. */
+  explicit EmptySphereSearch(const std::vector<Vec3>& points, int numberOfThreads = 1);
 
   /**
    * Calls isInside(id) for every point that may lie in the sphere, until it returns true; returns
@@ -167,7 +167,19 @@ private:
     Id Right = NoId;
   };
 
-  void Build(const std::vector<Vec3>& points, Id begin, Id end);
+  /** The points [Begin, End) of the order and the place of its root. */
+  struct Subtree
+  {
+    Id Begin;
+    Id End;
+    Id Node;
+  };
+
+  static Id CountNodes(Id numberOfPoints);
+  /** Makes the root only; the first point of its right child, or NoId if it is a leaf. */
+  Id Split(const std::vector<Vec3>& points, const Subtree& subtree);
+  /** The place after the last node. */
+  Id Build(const std::vector<Vec3>& points, const Subtree& subtree);
 
   std::vector<Node> Nodes;
   std::vector<Id> Order;

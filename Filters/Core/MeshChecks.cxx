@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshChecks.h"
 
+#include "IdLimits.h"
+#include "ParallelLoop.h"
 #include "Predicates.h"
+#include "SimplexIncidence.h"
 #include "SphereCriteria.h"
 #include "VolumeSums.h"
 
@@ -19,9 +22,6 @@ namespace
 constexpr double DegreesPerRadian = 57.29577951308232;
 constexpr std::size_t ContinueInterval = 1 << 12;
 constexpr std::size_t MaximumNumberOfExamples = 10;
-
-/** Facet ids are 4 * tetrahedron + i and have to fit into an Id. */
-constexpr std::size_t MaximumNumberOfTetrahedra = std::numeric_limits<Id>::max() / 4;
 
 /** Sort the points of a triangle; true if its normal keeps its direction. */
 bool SortPoints(TriangleIds& triangle)
@@ -113,10 +113,14 @@ std::vector<Id> FindNotFinite(const std::vector<Vec3>& points)
 
 Status CheckTetrahedra(const TetMesh& mesh)
 {
-  if (mesh.Tetrahedra.size() > MaximumNumberOfTetrahedra)
+  Status status = CheckNumberOfTetrahedra(mesh.Tetrahedra.size());
+  if (status.IsOk())
   {
-    return Status::InvalidInput("The mesh has more than " +
-      std::to_string(MaximumNumberOfTetrahedra) + " tetrahedra: split it.");
+    status = CheckIdRange(mesh.Points.size(), "points");
+  }
+  if (!status.IsOk())
+  {
+    return status;
   }
   std::vector<Id> cells = FindOutOfRange(mesh.Tetrahedra, mesh.Points.size());
   if (!cells.empty())
@@ -737,38 +741,50 @@ Status CheckTetMesh(const TetMesh& mesh, const TriangleMesh* boundary,
   return status.IsOk() ? Checker(mesh, boundary, report).Run(context) : status;
 }
 
-Status BuildNeighbors(TetMesh& mesh)
+Status BuildNeighbors(TetMesh& mesh, int numberOfThreads)
 {
   Status status = CheckTetrahedra(mesh);
   if (!status.IsOk())
   {
     return status;
   }
-  mesh.Neighbors.assign(mesh.Tetrahedra.size(), { NoId, NoId, NoId, NoId });
-  const std::vector<FacetRecord> facets = CollectFacets(mesh);
-  std::vector<Id> overfull;
-  for (auto begin = facets.cbegin(), end = begin; begin != facets.cend(); begin = end)
+  mesh.Neighbors.resize(mesh.Tetrahedra.size());
+  const SimplexIncidence incidence(mesh, numberOfThreads);
+  const ParallelLoopOptions loop{ numberOfThreads, 2048 };
+  std::vector<std::vector<Id>> overfull(GetNumberOfBlocks(mesh.Points.size(), loop));
+  const auto build = [&](std::size_t begin, std::size_t end, std::size_t block)
   {
-    end = FindEndOfGroup(begin, facets.cend());
-    if (end - begin == 2)
+    std::vector<SimplexIncidence::Record> scratch;
+    const auto join = [&](const TriangleIds&, auto first, auto last)
     {
-      const Id first = begin[0].Source;
-      const Id second = begin[1].Source;
-      mesh.Neighbors[first / 4][first % 4] = second;
-      mesh.Neighbors[second / 4][second % 4] = first;
-    }
-    for (auto facet = begin; end - begin > 2 && facet != end; ++facet)
+      for (auto record = first; record != last; ++record)
+      {
+        const auto other = record == first ? first + 1 : first;
+        mesh.Neighbors[record->Simplex / 4][record->Simplex % 4] =
+          last - first == 2 ? other->Simplex : NoId;
+        if (last - first > 2)
+        {
+          overfull[block].push_back(record->Simplex / 4);
+        }
+      }
+    };
+    for (std::size_t point = begin; point < end; ++point)
     {
-      overfull.push_back(facet->Source / 4);
+      incidence.ForEachFacet(static_cast<Id>(point), scratch, join);
     }
+  };
+  ParallelLoop(mesh.Points.size(), loop, {}, "", build);
+  std::vector<Id> cells;
+  for (const std::vector<Id>& ofBlock : overfull)
+  {
+    cells.insert(cells.end(), ofBlock.begin(), ofBlock.end());
   }
-  if (!overfull.empty())
+  if (!cells.empty())
   {
-    std::sort(overfull.begin(), overfull.end());
-    overfull.erase(std::unique(overfull.begin(), overfull.end()), overfull.end());
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     return Status::InvalidInput(
-      std::to_string(overfull.size()) + " tetrahedra share a facet with more than one other.",
-      overfull);
+      std::to_string(cells.size()) + " tetrahedra share a facet with more than one other.", cells);
   }
   return {};
 }

@@ -109,8 +109,11 @@ Status CheckTetMesh(const TetMesh& mesh, const TriangleMesh* boundary,
  */
 Status CheckMeshInvariants(const TetMesh& mesh);
 
-/** Neighbors of tetrahedra from their vertices alone; for meshes that come from outside. */
-Status BuildNeighbors(TetMesh& mesh);
+/**
+ * Neighbors of tetrahedra from their vertices alone; for meshes that come from outside. Threads: 0:
+ * one for each processor core. No check: it takes SimplexIncidence.h.
+ */
+Status BuildNeighbors(TetMesh& mesh, int numberOfThreads = 0);
 } // namespace cdm
 
 #endif

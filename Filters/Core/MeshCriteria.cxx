@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshCriteria.h"
 
+#include "IdLimits.h"
 #include "Measures.h"
 #include "ParallelLoop.h"
+#include "ParallelSort.h"
 #include "Predicates.h"
 #include "SimplexIncidence.h"
 #include "SphereCriteria.h"
@@ -12,6 +14,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <iterator>
 #include <limits>
 
 namespace cdm
@@ -26,9 +30,6 @@ constexpr double ProductError = 1e-14;
 
 /** Tangent of one degree: facets of a border that bend by less go straight on. */
 constexpr double SmoothTangent = 0.017455064928217585;
-
-/** 6 * tetrahedron + i has to fit into an Id. */
-constexpr std::size_t MaximumNumberOfTetrahedra = std::numeric_limits<Id>::max() / 6;
 
 /** An outer or interface facet. */
 struct BorderFacet
@@ -50,6 +51,16 @@ struct BorderEdge
   {
     return a.Points != b.Points ? a.Points < b.Points : a.Facet < b.Facet;
   }
+};
+
+/** What a block of tetrahedra has to say about their angles. */
+struct BlockAngles
+{
+  std::vector<MeshViolation> Violations;
+  Id Under5Degrees = 0;
+  Id Under10Degrees = 0;
+  double Smallest = 180.0;
+  double Largest = 0.0;
 };
 
 /** What a block of points finds; joined in the order of the blocks. */
@@ -88,7 +99,7 @@ class Evaluator
 public:
   Evaluator(const TetMesh& mesh, const TriangleMesh* boundary, const MeshCriteriaOptions& options,
     MeshCriteriaReport& report)
-    : Mesh(mesh), Boundary(boundary), Report(report)
+    : Mesh(mesh), Boundary(boundary), Report(report), Incidence(mesh, options.NumberOfThreads)
   {
     this->LoopOptions.NumberOfThreads = options.NumberOfThreads;
   }
@@ -97,13 +108,15 @@ public:
 
 private:
   bool EvaluateTetrahedra(const SphereCriteria& criteria, const ExecutionContext& context);
+  void AddTetrahedron(Id tetrahedron, BlockAngles& block) const;
   bool EvaluateFacets(const SphereCriteria& criteria, const ExecutionContext& context);
   void CollectBorderEdges();
   bool EvaluateStructuralEdges(const SphereCriteria& criteria, const ExecutionContext& context);
   bool EvaluateEdges(const ExecutionContext& context);
-  void CountCoincidentPoints();
+  bool CountCoincidentPoints(const ExecutionContext& context);
+  std::vector<Id> FindRegions() const;
   void CompareVolumes();
-  void Finish();
+  bool Finish(const ExecutionContext& context);
 
   using Records = std::vector<SimplexIncidence::Record>;
   using RecordIterator = Records::const_iterator;
@@ -115,7 +128,8 @@ private:
   bool HasNegativeCoupling(
     const EdgeIds& edge, RecordIterator begin, RecordIterator end, Id region) const;
 
-  void Join(const std::vector<BlockResult>& results);
+  template <typename Block>
+  void Join(const std::vector<Block>& blocks);
   MeshViolation MakeViolation(MeshFault fault, Id tetrahedron) const
   {
     return { fault, this->Mesh.Tetrahedra[tetrahedron], tetrahedron,
@@ -131,6 +145,7 @@ private:
   const TetMesh& Mesh;
   const TriangleMesh* Boundary;
   MeshCriteriaReport& Report;
+  SimplexIncidence Incidence;
   ParallelLoopOptions LoopOptions;
   /** Exact signs. */
   std::vector<signed char> Orientations;
@@ -150,43 +165,41 @@ Status Evaluator::Run(const ExecutionContext& context)
 {
   this->Report.Tetrahedra = static_cast<Id>(this->Mesh.Tetrahedra.size());
   this->Report.Points = static_cast<Id>(this->Mesh.Points.size());
-  this->CountCoincidentPoints();
-  const SphereCriteria criteria(this->Mesh.Points);
+  if (!this->CountCoincidentPoints(context.Part(0.0, 0.03)))
+  {
+    return Status::Aborted();
+  }
+  const SphereCriteria criteria(this->Mesh.Points, this->LoopOptions.NumberOfThreads);
   if (!this->EvaluateTetrahedra(criteria, context.Part(0.05, 0.6)) ||
     !this->EvaluateFacets(criteria, context.Part(0.6, 0.75)) ||
     !this->EvaluateStructuralEdges(criteria, context.Part(0.75, 0.8)) ||
-    !this->EvaluateEdges(context.Part(0.8, 1.0)))
+    !this->EvaluateEdges(context.Part(0.8, 0.98)))
   {
     return Status::Aborted();
   }
   this->CompareVolumes();
-  this->Finish();
-  return {};
+  return this->Finish(context.Part(0.99, 1.0)) ? Status() : Status::Aborted();
 }
 
-void Evaluator::CountCoincidentPoints()
+bool Evaluator::CountCoincidentPoints(const ExecutionContext& context)
 {
-  const std::vector<Vec3>& points = this->Mesh.Points;
-  std::vector<char> isUsed(points.size(), 0);
-  for (const TetrahedronIds& tetrahedron : this->Mesh.Tetrahedra)
+  std::vector<Vec3> used;
+  used.reserve(this->Mesh.Points.size());
+  for (std::size_t point = 0; point < this->Mesh.Points.size(); ++point)
   {
-    for (const Id point : tetrahedron)
+    if (this->Incidence.IsUsed(static_cast<Id>(point)))
     {
-      isUsed[point] = 1;
+      used.push_back(this->Mesh.Points[point]);
     }
   }
-  std::vector<Vec3> sorted;
-  sorted.reserve(points.size());
-  for (std::size_t point = 0; point < points.size(); ++point)
+  if (!ParallelSort(used, this->LoopOptions.NumberOfThreads, context, "Looking for equal points",
+        std::less<Vec3>()))
   {
-    if (isUsed[point])
-    {
-      sorted.push_back(points[point]);
-    }
+    return false;
   }
-  std::sort(sorted.begin(), sorted.end());
   this->Report.CoincidentPoints =
-    static_cast<Id>(sorted.end() - std::unique(sorted.begin(), sorted.end()));
+    static_cast<Id>(used.end() - std::unique(used.begin(), used.end()));
+  return true;
 }
 
 bool Evaluator::EvaluateTetrahedra(const SphereCriteria& criteria, const ExecutionContext& context)
@@ -195,7 +208,8 @@ bool Evaluator::EvaluateTetrahedra(const SphereCriteria& criteria, const Executi
   this->Orientations.resize(count);
   this->IsDelaunay.resize(count);
   this->Report.Qualities.resize(count);
-  const auto evaluate = [&](std::size_t begin, std::size_t end, std::size_t)
+  std::vector<BlockAngles> blocks(GetNumberOfBlocks(count, this->LoopOptions));
+  const auto evaluate = [&](std::size_t begin, std::size_t end, std::size_t block)
   {
     for (std::size_t i = begin; i < end; ++i)
     {
@@ -210,33 +224,42 @@ bool Evaluator::EvaluateTetrahedra(const SphereCriteria& criteria, const Executi
         std::swap(ids[0], ids[1]);
       }
       this->IsDelaunay[i] = orientation != 0 && criteria.IsDelaunay(ids);
+      this->AddTetrahedron(static_cast<Id>(i), blocks[block]);
     }
   };
   if (!ParallelLoop(count, this->LoopOptions, context, "Evaluating tetrahedra", evaluate))
   {
     return false;
   }
-  for (Id i = 0; i < static_cast<Id>(count); ++i)
+  this->Join(blocks);
+  for (const BlockAngles& block : blocks)
   {
-    const int orientation = this->Orientations[i];
-    if (orientation <= 0)
-    {
-      this->Report.Violations.push_back(this->MakeViolation(
-        orientation < 0 ? MeshFault::InvertedTetrahedron : MeshFault::FlatTetrahedron, i));
-    }
-    if (orientation != 0 && !this->IsDelaunay[i])
-    {
-      this->Report.Violations.push_back(this->MakeViolation(MeshFault::NonDelaunayTetrahedron, i));
-    }
-    const TetrahedronQuality& quality = this->Report.Qualities[i];
-    this->Report.Under5Degrees += quality.SmallestDihedralAngle < 5.0;
-    this->Report.Under10Degrees += quality.SmallestDihedralAngle < 10.0;
+    this->Report.Under5Degrees += block.Under5Degrees;
+    this->Report.Under10Degrees += block.Under10Degrees;
     this->Report.SmallestDihedralAngle =
-      std::min(this->Report.SmallestDihedralAngle, quality.SmallestDihedralAngle);
-    this->Report.LargestDihedralAngle =
-      std::max(this->Report.LargestDihedralAngle, quality.LargestDihedralAngle);
+      std::min(this->Report.SmallestDihedralAngle, block.Smallest);
+    this->Report.LargestDihedralAngle = std::max(this->Report.LargestDihedralAngle, block.Largest);
   }
   return true;
+}
+
+void Evaluator::AddTetrahedron(Id tetrahedron, BlockAngles& block) const
+{
+  const int orientation = this->Orientations[tetrahedron];
+  if (orientation <= 0)
+  {
+    block.Violations.push_back(this->MakeViolation(
+      orientation < 0 ? MeshFault::InvertedTetrahedron : MeshFault::FlatTetrahedron, tetrahedron));
+  }
+  if (orientation != 0 && !this->IsDelaunay[tetrahedron])
+  {
+    block.Violations.push_back(this->MakeViolation(MeshFault::NonDelaunayTetrahedron, tetrahedron));
+  }
+  const TetrahedronQuality& quality = this->Report.Qualities[tetrahedron];
+  block.Under5Degrees += quality.SmallestDihedralAngle < 5.0;
+  block.Under10Degrees += quality.SmallestDihedralAngle < 10.0;
+  block.Smallest = std::min(block.Smallest, quality.SmallestDihedralAngle);
+  block.Largest = std::max(block.Largest, quality.LargestDihedralAngle);
 }
 
 void Evaluator::EvaluateFacet(const SphereCriteria& criteria, const TriangleIds& points,
@@ -306,14 +329,13 @@ void Evaluator::EvaluateFacet(const SphereCriteria& criteria, const TriangleIds&
 
 bool Evaluator::EvaluateFacets(const SphereCriteria& criteria, const ExecutionContext& context)
 {
-  const SimplexIncidence incidence = SimplexIncidence::OfFacets(this->Mesh);
   std::vector<BlockResult> results(GetNumberOfBlocks(this->Mesh.Points.size(), this->LoopOptions));
   const auto evaluate = [&](std::size_t begin, std::size_t end, std::size_t block)
   {
     Records scratch;
     for (std::size_t point = begin; point < end; ++point)
     {
-      incidence.ForEachGroup(static_cast<Id>(point), scratch,
+      this->Incidence.ForEachFacet(static_cast<Id>(point), scratch,
         [&](const TriangleIds& points, RecordIterator first, RecordIterator last)
         { this->EvaluateFacet(criteria, points, first, last, results[block]); });
     }
@@ -493,14 +515,13 @@ void Evaluator::EvaluateEdge(
 
 bool Evaluator::EvaluateEdges(const ExecutionContext& context)
 {
-  const SimplexIncidence incidence = SimplexIncidence::OfEdges(this->Mesh);
   std::vector<BlockResult> results(GetNumberOfBlocks(this->Mesh.Points.size(), this->LoopOptions));
   const auto evaluate = [&](std::size_t begin, std::size_t end, std::size_t block)
   {
     Records scratch;
     for (std::size_t point = begin; point < end; ++point)
     {
-      incidence.ForEachGroup(static_cast<Id>(point), scratch,
+      this->Incidence.ForEachEdge(static_cast<Id>(point), scratch,
         [&](const TriangleIds& points, RecordIterator first, RecordIterator last) {
           this->EvaluateEdge({ points[0], points[1] }, first, last, results[block]);
         });
@@ -520,20 +541,36 @@ bool Evaluator::EvaluateEdges(const ExecutionContext& context)
   return true;
 }
 
-void Evaluator::Join(const std::vector<BlockResult>& results)
+template <typename Block>
+void Evaluator::Join(const std::vector<Block>& blocks)
 {
-  for (const BlockResult& result : results)
+  for (const Block& block : blocks)
   {
     this->Report.Violations.insert(
-      this->Report.Violations.end(), result.Violations.begin(), result.Violations.end());
+      this->Report.Violations.end(), block.Violations.begin(), block.Violations.end());
   }
 }
 
-void Evaluator::CompareVolumes()
+std::vector<Id> Evaluator::FindRegions() const
 {
-  std::vector<Id> ids = this->Mesh.Regions;
-  const bool hasLabels = this->Boundary != nullptr && !this->Boundary->Labels.empty();
-  if (hasLabels)
+  // Few, each of many tetrahedra in a row.
+  std::vector<std::vector<Id>> blocks(
+    GetNumberOfBlocks(this->Mesh.Regions.size(), this->LoopOptions));
+  const auto find = [&](std::size_t begin, std::size_t end, std::size_t block)
+  {
+    std::vector<Id>& ids = blocks[block];
+    std::unique_copy(this->Mesh.Regions.begin() + begin, this->Mesh.Regions.begin() + end,
+      std::back_inserter(ids));
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  };
+  ParallelLoop(this->Mesh.Regions.size(), this->LoopOptions, {}, "", find);
+  std::vector<Id> ids;
+  for (const std::vector<Id>& block : blocks)
+  {
+    ids.insert(ids.end(), block.begin(), block.end());
+  }
+  if (this->Boundary != nullptr)
   {
     for (const RegionPair& labels : this->Boundary->Labels)
     {
@@ -543,7 +580,13 @@ void Evaluator::CompareVolumes()
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   ids.erase(std::remove(ids.begin(), ids.end(), OutsideRegion), ids.end());
+  return ids;
+}
 
+void Evaluator::CompareVolumes()
+{
+  const std::vector<Id> ids = this->FindRegions();
+  const bool hasLabels = this->Boundary != nullptr && !this->Boundary->Labels.empty();
   struct Sums
   {
     CompensatedSum Volume;
@@ -558,12 +601,35 @@ void Evaluator::CompareVolumes()
     const auto found = std::lower_bound(ids.begin(), ids.end(), region);
     return found != ids.end() && *found == region ? &sums[found - ids.begin()] : nullptr;
   };
-  for (Id i = 0; i < static_cast<Id>(this->Mesh.Tetrahedra.size()); ++i)
+  // Blocks of a size that depends on the mesh only, with a sum of each region for each.
+  struct BlockSum
   {
-    Sums& region = *find(this->Mesh.Regions[i]);
-    const auto [a, b, c, d] = this->GetCorners(i);
-    ++region.Tetrahedra;
-    region.Volume.Add(GetSixVolumes(a, b, c, d) / 6.0L);
+    CompensatedSum Volume;
+    Id Tetrahedra = 0;
+  };
+  ParallelLoopOptions loop = this->LoopOptions;
+  loop.BlockSize = std::max<std::size_t>(std::size_t(1) << 14, 16 * ids.size());
+  const std::size_t count = this->Mesh.Tetrahedra.size();
+  std::vector<std::vector<BlockSum>> blocks(GetNumberOfBlocks(count, loop));
+  const auto sumBlock = [&](std::size_t begin, std::size_t end, std::size_t block)
+  {
+    blocks[block].resize(ids.size());
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      BlockSum& sum = blocks[block][find(this->Mesh.Regions[i]) - sums.data()];
+      const auto [a, b, c, d] = this->GetCorners(static_cast<Id>(i));
+      ++sum.Tetrahedra;
+      sum.Volume.Add(GetSixVolumes(a, b, c, d) / 6.0L);
+    }
+  };
+  ParallelLoop(count, loop, {}, "", sumBlock);
+  for (const std::vector<BlockSum>& block : blocks)
+  {
+    for (std::size_t i = 0; i < ids.size(); ++i)
+    {
+      sums[i].Volume.Add(block[i].Volume);
+      sums[i].Tetrahedra += block[i].Tetrahedra;
+    }
   }
   const auto addFacet =
     [&](Id region, const TriangleIds& ids3, const std::vector<Vec3>& points, long double share)
@@ -606,7 +672,7 @@ void Evaluator::CompareVolumes()
   }
 }
 
-void Evaluator::Finish()
+bool Evaluator::Finish(const ExecutionContext& context)
 {
   std::vector<MeshViolation>& violations = this->Report.Violations;
   for (std::size_t i = 0; i < this->StructuralEdges.size(); ++i)
@@ -617,14 +683,18 @@ void Evaluator::Finish()
       violations.push_back({ MeshFault::EdgeSphere, { edge[0], edge[1], NoId, NoId }, NoId, NoId });
     }
   }
-  std::sort(violations.begin(), violations.end(),
-    [](const MeshViolation& a, const MeshViolation& b)
-    {
-      return a.Fault != b.Fault ? a.Fault < b.Fault
-        : a.Points != b.Points  ? a.Points < b.Points
-        : a.Region != b.Region  ? a.Region < b.Region
-                                : a.Tetrahedron < b.Tetrahedron;
-    });
+  const auto isBefore = [](const MeshViolation& a, const MeshViolation& b)
+  {
+    return a.Fault != b.Fault ? a.Fault < b.Fault
+      : a.Points != b.Points  ? a.Points < b.Points
+      : a.Region != b.Region  ? a.Region < b.Region
+                              : a.Tetrahedron < b.Tetrahedron;
+  };
+  if (!ParallelSort(
+        violations, this->LoopOptions.NumberOfThreads, context, "Sorting violations", isBefore))
+  {
+    return false;
+  }
   // A circumcenter can lie beyond two facets.
   violations.erase(std::unique(violations.begin(), violations.end(),
                      [](const MeshViolation& a, const MeshViolation& b)
@@ -637,6 +707,7 @@ void Evaluator::Finish()
   {
     ++this->Report.Faults[static_cast<int>(violation.Fault)];
   }
+  return true;
 }
 
 std::string Format(const char* format, double value)
@@ -738,12 +809,11 @@ Status EvaluateMeshCriteria(const TetMesh& mesh, const TriangleMesh* boundary,
   const MeshCriteriaOptions& options, const ExecutionContext& context, MeshCriteriaReport& report)
 {
   report = {};
-  if (mesh.Tetrahedra.size() > MaximumNumberOfTetrahedra)
+  Status status = CheckNumberOfTetrahedra(mesh.Tetrahedra.size());
+  if (status.IsOk())
   {
-    return Status::InvalidInput("The mesh has more than " +
-      std::to_string(MaximumNumberOfTetrahedra) + " tetrahedra: split it.");
+    status = CheckMeshInput(mesh, boundary);
   }
-  const Status status = CheckMeshInput(mesh, boundary);
   return status.IsOk() ? Evaluator(mesh, boundary, options, report).Run(context) : status;
 }
 } // namespace cdm

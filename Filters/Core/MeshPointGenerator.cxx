@@ -3,6 +3,8 @@
 
 #include "DelaunaySurfaceRefiner.h"
 #include "Measures.h"
+#include "ParallelLoop.h"
+#include "ParallelSort.h"
 #include "PointOctree.h"
 #include "RegionLocator.h"
 #include "SizingOctree.h"
@@ -46,6 +48,9 @@ constexpr double DartDistance = 0.62;
 constexpr int DartsPerLeaf = 12;
 /** Of Lloyd's iteration: about 60 samples for each point. */
 constexpr int SamplesAlongLeaf = 3;
+
+/** Darts, and leaves of Lloyd's iteration, whose random numbers are drawn before threads share them. */
+constexpr std::size_t BatchSize = 4096;
 
 /** Points of layers that are nearer, in spacings, are the same up to rounding. */
 constexpr double SmallestDistance = 1e-6;
@@ -152,12 +157,41 @@ private:
   Status PlaceOctree();
   Status PlaceOrthoProduct();
   Status PlaceRandom();
+  struct SmoothingCell
+  {
+    const SizingOctree::Leaf* Leaf;
+    LocalSpacing Spacing;
+    /** Of a sample: a density of h^-5 gives a spacing of h. */
+    double Mass;
+    /** No sample is near the boundary or layers. */
+    bool IsInside;
+  };
+
   Status Smooth(const ExecutionContext& context);
+  SmoothingCell MakeSmoothingCell(const SizingOctree::Leaf& leaf) const;
+  /** One iteration. */
+  bool MoveToCenters(const std::vector<SmoothingCell>& cells, const ExecutionContext& context);
   std::vector<double> FindTicks(int axis) const;
+
+  struct PlacedPoint
+  {
+    Vec3 Position;
+    Id Region;
+  };
 
   /** The region of a point that may stay, or OutsideRegion; the known one may be MixedRegion. */
   Id FindRegion(const Vec3& position, const LocalSpacing& spacing, Id known) const;
-  Status Add(const Vec3& position, const LocalSpacing& spacing, Id known);
+  /** To the points of a block of candidates, if it may stay. */
+  void Place(const Vec3& position, const LocalSpacing& spacing, Id known,
+    std::vector<PlacedPoint>& placed) const;
+  /** place(i, placed) for each candidate, on all threads; adds what is placed in their order. */
+  template <typename Function>
+  Status PlaceAll(std::size_t count, const ExecutionContext& context, Function&& place);
+  Status Add(const PlacedPoint& point);
+  ParallelLoopOptions GetLoop(std::size_t blockSize) const
+  {
+    return { this->Options.NumberOfThreads, blockSize };
+  }
 
   double GetUniform() { return (this->Random() >> 11) * 0x1.0p-53; }
   Vec3 GetRandomPosition(const SizingOctree::Leaf& leaf, int part, int parts);
@@ -206,19 +240,51 @@ Id Generator::FindRegion(const Vec3& position, const LocalSpacing& spacing, Id k
   return region;
 }
 
-Status Generator::Add(const Vec3& position, const LocalSpacing& spacing, Id known)
+void Generator::Place(const Vec3& position, const LocalSpacing& spacing, Id known,
+  std::vector<PlacedPoint>& placed) const
 {
   const Id region = this->FindRegion(position, spacing, known);
-  if (region == OutsideRegion)
+  if (region != OutsideRegion)
   {
-    return {};
+    placed.push_back({ position, region });
   }
+}
+
+template <typename Function>
+Status Generator::PlaceAll(std::size_t count, const ExecutionContext& context, Function&& place)
+{
+  const ParallelLoopOptions loop = this->GetLoop(1024);
+  std::vector<std::vector<PlacedPoint>> blocks(GetNumberOfBlocks(count, loop));
+  const auto placeBlock = [&](std::size_t begin, std::size_t end, std::size_t block)
+  {
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      place(i, blocks[block]);
+    }
+  };
+  if (!ParallelLoop(count, loop, context, "Placing points", placeBlock))
+  {
+    return Status::Aborted();
+  }
+  Status status;
+  for (const std::vector<PlacedPoint>& block : blocks)
+  {
+    for (auto point = block.begin(); point != block.end() && status.IsOk(); ++point)
+    {
+      status = this->Add(*point);
+    }
+  }
+  return status;
+}
+
+Status Generator::Add(const PlacedPoint& point)
+{
   if (static_cast<Id>(this->Output.Points.size()) >= this->Options.MaximumNumberOfPoints)
   {
     return MakeTooManyPoints(this->Options.MaximumNumberOfPoints);
   }
-  this->Output.Points.push_back(position);
-  this->Output.Regions.push_back(region);
+  this->Output.Points.push_back(point.Position);
+  this->Output.Regions.push_back(point.Region);
   this->Output.Layers.push_back(0);
   return {};
 }
@@ -300,24 +366,41 @@ Status Generator::PlaceLayers(const PointLayers& layers, const std::vector<Layer
   others.Insert(this->Output.Points);
   for (Id number = 1; number <= layers.NumberOfLayers; ++number)
   {
-    if (!this->Context.Continue(0.25, "Placing layers"))
+    const double distance = GetLayerDistance(layers, number);
+    const double gap = distance - GetLayerDistance(layers, number - 1);
+    const auto getPosition = [distance](const LayerFoot& foot)
+    { return foot.Position + distance * foot.Direction; };
+    const auto getSpacing = [gap](const LayerFoot& foot)
+    {
+      return LocalSpacing(
+        (1.0 / Norm(foot.Direction)) * foot.Direction, gap, std::max(gap, foot.Edge));
+    };
+    std::vector<char> isClear(feet.size());
+    const auto test = [&](std::size_t begin, std::size_t end, std::size_t)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        const Vec3 position = getPosition(feet[i]);
+        isClear[i] = this->Locator.IsClear(position, getSpacing(feet[i]), clearance) &&
+          this->Locator.IsClear(
+            position, 1.0, (1.0 - 1e-9) * distance, { layers.Region, layers.Neighbor }) &&
+          this->Locator.Locate(position) == layers.Region;
+      }
+    };
+    if (!ParallelLoop(
+          feet.size(), this->GetLoop(64), this->Context.Part(0.25, 0.25), "Placing layers", test))
     {
       return Status::Aborted();
     }
-    const double distance = GetLayerDistance(layers, number);
-    const double gap = distance - GetLayerDistance(layers, number - 1);
-    for (const LayerFoot& foot : feet)
+    for (std::size_t i = 0; i < feet.size(); ++i)
     {
-      const Vec3 position = foot.Position + distance * foot.Direction;
-      const LocalSpacing spacing(
-        (1.0 / Norm(foot.Direction)) * foot.Direction, gap, std::max(gap, foot.Edge));
-      NearestInUnits nearest(position, spacing, std::max(clearance, SmallestDistance));
-      others.Visit(nearest);
-      const bool stays = nearest.Found == NoId &&
-        this->Locator.IsClear(position, spacing, clearance) &&
-        this->Locator.IsClear(
-          position, 1.0, (1.0 - 1e-9) * distance, { layers.Region, layers.Neighbor }) &&
-        this->Locator.Locate(position) == layers.Region;
+      const Vec3 position = getPosition(feet[i]);
+      NearestInUnits nearest(position, getSpacing(feet[i]), std::max(clearance, SmallestDistance));
+      if (isClear[i])
+      {
+        others.Visit(nearest);
+      }
+      const bool stays = isClear[i] && nearest.Found == NoId;
       if (stays)
       {
         others.Insert(static_cast<Id>(this->Output.Points.size()), position);
@@ -325,7 +408,7 @@ Status Generator::PlaceLayers(const PointLayers& layers, const std::vector<Layer
         this->Output.Regions.push_back(layers.Region);
         this->Output.Layers.push_back(number);
       }
-      this->Output.DroppedLayerPoints += !stays && !foot.IsRim;
+      this->Output.DroppedLayerPoints += !stays && !feet[i].IsRim;
     }
   }
   return {};
@@ -340,8 +423,10 @@ Status Generator::PlaceLayers()
   DelaunaySurfaceRefinerInput input;
   input.Surface = this->Input.Surface;
   input.Sizing = this->Input.Sizing;
+  DelaunaySurfaceRefinerOptions options;
+  options.NumberOfThreads = this->Options.NumberOfThreads;
   DelaunaySurfaceRefinerOutput refined;
-  Status status = RefineDelaunaySurface(input, {}, this->Context.Part(0.05, 0.25), refined);
+  Status status = RefineDelaunaySurface(input, options, this->Context.Part(0.05, 0.25), refined);
   for (const PointLayers& layers : this->Options.Layers)
   {
     this->LayerHeights.push_back(GetLayerDistance(layers, layers.NumberOfLayers));
@@ -370,6 +455,7 @@ Status Generator::BuildOctree(double ratio, const ExecutionContext& context)
   options.MaximumRatio = ratio;
   options.MaximumLevelDifference = this->Options.MaximumLevelDifference;
   options.MaximumNumberOfLeaves = this->Options.MaximumNumberOfPoints;
+  options.NumberOfThreads = this->Options.NumberOfThreads;
   return this->Octree.Build(this->Locator, this->Input.Sizing, options, context);
 }
 
@@ -390,59 +476,69 @@ Status Generator::PlaceOctree()
     Id Region;
   };
   constexpr int KeyBits = 21;
-  std::vector<Entry> entries;
   const auto places = GetTemplatePoints(this->Options.Template);
+  std::vector<const SizingOctree::Leaf*> leaves;
   for (const SizingOctree::Leaf& leaf : this->Octree.GetLeaves())
   {
-    for (const std::array<int, 3>& place : places)
+    if (leaf.Region != OutsideRegion)
     {
-      Entry entry{ 0, leaf.Size, leaf.Region };
-      for (int axis = 2; axis >= 0; --axis)
-      {
-        const std::uint64_t units =
-          2ull * leaf.Low[axis] + std::uint64_t(place[axis]) * leaf.Size[axis];
-        entry.Key = (entry.Key << KeyBits) | units;
-      }
-      if (leaf.Region != OutsideRegion)
-      {
-        entries.push_back(entry);
-      }
+      leaves.push_back(&leaf);
     }
   }
-  std::sort(
-    entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.Key < b.Key; });
-  const double scale = 1.0 / GetLatticeConstant(this->Options.Template);
-  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end)
+  RawVector<Entry> entries(leaves.size() * places.size());
+  const auto makeEntries = [&](std::size_t begin, std::size_t end, std::size_t)
   {
-    if (begin % 1024 == 0 &&
-      !this->Context.Continue(0.6 + 0.4 * begin / entries.size(), "Placing points"))
+    for (std::size_t i = begin; i < end; ++i)
     {
-      return Status::Aborted();
+      const SizingOctree::Leaf& leaf = *leaves[i];
+      for (std::size_t j = 0; j < places.size(); ++j)
+      {
+        Entry entry{ 0, leaf.Size, leaf.Region };
+        for (int axis = 2; axis >= 0; --axis)
+        {
+          const std::uint64_t units =
+            2ull * leaf.Low[axis] + std::uint64_t(places[j][axis]) * leaf.Size[axis];
+          entry.Key = (entry.Key << KeyBits) | units;
+        }
+        entries[i * places.size() + j] = entry;
+      }
     }
-    Entry entry = entries[begin];
-    for (end = begin; end < entries.size() && entries[end].Key == entry.Key; ++end)
+  };
+  const char* const activity = "Placing points";
+  if (!ParallelLoop(
+        leaves.size(), this->GetLoop(1024), this->Context.Part(0.6, 0.62), activity, makeEntries) ||
+    !ParallelSort(entries, this->Options.NumberOfThreads, this->Context.Part(0.62, 0.7), activity,
+      [](const Entry& a, const Entry& b) { return a.Key < b.Key; }))
+  {
+    return Status::Aborted();
+  }
+  const double scale = 1.0 / GetLatticeConstant(this->Options.Template);
+  return this->PlaceAll(entries.size(), this->Context.Part(0.7, 1.0),
+    [&](std::size_t begin, std::vector<PlacedPoint>& placed)
     {
+      Entry entry = entries[begin];
+      if (begin > 0 && entries[begin - 1].Key == entry.Key)
+      {
+        return;
+      }
+      for (std::size_t i = begin; i < entries.size() && entries[i].Key == entry.Key; ++i)
+      {
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          entry.Size[axis] = std::min(entry.Size[axis], entries[i].Size[axis]);
+        }
+        entry.Region = std::max(entry.Region, entries[i].Region);
+      }
+      Vec3 units;
       for (int axis = 0; axis < 3; ++axis)
       {
-        entry.Size[axis] = std::min(entry.Size[axis], entries[end].Size[axis]);
+        constexpr std::uint64_t mask = (1ull << KeyBits) - 1;
+        units[axis] = 0.5 * ((entry.Key >> (KeyBits * axis)) & mask);
       }
-      entry.Region = std::max(entry.Region, entries[end].Region);
-    }
-    Vec3 units;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      constexpr std::uint64_t mask = (1ull << KeyBits) - 1;
-      units[axis] = 0.5 * ((entry.Key >> (KeyBits * axis)) & mask);
-    }
-    const SizingOctree::Leaf cell{ {}, entry.Size, {}, entry.Region };
-    status = this->Add(this->Octree.GetPosition(units),
-      LocalSpacing(scale * this->Octree.GetEdges(cell)), entry.Region);
-    if (!status.IsOk())
-    {
-      return status;
-    }
-  }
-  return {};
+      const SizingOctree::Leaf cell{ {}, entry.Size, {}, entry.Region };
+      this->Place(this->Octree.GetPosition(units),
+        LocalSpacing(scale * this->Octree.GetEdges(cell)), entry.Region, placed);
+    });
 }
 
 /** Ticks so that each distance is about the smallest spacing of the leaves that it crosses. */
@@ -530,9 +626,20 @@ Status Generator::PlaceOrthoProduct()
     }
   }
   double numberOfCells = 1.0;
+  const auto findTicks = [&](std::size_t axis, std::size_t, std::size_t)
+  {
+    if (ticks[axis].empty())
+    {
+      ticks[axis] = this->FindTicks(static_cast<int>(axis));
+    }
+  };
+  if (!ParallelLoop(
+        3, this->GetLoop(1), this->Context.Part(0.6, 0.65), "Placing planes", findTicks))
+  {
+    return Status::Aborted();
+  }
   for (int axis = 0; axis < 3; ++axis)
   {
-    ticks[axis] = ticks[axis].empty() ? this->FindTicks(axis) : ticks[axis];
     std::sort(ticks[axis].begin(), ticks[axis].end());
     ticks[axis].erase(std::unique(ticks[axis].begin(), ticks[axis].end()), ticks[axis].end());
     numberOfCells *= static_cast<double>(ticks[axis].size());
@@ -558,37 +665,26 @@ Status Generator::PlaceOrthoProduct()
   const double scale = 1.0 / GetLatticeConstant(kind);
   const std::size_t counts[3] = { 2 * ticks[0].size() - 1, 2 * ticks[1].size() - 1,
     2 * ticks[2].size() - 1 };
-  for (std::size_t z = 0; z < counts[2]; ++z)
-  {
-    if (!this->Context.Continue(0.6 + 0.4 * z / counts[2], "Placing points"))
+  const double largest = Distance(this->Locator.GetLow(), this->Locator.GetHigh());
+  return this->PlaceAll(counts[0] * counts[1] * counts[2], this->Context.Part(0.65, 1.0),
+    [&](std::size_t i, std::vector<PlacedPoint>& placed)
     {
-      return Status::Aborted();
-    }
-    for (std::size_t y = 0; y < counts[1]; ++y)
-    {
-      for (std::size_t x = 0; x < counts[0]; ++x)
+      const std::size_t halves[3] = { i % counts[0], i / counts[0] % counts[1],
+        i / counts[0] / counts[1] };
+      if (!HasTemplatePoint(kind, static_cast<int>(halves[0] % 2 + halves[1] % 2 + halves[2] % 2)))
       {
-        if (!HasTemplatePoint(kind, static_cast<int>(x % 2 + y % 2 + z % 2)))
-        {
-          continue;
-        }
-        Vec3 gaps{ getGap(0, x), getGap(1, y), getGap(2, z) };
-        const double largest = Distance(this->Locator.GetLow(), this->Locator.GetHigh());
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          // A single tick has no neighbor.
-          gaps[axis] = std::min(gaps[axis], largest);
-        }
-        const Status status = this->Add({ getPosition(0, x), getPosition(1, y), getPosition(2, z) },
-          LocalSpacing(scale * gaps), SizingOctree::MixedRegion);
-        if (!status.IsOk())
-        {
-          return status;
-        }
+        return;
       }
-    }
-  }
-  return {};
+      Vec3 position;
+      Vec3 gaps;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        position[axis] = getPosition(axis, halves[axis]);
+        // A single tick has no neighbor.
+        gaps[axis] = std::min(getGap(axis, halves[axis]), largest);
+      }
+      this->Place(position, LocalSpacing(scale * gaps), SizingOctree::MixedRegion, placed);
+    });
 }
 
 /** In one of parts^3 parts of a leaf. */
@@ -622,35 +718,62 @@ Status Generator::PlaceRandom()
   PointOctree points;
   points.Insert(this->Output.Points);
   const double steps = static_cast<double>(order.size()) * DartsPerLeaf;
+  struct Dart
+  {
+    Vec3 Position;
+    LocalSpacing Spacing = 1.0;
+    /** Where it may stay, as far as it does not meet others of its batch. */
+    Id Region = OutsideRegion;
+  };
+  std::vector<Dart> darts;
+  const auto isNearOther = [&points](const Dart& dart)
+  {
+    NearestInUnits nearest(dart.Position, dart.Spacing, DartDistance);
+    points.Visit(nearest);
+    return nearest.Found != NoId;
+  };
   for (int round = 0; round < DartsPerLeaf; ++round)
   {
     for (std::size_t i = order.size(); i > 1; --i)
     {
       std::swap(order[i - 1], order[this->Random() % i]);
     }
-    for (std::size_t i = 0; i < order.size(); ++i)
+    for (std::size_t first = 0; first < order.size(); first += BatchSize)
     {
-      if (i % 256 == 0 &&
-        !this->Context.Continue(
-          0.35 + 0.25 * (round * double(order.size()) + i) / steps, "Throwing darts"))
+      darts.resize(std::min(BatchSize, order.size() - first));
+      for (std::size_t i = 0; i < darts.size(); ++i)
+      {
+        darts[i].Position = this->GetRandomPosition(leaves[order[first + i]], 0, 1);
+      }
+      const auto test = [&](std::size_t begin, std::size_t end, std::size_t)
+      {
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          Dart& dart = darts[i];
+          dart.Spacing = this->Input.Sizing(dart.Position);
+          dart.Region = isNearOther(dart)
+            ? OutsideRegion
+            : this->FindRegion(dart.Position, dart.Spacing, leaves[order[first + i]].Region);
+        }
+      };
+      const double done = round * double(order.size()) + first;
+      if (!ParallelLoop(darts.size(), this->GetLoop(64),
+            this->Context.Part(
+              0.35 + 0.25 * done / steps, 0.35 + 0.25 * (done + darts.size()) / steps),
+            "Throwing darts", test))
       {
         return Status::Aborted();
       }
-      const Vec3 position = this->GetRandomPosition(leaves[order[i]], 0, 1);
-      const LocalSpacing spacing = this->Input.Sizing(position);
-      NearestInUnits nearest(position, spacing, DartDistance);
-      points.Visit(nearest);
-      if (nearest.Found == NoId)
+      for (const Dart& dart : darts)
       {
-        const std::size_t before = this->Output.Points.size();
-        status = this->Add(position, spacing, leaves[order[i]].Region);
-        if (!status.IsOk())
+        if (dart.Region != OutsideRegion && !isNearOther(dart))
         {
-          return status;
-        }
-        if (this->Output.Points.size() > before)
-        {
-          points.Insert(static_cast<Id>(before), position);
+          points.Insert(static_cast<Id>(this->Output.Points.size()), dart.Position);
+          status = this->Add({ dart.Position, dart.Region });
+          if (!status.IsOk())
+          {
+            return status;
+          }
         }
       }
     }
@@ -658,74 +781,92 @@ Status Generator::PlaceRandom()
   return this->Smooth(this->Context.Part(0.6, 1.0));
 }
 
-Status Generator::Smooth(const ExecutionContext& context)
+Generator::SmoothingCell Generator::MakeSmoothingCell(const SizingOctree::Leaf& leaf) const
 {
+  const Vec3 low{ double(leaf.Low[0]), double(leaf.Low[1]), double(leaf.Low[2]) };
+  const Vec3 size{ double(leaf.Size[0]), double(leaf.Size[1]), double(leaf.Size[2]) };
+  const LocalSpacing spacing = this->Input.Sizing(this->Octree.GetPosition(low + 0.5 * size));
+  const Vec3 edges = this->Octree.GetEdges(leaf);
+  const Vec3 reach = this->Options.BoundaryClearance * spacing.GetExtents();
+  const bool isInside = leaf.Region >= 0 && this->Options.Layers.empty() &&
+    !this->Locator.MayTouch(
+      this->Octree.GetPosition(low) - reach, this->Octree.GetPosition(low + size) + reach);
+  return { &leaf, spacing, edges.X * edges.Y * edges.Z * std::pow(spacing.GetDensity(), 5.0 / 3.0),
+    isInside };
+}
+
+bool Generator::MoveToCenters(
+  const std::vector<SmoothingCell>& cells, const ExecutionContext& context)
+{
+  constexpr int samplesOfCell = SamplesAlongLeaf * SamplesAlongLeaf * SamplesAlongLeaf;
+  const char* const activity = "Smoothing";
   std::vector<Vec3>& points = this->Output.Points;
-  struct Cell
-  {
-    const SizingOctree::Leaf* Leaf;
-    LocalSpacing Spacing;
-    /** Of a sample: a density of h^-5 gives a spacing of h. */
-    double Mass;
-    /** No sample is near the boundary or layers. */
-    bool IsInside;
-  };
-  std::vector<Cell> cells;
-  for (const SizingOctree::Leaf& leaf : this->Octree.GetLeaves())
-  {
-    if (leaf.Region != OutsideRegion && this->Options.SmoothingIterations > 0)
-    {
-      const Vec3 low{ double(leaf.Low[0]), double(leaf.Low[1]), double(leaf.Low[2]) };
-      const Vec3 size{ double(leaf.Size[0]), double(leaf.Size[1]), double(leaf.Size[2]) };
-      const LocalSpacing spacing = this->Input.Sizing(this->Octree.GetPosition(low + 0.5 * size));
-      const Vec3 edges = this->Octree.GetEdges(leaf);
-      const Vec3 reach = this->Options.BoundaryClearance * spacing.GetExtents();
-      const bool isInside = leaf.Region >= 0 && this->Options.Layers.empty() &&
-        !this->Locator.MayTouch(
-          this->Octree.GetPosition(low) - reach, this->Octree.GetPosition(low + size) + reach);
-      cells.push_back({ &leaf, spacing,
-        edges.X * edges.Y * edges.Z * std::pow(spacing.GetDensity(), 5.0 / 3.0), isInside });
-    }
-  }
+  PointOctree octree;
+  octree.Insert(points);
   struct Moment
   {
     double Mass = 0.0;
     Vec3 Sum;
   };
-  for (int iteration = 0; iteration < this->Options.SmoothingIterations; ++iteration)
+  std::vector<Moment> moments(points.size());
+  struct Sample
   {
-    PointOctree octree;
-    octree.Insert(points);
-    std::vector<Moment> moments(points.size());
-    for (std::size_t i = 0; i < cells.size(); ++i)
+    Vec3 Position;
+    Id Nearest;
+  };
+  std::vector<Sample> samples(samplesOfCell * std::min(BatchSize, cells.size()));
+  for (std::size_t first = 0; first < cells.size(); first += BatchSize)
+  {
+    const std::size_t count = std::min(BatchSize, cells.size() - first);
+    for (std::size_t i = 0; i < count; ++i)
     {
-      if (i % 64 == 0 &&
-        !context.Continue(
-          (iteration + double(i) / cells.size()) / this->Options.SmoothingIterations, "Smoothing"))
+      for (int part = 0; part < samplesOfCell; ++part)
       {
-        return Status::Aborted();
-      }
-      const Cell& cell = cells[i];
-      for (int part = 0; part < SamplesAlongLeaf * SamplesAlongLeaf * SamplesAlongLeaf; ++part)
-      {
-        const Vec3 sample = this->GetRandomPosition(*cell.Leaf, part, SamplesAlongLeaf);
-        const Id region = cell.IsInside ? cell.Leaf->Region
-                                        : this->FindRegion(sample, cell.Spacing, cell.Leaf->Region);
-        if (region == OutsideRegion)
-        {
-          continue;
-        }
-        NearestInUnits nearest(sample, cell.Spacing, Infinity);
-        octree.Visit(nearest);
-        if (nearest.Found != NoId && this->Output.Regions[nearest.Found] == region)
-        {
-          Moment& moment = moments[nearest.Found];
-          moment.Mass += cell.Mass;
-          moment.Sum = moment.Sum + cell.Mass * (sample - points[nearest.Found]);
-        }
+        samples[samplesOfCell * i + part].Position =
+          this->GetRandomPosition(*cells[first + i].Leaf, part, SamplesAlongLeaf);
       }
     }
-    for (std::size_t i = 0; i < points.size(); ++i)
+    const auto findNearest = [&](std::size_t begin, std::size_t end, std::size_t)
+    {
+      for (std::size_t i = samplesOfCell * begin; i < samplesOfCell * end; ++i)
+      {
+        const SmoothingCell& cell = cells[first + i / samplesOfCell];
+        Sample& sample = samples[i];
+        const Id region = cell.IsInside
+          ? cell.Leaf->Region
+          : this->FindRegion(sample.Position, cell.Spacing, cell.Leaf->Region);
+        NearestInUnits nearest(sample.Position, cell.Spacing, Infinity);
+        if (region != OutsideRegion)
+        {
+          octree.Visit(nearest);
+        }
+        sample.Nearest = nearest.Found != NoId && this->Output.Regions[nearest.Found] == region
+          ? nearest.Found
+          : NoId;
+      }
+    };
+    const double all = static_cast<double>(cells.size());
+    if (!ParallelLoop(count, this->GetLoop(64),
+          context.Part(0.9 * first / all, 0.9 * (first + count) / all), activity, findNearest))
+    {
+      return false;
+    }
+    // Sums in the order of the samples are the same for any number of threads.
+    for (std::size_t i = 0; i < samplesOfCell * count; ++i)
+    {
+      const Sample& sample = samples[i];
+      if (sample.Nearest != NoId)
+      {
+        const double mass = cells[first + i / samplesOfCell].Mass;
+        Moment& moment = moments[sample.Nearest];
+        moment.Mass += mass;
+        moment.Sum = moment.Sum + mass * (sample.Position - points[sample.Nearest]);
+      }
+    }
+  }
+  const auto move = [&](std::size_t begin, std::size_t end, std::size_t)
+  {
+    for (std::size_t i = begin; i < end; ++i)
     {
       if (this->Output.Layers[i] == 0 && moments[i].Mass > 0.0)
       {
@@ -737,8 +878,37 @@ Status Generator::Smooth(const ExecutionContext& context)
         }
       }
     }
+  };
+  return ParallelLoop(points.size(), this->GetLoop(256), context.Part(0.9, 1.0), activity, move);
+}
+
+Status Generator::Smooth(const ExecutionContext& context)
+{
+  const int iterations = this->Options.SmoothingIterations;
+  std::vector<const SizingOctree::Leaf*> leaves;
+  for (const SizingOctree::Leaf& leaf : this->Octree.GetLeaves())
+  {
+    if (leaf.Region != OutsideRegion && iterations > 0)
+    {
+      leaves.push_back(&leaf);
+    }
   }
-  return {};
+  std::vector<SmoothingCell> cells(leaves.size(), { nullptr, 1.0, 0.0, false });
+  const auto makeCells = [&](std::size_t begin, std::size_t end, std::size_t)
+  {
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      cells[i] = this->MakeSmoothingCell(*leaves[i]);
+    }
+  };
+  bool isDone =
+    ParallelLoop(cells.size(), this->GetLoop(256), context.Part(0.0, 0.05), "Smoothing", makeCells);
+  for (int i = 0; i < iterations && isDone; ++i)
+  {
+    isDone = this->MoveToCenters(
+      cells, context.Part(0.05 + 0.95 * i / iterations, 0.05 + 0.95 * (i + 1) / iterations));
+  }
+  return isDone ? Status() : Status::Aborted();
 }
 
 Status Generator::Run()

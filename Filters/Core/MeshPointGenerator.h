@@ -27,7 +27,7 @@
  * Inputs: a surface with the invariants of TriangleMesh.h, closed, with or without labels.
  * Guarantees: each point is strictly inside of its region, exactly; no triangle is nearer than
  * BoundaryClearance spacings of the point; a layer has its distance from the interface, to
- * rounding. Deterministic.
+ * rounding. Deterministic for any number of threads, all of which evaluate the sizing.
  * Failure: InvalidInput for labels that contradict each other, a surface that encloses nothing,
  * layers at an interface that is not there, or a sizing that needs too many points.
  * Cost: O(n log n) for n points and leaves; 150 bytes for each point; a random point
@@ -98,6 +98,8 @@ struct MeshPointGeneratorOptions
   /** Distance from the boundary in spacings of the point. >= 0. */
   double BoundaryClearance = 0.5;
   Id MaximumNumberOfPoints = 10000000;
+  /** 0: one for each processor core. */
+  int NumberOfThreads = 0;
 };
 
 struct MeshPointGeneratorInput

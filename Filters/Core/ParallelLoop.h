@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <thread>
 
 namespace cdm
 {
@@ -46,10 +45,8 @@ bool ParallelLoop(std::size_t count, const ParallelLoopOptions& options,
   std::atomic<std::size_t> next{ 0 };
   std::atomic<bool> isStopped{ false };
   bool isAborted = false;
-  const std::size_t wanted = options.NumberOfThreads > 0
-    ? static_cast<std::size_t>(options.NumberOfThreads)
-    : std::max(1U, std::thread::hardware_concurrency());
-  RunOnThreads(static_cast<int>(std::max<std::size_t>(1, std::min(wanted, numberOfBlocks))),
+  const std::size_t wanted = std::min(GetNumberOfThreads(options.NumberOfThreads), numberOfBlocks);
+  RunOnThreads(static_cast<int>(std::max<std::size_t>(1, wanted)),
     [&](int thread)
     {
       for (;;)

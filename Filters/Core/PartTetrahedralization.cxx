@@ -3,6 +3,7 @@
 
 #include "DelaunayTetrahedralization.h"
 #include "EmptySphereSearch.h"
+#include "IdLimits.h"
 #include "Predicates.h"
 #include "PulledSphere.h"
 #include "SpatialSort.h"
@@ -528,6 +529,13 @@ void PartTetrahedralization::Take(const Doubt& doubt)
 
 Status PartTetrahedralization::Update(int numberOfThreads, const ExecutionContext& context)
 {
+  // One number more stands for the point at infinity.
+  const Status range =
+    CheckIdRange(std::uint64_t(this->Points.size()) + 1, "points in and around one part");
+  if (!range.IsOk())
+  {
+    return range;
+  }
   const bool isFirst = this->Round == 0;
   ++this->Round;
   const bool isNeeded =

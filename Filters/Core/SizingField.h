@@ -67,6 +67,7 @@ private:
   double Largest;
 };
 
+/** Stages call it from several threads at once; the same position always has the same spacing. */
 using SizingField = std::function<LocalSpacing(const Vec3&)>;
 
 /** Points in cells: cell i has the points Connectivity[Offsets[i]] to [Offsets[i + 1]]. */

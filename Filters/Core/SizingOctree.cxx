@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SizingOctree.h"
 
+#include "IdLimits.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -53,6 +55,16 @@ Status MakeTooManyPoints(Id limit)
     " points, the limit (MaximumNumberOfPoints). Enlarge the spacing, or raise the limit.");
 }
 
+int SizingOctree::CountChildren(const Node& node)
+{
+  int children = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    children *= node.SplitAxes & (1 << axis) ? 2 : 1;
+  }
+  return children;
+}
+
 SizingOctree::Units SizingOctree::GetSize(const Node& node) const
 {
   return { RootSize >> node.Levels[0], RootSize >> node.Levels[1], RootSize >> node.Levels[2] };
@@ -91,16 +103,19 @@ Vec3 SizingOctree::GetEdges(const Leaf& leaf) const
     leaf.Size[2] * this->UnitLengths.Z };
 }
 
-Id SizingOctree::Classify(const Node& node) const
+void SizingOctree::Classify(Node& node) const
 {
+  if (node.Region != MixedRegion)
+  {
+    return;
+  }
   const Units size = this->GetSize(node);
   const Vec3 low{ double(node.Low[0]), double(node.Low[1]), double(node.Low[2]) };
   const Vec3 edges{ double(size[0]), double(size[1]), double(size[2]) };
-  if (this->Locator->MayTouch(this->GetPosition(low), this->GetPosition(low + edges)))
+  if (!this->Locator->MayTouch(this->GetPosition(low), this->GetPosition(low + edges)))
   {
-    return MixedRegion;
+    node.Region = this->Locator->Locate(this->GetPosition(low + 0.5 * edges));
   }
-  return this->Locator->Locate(this->GetPosition(low + 0.5 * edges));
 }
 
 int SizingOctree::FindSplitAxes(Node& node) const
@@ -167,7 +182,8 @@ Status SizingOctree::Split(Id index, int axes)
     }
   }
   this->NumberOfLeaves += children - 1;
-  if (this->NumberOfLeaves > this->Options.MaximumNumberOfLeaves)
+  if (this->NumberOfLeaves > static_cast<std::uint64_t>(this->Options.MaximumNumberOfLeaves) ||
+    this->Nodes.size() + children > LargestId)
   {
     return MakeTooManyPoints(this->Options.MaximumNumberOfLeaves);
   }
@@ -189,53 +205,71 @@ Status SizingOctree::Split(Id index, int axes)
       child.Levels[axis] += axes & (1 << axis) ? 1 : 0;
       child.Low[axis] += corner & (1 << axis) ? size[axis] / 2 : 0;
     }
-    child.Region = parent.Region == MixedRegion ? this->Classify(child) : parent.Region;
     this->Nodes.push_back(child);
   }
   return {};
 }
 
+double SizingOctree::EstimateLeaves(const Node& node) const
+{
+  const Units size = this->GetSize(node);
+  double number = 1.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double edge = this->Options.MaximumRatio * node.Spacing[axis];
+    number *= std::max(1.0, size[axis] * this->UnitLengths[axis] / edge);
+  }
+  return number;
+}
+
 Status SizingOctree::Refine(const ExecutionContext& context)
 {
-  // Depth first: the volume that is finished tells the progress.
-  std::vector<Id> stack(this->Nodes.size());
-  for (std::size_t i = 0; i < stack.size(); ++i)
+  // Level by level: the cells of one are independent of each other.
+  std::vector<std::uint8_t> splitAxes;
+  double expected = static_cast<double>(this->Nodes.size());
+  double done = 0.0;
+  for (std::size_t begin = 0; begin < this->Nodes.size();)
   {
-    stack[i] = static_cast<Id>(stack.size() - 1 - i);
-  }
-  const double rootShare = 1.0 / stack.size();
-  double finished = 0.0;
-  for (std::size_t steps = 1; !stack.empty(); ++steps)
-  {
-    const Id index = stack.back();
-    stack.pop_back();
-    if (steps % 256 == 0 && !context.Continue(finished, "Refining the octree"))
+    const std::size_t end = this->Nodes.size();
+    const double share = std::min(1.0, static_cast<double>(end - begin) / expected);
+    const double next = done + (1.0 - done) * share;
+    splitAxes.resize(end - begin);
+    const auto refine = [&](std::size_t first, std::size_t last, std::size_t)
+    {
+      for (std::size_t i = first; i < last; ++i)
+      {
+        Node& node = this->Nodes[begin + i];
+        this->Classify(node);
+        splitAxes[i] =
+          static_cast<std::uint8_t>(node.Region == OutsideRegion ? 0 : this->FindSplitAxes(node));
+      }
+    };
+    if (!ParallelLoop(
+          end - begin, this->LoopOptions, context.Part(done, next), "Refining the octree", refine))
     {
       return Status::Aborted();
     }
-    const Node& node = this->Nodes[index];
-    const int axes = node.Region == OutsideRegion ? 0 : this->FindSplitAxes(this->Nodes[index]);
-    if (axes == 0)
+    expected = 0.0;
+    for (std::size_t i = begin; i < end; ++i)
     {
-      finished += std::ldexp(rootShare, -(node.Levels[0] + node.Levels[1] + node.Levels[2]));
-      continue;
+      if (splitAxes[i - begin] != 0)
+      {
+        const Status status = this->Split(static_cast<Id>(i), splitAxes[i - begin]);
+        if (!status.IsOk())
+        {
+          return status;
+        }
+        expected += this->EstimateLeaves(this->Nodes[i]);
+      }
     }
-    const Status status = this->Split(index, axes);
-    if (!status.IsOk())
-    {
-      return status;
-    }
-    for (Id child = static_cast<Id>(this->Nodes.size()) - 1; child >= this->Nodes[index].FirstChild;
-         --child)
-    {
-      stack.push_back(child);
-    }
+    done = next;
+    begin = end;
   }
   return {};
 }
 
 template <typename Visitor>
-void SizingOctree::VisitNeighbors(const Node& node, Visitor&& visit) const
+void SizingOctree::VisitNeighbors(const Node& node, std::vector<Id>& stack, Visitor&& visit) const
 {
   const Units size = this->GetSize(node);
   const auto touches = [&](const Node& other)
@@ -251,31 +285,38 @@ void SizingOctree::VisitNeighbors(const Node& node, Visitor&& visit) const
     }
     return true;
   };
-  std::vector<Id> stack;
-  const Id roots = static_cast<Id>(this->Roots[0] * this->Roots[1] * this->Roots[2]);
-  for (Id root = 0; root < roots; ++root)
+  Units first;
+  Units last;
+  for (int axis = 0; axis < 3; ++axis)
   {
-    stack.push_back(root);
+    first[axis] = (std::max(node.Low[axis], 1u) - 1) / RootSize;
+    last[axis] = std::min((node.Low[axis] + size[axis]) / RootSize, this->Roots[axis] - 1);
+  }
+  stack.clear();
+  for (std::uint32_t z = first[2]; z <= last[2]; ++z)
+  {
+    for (std::uint32_t y = first[1]; y <= last[1]; ++y)
+    {
+      for (std::uint32_t x = first[0]; x <= last[0]; ++x)
+      {
+        stack.push_back(static_cast<Id>((z * this->Roots[1] + y) * this->Roots[0] + x));
+      }
+    }
   }
   while (!stack.empty())
   {
-    const Id index = stack.back();
+    const Node& other = this->Nodes[stack.back()];
     stack.pop_back();
-    const Node& other = this->Nodes[index];
     if (!touches(other))
     {
       continue;
     }
     if (other.SplitAxes == 0)
     {
-      visit(index);
+      visit(other);
       continue;
     }
-    int children = 1;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      children *= other.SplitAxes & (1 << axis) ? 2 : 1;
-    }
+    const int children = CountChildren(other);
     for (int child = 0; child < children; ++child)
     {
       stack.push_back(other.FirstChild + child);
@@ -285,56 +326,107 @@ void SizingOctree::VisitNeighbors(const Node& node, Visitor&& visit) const
 
 Status SizingOctree::Balance(const ExecutionContext& context)
 {
-  // Each leaf makes its coarse neighbors finer, which then do the same to theirs.
-  std::vector<Id> queue;
+  // In rounds: all leaves, then those that are new or had neighbors that were too coarse, say which
+  // neighbors are; these are split along all axes that anyone asks for.
+  struct Request
+  {
+    Id Node;
+    int Axes;
+  };
+  struct Block
+  {
+    std::vector<Request> Requests;
+    /** Who asks; a child may still be too coarse. */
+    std::vector<Id> Sources;
+  };
+  std::vector<Id> active;
   for (std::size_t i = 0; i < this->Nodes.size(); ++i)
   {
     if (this->Nodes[i].SplitAxes == 0)
     {
-      queue.push_back(static_cast<Id>(i));
+      active.push_back(static_cast<Id>(i));
     }
   }
-  std::vector<Id> neighbors;
-  for (std::size_t next = 0; next < queue.size(); ++next)
+  const char* const activity = "Bounding the irregularity";
+  for (double done = 0.0; !active.empty();)
   {
-    if (next % 256 == 0 &&
-      !context.Continue(double(next) / queue.size(), "Bounding the irregularity"))
+    const double next = done + 0.8 * (1.0 - done);
+    std::vector<Block> blocks(GetNumberOfBlocks(active.size(), this->LoopOptions));
+    const auto ask = [&](std::size_t begin, std::size_t end, std::size_t block)
+    {
+      std::vector<Id> stack;
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        const Node& node = this->Nodes[active[i]];
+        const std::size_t before = blocks[block].Requests.size();
+        const auto visit = [&](const Node& neighbor)
+        {
+          int axes = 0;
+          for (int axis = 0; axis < 3; ++axis)
+          {
+            const int difference = node.Levels[axis] - neighbor.Levels[axis];
+            axes |= difference > this->Options.MaximumLevelDifference ? 1 << axis : 0;
+          }
+          if (axes != 0)
+          {
+            blocks[block].Requests.push_back(
+              { static_cast<Id>(&neighbor - this->Nodes.data()), axes });
+          }
+        };
+        if (node.SplitAxes == 0)
+        {
+          this->VisitNeighbors(node, stack, visit);
+        }
+        if (blocks[block].Requests.size() > before)
+        {
+          blocks[block].Sources.push_back(active[i]);
+        }
+      }
+    };
+    if (!ParallelLoop(active.size(), this->LoopOptions, context.Part(done, next), activity, ask))
     {
       return Status::Aborted();
     }
-    const Id index = queue[next];
-    if (this->Nodes[index].SplitAxes != 0)
+    std::vector<Request> requests;
+    active.clear();
+    for (const Block& block : blocks)
     {
-      continue;
+      requests.insert(requests.end(), block.Requests.begin(), block.Requests.end());
+      active.insert(active.end(), block.Sources.begin(), block.Sources.end());
     }
-    const Node node = this->Nodes[index];
-    neighbors.clear();
-    this->VisitNeighbors(node, [&neighbors](Id neighbor) { neighbors.push_back(neighbor); });
-    std::sort(neighbors.begin(), neighbors.end());
-    for (const Id neighbor : neighbors)
+    std::sort(requests.begin(), requests.end(),
+      [](const Request& a, const Request& b) { return a.Node < b.Node; });
+    const std::size_t firstNew = this->Nodes.size();
+    for (auto begin = requests.cbegin(), end = begin; begin != requests.cend(); begin = end)
     {
       int axes = 0;
-      for (int axis = 0; axis < 3; ++axis)
+      for (; end != requests.cend() && end->Node == begin->Node; ++end)
       {
-        const int difference = node.Levels[axis] - this->Nodes[neighbor].Levels[axis];
-        axes |= difference > this->Options.MaximumLevelDifference ? 1 << axis : 0;
+        axes |= end->Axes;
       }
-      if (axes != 0)
+      const Status status = this->Split(begin->Node, axes);
+      if (!status.IsOk())
       {
-        const Id firstNew = static_cast<Id>(this->Nodes.size());
-        const Status status = this->Split(neighbor, axes);
-        if (!status.IsOk())
-        {
-          return status;
-        }
-        for (Id child = firstNew; child < static_cast<Id>(this->Nodes.size()); ++child)
-        {
-          queue.push_back(child);
-        }
-        // A child may still be too coarse.
-        queue.push_back(index);
+        return status;
       }
     }
+    const auto classify = [&](std::size_t begin, std::size_t end, std::size_t)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        this->Classify(this->Nodes[firstNew + i]);
+      }
+    };
+    if (!ParallelLoop(this->Nodes.size() - firstNew, this->LoopOptions, context.Part(next, next),
+          activity, classify))
+    {
+      return Status::Aborted();
+    }
+    for (std::size_t i = firstNew; i < this->Nodes.size(); ++i)
+    {
+      active.push_back(static_cast<Id>(i));
+    }
+    done = next;
   }
   return {};
 }
@@ -357,12 +449,7 @@ void SizingOctree::CollectLeaves()
       this->Leaves.push_back({ node.Low, this->GetSize(node), node.Spacing, node.Region });
       continue;
     }
-    int children = 1;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      children *= node.SplitAxes & (1 << axis) ? 2 : 1;
-    }
-    for (int child = children - 1; child >= 0; --child)
+    for (int child = CountChildren(node) - 1; child >= 0; --child)
     {
       stack.push_back(node.FirstChild + child);
     }
@@ -375,6 +462,7 @@ Status SizingOctree::Build(const RegionLocator& locator, const SizingField& sizi
   this->Locator = &locator;
   this->Sizing = &sizing;
   this->Options = options;
+  this->LoopOptions = { options.NumberOfThreads, 64 };
   this->Origin = locator.GetLow();
   const Vec3 extents = locator.GetHigh() - locator.GetLow();
   this->Roots = FindRoots(extents);
@@ -391,12 +479,11 @@ Status SizingOctree::Build(const RegionLocator& locator, const SizingField& sizi
         Node root;
         root.Low = { x * RootSize, y * RootSize, z * RootSize };
         root.Levels = { 0, 0, 0 };
-        root.Region = this->Classify(root);
         this->Nodes.push_back(root);
       }
     }
   }
-  this->NumberOfLeaves = static_cast<Id>(this->Nodes.size());
+  this->NumberOfLeaves = this->Nodes.size();
   Status status = this->Refine(context.Part(0.0, 0.7));
   if (status.IsOk() && this->Options.MaximumLevelDifference > 0)
   {

@@ -12,7 +12,8 @@
  *  3. bounded irregularity: a cell is split along an axis on which a neighbor, also across an edge
  *     or a corner, is finer by more levels than allowed.
  *
- * Guarantees: leaves are disjoint and fill the bounding box; deterministic, in depth-first order.
+ * Guarantees: leaves are disjoint and fill the bounding box, in depth-first order; deterministic for
+ * any number of threads, all of which evaluate the field.
  * Failure: InvalidInput if more leaves are needed than allowed, or smaller ones than the bounding
  * box divided by 2^19 (2^16 in each of eight roots).
  * Cost: nine evaluations of the field for each cell; 100 bytes per leaf.
@@ -21,6 +22,7 @@
 #define cdmSizingOctree_h
 
 #include "ExecutionContext.h"
+#include "ParallelLoop.h"
 #include "RegionLocator.h"
 #include "SizingField.h"
 #include "Status.h"
@@ -38,6 +40,8 @@ struct SizingOctreeOptions
   /** By how many levels neighbors may differ. 0: no bound. */
   int MaximumLevelDifference = 1;
   Id MaximumNumberOfLeaves = 10000000;
+  /** 0: one for each processor core. */
+  int NumberOfThreads = 0;
 };
 
 /** A sizing needs more points or leaves than allowed. */
@@ -86,24 +90,30 @@ private:
   };
 
   Units GetSize(const Node& node) const;
-  Id Classify(const Node& node) const;
+  /** Of a node that has some. */
+  static int CountChildren(const Node& node);
+  /** Finds the region of a node whose parent the surface may pass through. */
+  void Classify(Node& node) const;
   int FindSplitAxes(Node& node) const;
+  /** About how many leaves the sizing will make of a node. */
+  double EstimateLeaves(const Node& node) const;
   Status Split(Id node, int axes);
   Status Refine(const ExecutionContext& context);
   Status Balance(const ExecutionContext& context);
   template <typename Visitor>
-  void VisitNeighbors(const Node& node, Visitor&& visit) const;
+  void VisitNeighbors(const Node& node, std::vector<Id>& stack, Visitor&& visit) const;
   void CollectLeaves();
 
   const RegionLocator* Locator = nullptr;
   const SizingField* Sizing = nullptr;
   SizingOctreeOptions Options;
+  ParallelLoopOptions LoopOptions;
   Units Roots;
   Vec3 Origin;
   /** Length of a unit along each axis. */
   Vec3 UnitLengths;
   std::vector<Node> Nodes;
-  Id NumberOfLeaves = 0;
+  std::uint64_t NumberOfLeaves = 0;
   std::vector<Leaf> Leaves;
 };
 } // namespace cdm

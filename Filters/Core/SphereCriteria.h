@@ -25,8 +25,13 @@ namespace cdm
 class SphereCriteria
 {
 public:
-  /** The points have to be finite, and to outlive the object. */
-  explicit SphereCriteria(const std::vector<Vec3>& points) : Points(points), Search(points) {}
+  /**
+   * The points have to be finite, and to outlive the object. Threads: 0: one for each processor core.
+   */
+  explicit SphereCriteria(const std::vector<Vec3>& points, int numberOfThreads = 1)
+    : Points(points), Search(points, numberOfThreads)
+  {
+  }
 
   /** Crit. 5.3 for a tetrahedron of positive orientation. */
   bool IsDelaunay(const TetrahedronIds& tetrahedron) const;

@@ -261,14 +261,23 @@ bool VolumeRefinement::TouchesOpenFacet() const
 {
   for (std::size_t i = 0; i < this->Hole.Facets.size(); ++i)
   {
+    if (this->Hole.Outer[i] != NoId)
+    {
+      continue;
+    }
     const TriangleIds& facet = this->Hole.Facets[i];
     const auto isSame = [&](Id t)
     {
       const TriangleIds& triangle = this->Surface.Triangles[t];
       return std::is_permutation(facet.begin(), facet.end(), triangle.begin());
     };
+    // Only points of the surface have triangles.
+    if (facet[0] >= this->NumberOfSurfacePoints)
+    {
+      return true;
+    }
     const IdLists::Range triangles = this->PointTriangles[facet[0]];
-    if (this->Hole.Outer[i] == NoId && std::none_of(triangles.begin(), triangles.end(), isSame))
+    if (std::none_of(triangles.begin(), triangles.end(), isSame))
     {
       return true;
     }

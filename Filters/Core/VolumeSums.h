@@ -26,6 +26,11 @@ public:
       std::abs(this->Sum) >= std::abs(term) ? (this->Sum - sum) + term : (term - sum) + this->Sum;
     this->Sum = sum;
   }
+  void Add(const CompensatedSum& other)
+  {
+    this->Add(other.Sum);
+    this->Add(other.Correction);
+  }
   double Get() const { return static_cast<double>(this->Sum + this->Correction); }
 
 private:

@@ -3,6 +3,7 @@
 
 #include "vtkCoreBridge.h"
 
+#include "Core/IdLimits.h"
 #include "Core/MeshChecks.h"
 #include "Core/PartRegions.h"
 
@@ -120,6 +121,11 @@ cdm::Status DistributedMesh::MakePart()
   status = this->Processes.Do(
     [&]
     {
+      const cdm::Status range = cdm::CheckIdRange(this->OwnPoints.size(), "points on one process");
+      if (!range.IsOk())
+      {
+        return range;
+      }
       this->Part = std::make_unique<cdm::PartTetrahedralization>(
         std::move(this->OwnPoints), this->Processes.GetRank(), allBounds, this->Input.GetCell());
       this->Part->AddPoints(simplex);

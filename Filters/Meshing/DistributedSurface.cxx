@@ -5,6 +5,7 @@
 
 #include "Core/DuplicateTriangles.h"
 #include "Core/FacetPolygons.h"
+#include "Core/IdLimits.h"
 #include "Core/PartRegions.h"
 #include "Core/Predicates.h"
 #include "Core/RegionLocator.h"
@@ -126,6 +127,19 @@ cdm::Status DistributedSurface::Gather(
     for (const cdm::NumberedPoint& point : ProcessGroup::Unpack<cdm::NumberedPoint>(bytes))
     {
       entries.push_back({ point, entries.size() });
+    }
+  }
+  std::size_t numberOfTriangles = 0;
+  for (const ProcessGroup::Bytes& bytes : triangles)
+  {
+    numberOfTriangles += bytes.size() / sizeof(SurfaceTriangle);
+  }
+  for (const cdm::Status& status : { cdm::CheckIdRange(entries.size(), "points of the surface"),
+         cdm::CheckNumberOfTriangles(numberOfTriangles) })
+  {
+    if (!status.IsOk())
+    {
+      return status;
     }
   }
   std::vector<char> isUsed(entries.size(), 0);

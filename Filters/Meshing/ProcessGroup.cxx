@@ -41,13 +41,15 @@ Outcome GetOutcome(const cdm::Status& status)
 } // namespace
 
 //--------------------------------------------------------------------------------------------------
-ProcessGroup::ProcessGroup(vtkMultiProcessController* controller) : Controller(controller)
+ProcessGroup::ProcessGroup(vtkMultiProcessController* controller, std::int64_t largestGather)
+  : Controller(controller)
 {
   if (controller && controller->GetNumberOfProcesses() > 1)
   {
     this->Rank = controller->GetLocalProcessId();
     this->Size = controller->GetNumberOfProcesses();
   }
+  this->LargestMessage = std::max<std::int64_t>(1, largestGather / this->Size);
 }
 
 //--------------------------------------------------------------------------------------------------
@@ -195,15 +197,31 @@ std::vector<ProcessGroup::Bytes> ProcessGroup::Gather(const Bytes& own) const
   const vtkIdType size = static_cast<vtkIdType>(own.size());
   std::vector<vtkIdType> sizes(count);
   this->Controller->AllGather(&size, sizes.data(), 1);
-  std::vector<vtkIdType> offsets(count + 1, 0);
-  std::partial_sum(sizes.begin(), sizes.end(), offsets.begin() + 1);
-  // A buffer of length 0 has no address.
-  Bytes all(static_cast<std::size_t>(offsets.back()) + 1);
-  this->Controller->AllGatherV(own.data(), all.data(), size, sizes.data(), offsets.data());
   std::vector<Bytes> messages;
-  for (std::size_t rank = 0; rank < count; ++rank)
+  for (const vtkIdType length : sizes)
   {
-    messages.emplace_back(all.begin() + offsets[rank], all.begin() + offsets[rank + 1]);
+    messages.emplace_back(static_cast<std::size_t>(length));
+  }
+  const vtkIdType longest = *std::max_element(sizes.begin(), sizes.end());
+  std::vector<vtkIdType> pieces(count);
+  std::vector<vtkIdType> offsets(count + 1, 0);
+  for (vtkIdType begin = 0; begin < longest; begin += this->LargestMessage)
+  {
+    for (std::size_t rank = 0; rank < count; ++rank)
+    {
+      pieces[rank] =
+        std::min<vtkIdType>(this->LargestMessage, std::max<vtkIdType>(0, sizes[rank] - begin));
+    }
+    std::partial_sum(pieces.begin(), pieces.end(), offsets.begin() + 1);
+    Bytes all(static_cast<std::size_t>(offsets.back()));
+    const vtkIdType piece = pieces[static_cast<std::size_t>(this->Rank)];
+    const char* const data = piece > 0 ? own.data() + begin : own.data();
+    this->Controller->AllGatherV(data, all.data(), piece, pieces.data(), offsets.data());
+    for (std::size_t rank = 0; rank < count; ++rank)
+    {
+      std::copy_n(all.begin() + offsets[rank], pieces[rank],
+        messages[rank].begin() + std::min(begin, sizes[rank]));
+    }
   }
   return messages;
 }

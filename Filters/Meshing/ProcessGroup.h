@@ -33,8 +33,9 @@ class ProcessGroup
 public:
   using Bytes = std::vector<char>;
 
-  /** null: a process by itself. */
-  explicit ProcessGroup(vtkMultiProcessController* controller);
+  /** null: a process by itself. Gather() takes messages that are longer in all than the limit in pieces. */
+  explicit ProcessGroup(
+    vtkMultiProcessController* controller, std::int64_t largestGather = LargestGather);
 
   int GetRank() const { return this->Rank; }
   int GetSize() const { return this->Size; }
@@ -122,7 +123,12 @@ private:
   void Swap(int partner, const char* data, std::int64_t size, char* received,
     std::int64_t receivedSize) const;
 
+  /** Bytes that are gathered at once: MPI counts them with 32 bits. */
+  static constexpr std::int64_t LargestGather = std::int64_t(1) << 30;
+
   vtkMultiProcessController* Controller;
+  /** Of one process, in one piece. */
+  std::int64_t LargestMessage;
   int Rank = 0;
   int Size = 1;
   std::int64_t BytesSent = 0;

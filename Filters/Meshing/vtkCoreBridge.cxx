@@ -3,6 +3,7 @@
 
 #include "vtkConformingDelaunayCompatibility.h"
 
+#include "Core/IdLimits.h"
 #include "Core/MeshChecks.h"
 
 #include <vtkCellArray.h>
@@ -23,6 +24,7 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkSMPTools.h>
 #include <vtkStaticCellLocator.h>
 #include <vtkStaticPointLocator.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
@@ -33,6 +35,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <sstream>
 #include <stdexcept>
@@ -40,19 +43,13 @@
 
 namespace
 {
-constexpr vtkIdType LargestId = std::numeric_limits<cdm::Id>::max();
 constexpr std::size_t NamedIds = 10;
-
-cdm::Status TooLarge(const char* what, vtkIdType number)
-{
-  return cdm::Status::InvalidInput("The input has " + std::to_string(number) + " " + what +
-    ", more than the 2147483647 that 32-bit ids can count. Mesh it in parts.");
-}
 
 /** A whole number from -1 on that fits into an id; otherwise false. */
 bool ToRegion(double value, cdm::Id& region)
 {
-  if (!(value >= cdm::OutsideRegion && value <= LargestId) || value != std::floor(value))
+  if (!(value >= cdm::OutsideRegion && value <= static_cast<double>(cdm::LargestId)) ||
+    value != std::floor(value))
   {
     return false;
   }
@@ -63,18 +60,20 @@ bool ToRegion(double value, cdm::Id& region)
 cdm::Status ToVectors(vtkPoints* input, std::vector<cdm::Vec3>& points)
 {
   const vtkIdType count = input ? input->GetNumberOfPoints() : 0;
-  if (count > LargestId)
+  const cdm::Status status = cdm::CheckIdRange(count, "points");
+  if (!status.IsOk())
   {
-    return TooLarge("points", count);
+    return status;
   }
   points.resize(count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    double x[3];
-    input->GetPoint(i, x);
-    points[i] = { x[0], x[1], x[2] };
-  }
-  return {};
+  vtkCoreBridge::ForEach(points.size(),
+    [&](std::size_t i)
+    {
+      double x[3];
+      input->GetPoint(static_cast<vtkIdType>(i), x);
+      points[i] = { x[0], x[1], x[2] };
+    });
+  return status;
 }
 
 /** Labels of the given cells; empty without the array. */
@@ -144,9 +143,13 @@ cdm::Status CheckArrays(vtkDataSet* input)
 /** What both conversions of a surface check before they look at a cell. */
 cdm::Status CheckSurface(vtkPolyData* input)
 {
-  if (input->GetNumberOfCells() > LargestId)
+  for (const cdm::Status& status : { cdm::CheckIdRange(input->GetNumberOfCells(), "cells"),
+         cdm::CheckNumberOfTriangles(input->GetNumberOfPolys() + input->GetNumberOfStrips()) })
   {
-    return TooLarge("cells", input->GetNumberOfCells());
+    if (!status.IsOk())
+    {
+      return status;
+    }
   }
   if (input->GetNumberOfPolys() + input->GetNumberOfStrips() == 0)
   {
@@ -282,7 +285,7 @@ void FindPrincipalAxes(
   vtkMath::Transpose3x3(columns, directions);
 }
 
-/** Interpolates the array Sizing of a data set; see ToSizing(). */
+/** Interpolates the array Sizing of a data set, for several threads at once; see ToSizing(). */
 class SizingInterpolator
 {
 public:
@@ -302,41 +305,89 @@ public:
     }
     this->Points->SetDataSet(this->Data);
     this->Points->BuildLocator();
+    // What data sets make at the first query of its kind must be there before several threads ask.
     this->Data->GetBounds(this->Bounds);
-    this->Weights.resize(std::max(8, this->Data->GetMaxCellSize()));
+    if (data->GetNumberOfCells() > 0)
+    {
+      vtkNew<vtkGenericCell> cell;
+      this->Data->GetCell(0, cell);
+    }
+    this->NumberOfWeights = std::max(8, this->Data->GetMaxCellSize());
   }
 
-  cdm::LocalSpacing operator()(const cdm::Vec3& position)
+  cdm::LocalSpacing operator()(const cdm::Vec3& position) const
   {
-    double x[3] = { position.X, position.Y, position.Z };
-    const vtkIdType cell = this->FindCell(x);
-    if (cell < 0)
-    {
-      this->Values->GetTuple(this->Points->FindClosestPoint(x), this->Tuple);
-      std::copy_n(this->Tuple, this->Components, this->Sum);
-      std::fill_n(this->Low, this->Components, 0.0);
-      std::fill_n(this->High, this->Components, std::numeric_limits<double>::infinity());
-      return this->MakeSpacing();
-    }
-    std::fill_n(this->Sum, this->Components, 0.0);
-    std::fill_n(this->Low, this->Components, std::numeric_limits<double>::infinity());
-    std::fill_n(this->High, this->Components, 0.0);
-    for (vtkIdType i = 0; i < this->Cell->GetNumberOfPoints(); ++i)
-    {
-      this->Values->GetTuple(this->Cell->GetPointId(i), this->Tuple);
-      for (int j = 0; j < this->Components; ++j)
-      {
-        this->Sum[j] += this->Weights[i] * this->Tuple[j];
-        this->Low[j] = std::min(this->Low[j], this->Tuple[j]);
-        this->High[j] = std::max(this->High[j], this->Tuple[j]);
-      }
-    }
-    return this->MakeSpacing();
+    std::unique_ptr<Place> place = this->TakePlace();
+    const cdm::LocalSpacing spacing = this->Find(position, *place);
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->FreePlaces.push_back(std::move(place));
+    return spacing;
   }
 
 private:
+  /** A cell and the weights of its points at a position. */
+  struct Place
+  {
+    vtkNew<vtkGenericCell> Cell;
+    std::vector<double> Weights;
+  };
+
+  struct Sum
+  {
+    double Value[MaximumSizingComponents];
+    /** What the values lie between. */
+    double Low[MaximumSizingComponents];
+    double High[MaximumSizingComponents];
+    /** One of the values. */
+    double Tuple[MaximumSizingComponents];
+  };
+
+  /** Each is used by one query at a time. */
+  std::unique_ptr<Place> TakePlace() const
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    if (this->FreePlaces.empty())
+    {
+      auto place = std::make_unique<Place>();
+      place->Weights.resize(this->NumberOfWeights);
+      return place;
+    }
+    std::unique_ptr<Place> place = std::move(this->FreePlaces.back());
+    this->FreePlaces.pop_back();
+    return place;
+  }
+
+  cdm::LocalSpacing Find(const cdm::Vec3& position, Place& place) const
+  {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    double x[3] = { position.X, position.Y, position.Z };
+    Sum sum;
+    if (this->FindCell(x, place) < 0)
+    {
+      this->Values->GetTuple(this->Points->FindClosestPoint(x), sum.Tuple);
+      std::copy_n(sum.Tuple, this->Components, sum.Value);
+      std::fill_n(sum.Low, this->Components, 0.0);
+      std::fill_n(sum.High, this->Components, infinity);
+      return this->MakeSpacing(sum);
+    }
+    std::fill_n(sum.Value, this->Components, 0.0);
+    std::fill_n(sum.Low, this->Components, infinity);
+    std::fill_n(sum.High, this->Components, 0.0);
+    for (vtkIdType i = 0; i < place.Cell->GetNumberOfPoints(); ++i)
+    {
+      this->Values->GetTuple(place.Cell->GetPointId(i), sum.Tuple);
+      for (int j = 0; j < this->Components; ++j)
+      {
+        sum.Value[j] += place.Weights[i] * sum.Tuple[j];
+        sum.Low[j] = std::min(sum.Low[j], sum.Tuple[j]);
+        sum.High[j] = std::max(sum.High[j], sum.Tuple[j]);
+      }
+    }
+    return this->MakeSpacing(sum);
+  }
+
   /** The cell that holds a position, or is nearest to it, with its weights there; or -1. */
-  vtkIdType FindCell(double x[3])
+  vtkIdType FindCell(double x[3], Place& place) const
   {
     if (this->Data->GetNumberOfCells() == 0)
     {
@@ -352,53 +403,53 @@ private:
         x[axis] = std::min(std::max(x[axis], this->Bounds[2 * axis]), this->Bounds[2 * axis + 1]);
       }
       const vtkIdType cell = this->Data->FindCell(
-        x, nullptr, this->Cell, -1, 0.0, subId, parametric, this->Weights.data());
+        x, nullptr, place.Cell, -1, 0.0, subId, parametric, place.Weights.data());
       if (cell >= 0)
       {
-        this->Data->GetCell(cell, this->Cell);
+        this->Data->GetCell(cell, place.Cell);
       }
       return cell;
     }
-    vtkIdType cell = this->Cells->FindCell(x, 0.0, this->Cell, parametric, this->Weights.data());
+    vtkIdType cell = this->Cells->FindCell(x, 0.0, place.Cell, parametric, place.Weights.data());
     if (cell < 0)
     {
       double closest[3];
-      this->Cells->FindClosestPoint(x, closest, this->Cell, cell, subId, distance2);
+      this->Cells->FindClosestPoint(x, closest, place.Cell, cell, subId, distance2);
       if (cell >= 0)
       {
-        this->Cell->EvaluatePosition(
-          closest, nullptr, subId, parametric, distance2, this->Weights.data());
+        place.Cell->EvaluatePosition(
+          closest, nullptr, subId, parametric, distance2, place.Weights.data());
       }
     }
     return cell;
   }
 
   /** Of the sum, within the bounds: a degenerate cell gives weights of any kind. */
-  cdm::LocalSpacing MakeSpacing()
+  cdm::LocalSpacing MakeSpacing(Sum& sum) const
   {
     if (this->Components <= 3)
     {
       for (int j = 0; j < this->Components; ++j)
       {
-        this->Sum[j] = std::isfinite(this->Sum[j])
-          ? std::min(std::max(this->Sum[j], this->Low[j]), this->High[j])
-          : this->Low[j];
+        sum.Value[j] = std::isfinite(sum.Value[j])
+          ? std::min(std::max(sum.Value[j], sum.Low[j]), sum.High[j])
+          : sum.Low[j];
       }
       return this->Components == 1
-        ? cdm::LocalSpacing(this->Sum[0])
-        : cdm::LocalSpacing(cdm::Vec3{ this->Sum[0], this->Sum[1], this->Sum[2] });
+        ? cdm::LocalSpacing(sum.Value[0])
+        : cdm::LocalSpacing(cdm::Vec3{ sum.Value[0], sum.Value[1], sum.Value[2] });
     }
     double lengths[3];
     double directions[3][3];
-    if (!std::all_of(this->Sum, this->Sum + this->Components,
+    if (!std::all_of(sum.Value, sum.Value + this->Components,
           [](double value) { return std::isfinite(value); }))
     {
-      std::copy_n(this->Tuple, this->Components, this->Sum);
+      std::copy_n(sum.Tuple, this->Components, sum.Value);
     }
-    FindPrincipalAxes(this->Sum, this->Components, lengths, directions);
+    FindPrincipalAxes(sum.Value, this->Components, lengths, directions);
     if (!(std::min({ lengths[0], lengths[1], lengths[2] }) > 0.0))
     {
-      FindPrincipalAxes(this->Tuple, this->Components, lengths, directions);
+      FindPrincipalAxes(sum.Tuple, this->Components, lengths, directions);
     }
     cdm::Vec3 axes[3];
     for (int i = 0; i < 3; ++i)
@@ -413,14 +464,11 @@ private:
   int Components;
   bool IsGrid = false;
   double Bounds[6];
+  std::size_t NumberOfWeights;
   vtkNew<vtkStaticCellLocator> Cells;
   vtkNew<vtkStaticPointLocator> Points;
-  vtkNew<vtkGenericCell> Cell;
-  std::vector<double> Weights;
-  double Tuple[MaximumSizingComponents];
-  double Sum[MaximumSizingComponents];
-  double Low[MaximumSizingComponents];
-  double High[MaximumSizingComponents];
+  mutable std::mutex Mutex;
+  mutable std::vector<std::unique_ptr<Place>> FreePlaces;
 };
 } // namespace
 
@@ -470,6 +518,12 @@ cdm::Status Guard(const std::function<cdm::Status()>& function)
   {
     return cdm::Status::InvalidInput("There is not enough memory for this input.");
   }
+}
+
+//--------------------------------------------------------------------------------------------------
+int GetNumberOfThreads()
+{
+  return vtkSMPTools::GetEstimatedNumberOfThreads();
 }
 
 //--------------------------------------------------------------------------------------------------
@@ -548,9 +602,9 @@ cdm::Status ToPolygonSoup(vtkPolyData* input, cdm::PolygonSoup& soup, std::vecto
   cdm::Status status = CheckSurface(input);
   const vtkIdType corners = input->GetPolys()->GetNumberOfConnectivityIds() +
     3 * input->GetStrips()->GetNumberOfConnectivityIds();
-  if (status.IsOk() && corners > LargestId)
+  if (status.IsOk())
   {
-    status = TooLarge("polygon corners", corners);
+    status = cdm::CheckIdRange(corners, "polygon corners");
   }
   if (status.IsOk())
   {
@@ -725,52 +779,90 @@ cdm::Status ToTetrahedra(
   vtkUnstructuredGrid* input, cdm::TetMesh& mesh, std::vector<vtkIdType>& cells)
 {
   const vtkIdType count = input->GetNumberOfCells();
-  // Ids of facets and edges are up to six times as large as those of tetrahedra.
-  if (count > LargestId / 6)
+  cdm::Status status = cdm::CheckNumberOfTetrahedra(count);
+  if (status.IsOk())
   {
-    return TooLarge("edges of tetrahedra", 6 * count);
+    status = cdm::CheckIdRange(input->GetNumberOfPoints(), "points");
   }
-  cdm::Status status = CheckArrays(input);
+  if (status.IsOk())
+  {
+    status = CheckArrays(input);
+  }
   if (!status.IsOk())
   {
     return status;
   }
   vtkDataArray* regions = input->GetCellData()->GetArray(RegionIdName);
   mesh = {};
-  mesh.Tetrahedra.reserve(count);
-  mesh.Regions.reserve(count);
-  cells.clear();
-  cells.reserve(count);
+  struct Block
+  {
+    std::size_t Begin = 0;
+    std::size_t Tetrahedra = 0;
+    std::vector<cdm::Id> NotTetrahedra;
+    std::vector<cdm::Id> MissingPoints;
+    std::vector<cdm::Id> WrongRegions;
+  };
+  const cdm::ParallelLoopOptions loop{ GetNumberOfThreads(), std::size_t(1) << 14 };
+  std::vector<Block> blocks(cdm::GetNumberOfBlocks(count, loop));
+  const auto countBlock = [&](std::size_t begin, std::size_t end, std::size_t block)
+  {
+    for (std::size_t cell = begin; cell < end; ++cell)
+    {
+      const int type = input->GetCellType(static_cast<vtkIdType>(cell));
+      blocks[block].Tetrahedra += type == VTK_TETRA;
+      if (type != VTK_TETRA && GetCellDimension(type) > 2)
+      {
+        blocks[block].NotTetrahedra.push_back(static_cast<cdm::Id>(cell));
+      }
+    }
+  };
+  cdm::ParallelLoop(count, loop, {}, "", countBlock);
+  std::size_t numberOfTetrahedra = 0;
+  for (Block& block : blocks)
+  {
+    block.Begin = numberOfTetrahedra;
+    numberOfTetrahedra += block.Tetrahedra;
+  }
+  mesh.Tetrahedra.resize(numberOfTetrahedra);
+  mesh.Regions.resize(numberOfTetrahedra, 0);
+  cells.resize(numberOfTetrahedra);
+  const auto convertBlock = [&](std::size_t begin, std::size_t end, std::size_t block)
+  {
+    vtkNew<vtkIdList> ids;
+    std::size_t tetrahedron = blocks[block].Begin;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const auto cell = static_cast<vtkIdType>(i);
+      if (input->GetCellType(cell) != VTK_TETRA)
+      {
+        continue;
+      }
+      input->GetCellPoints(cell, ids);
+      cells[tetrahedron] = cell;
+      std::copy_n(ids->GetPointer(0), 4, mesh.Tetrahedra[tetrahedron].begin());
+      if (UsesMissingPoints(4, ids->GetPointer(0), input->GetNumberOfPoints()))
+      {
+        blocks[block].MissingPoints.push_back(static_cast<cdm::Id>(cell));
+      }
+      cdm::Id& region = mesh.Regions[tetrahedron];
+      if (regions && (!ToRegion(regions->GetComponent(cell, 0), region) || region < 0))
+      {
+        blocks[block].WrongRegions.push_back(static_cast<cdm::Id>(cell));
+      }
+      ++tetrahedron;
+    }
+  };
+  cdm::ParallelLoop(count, loop, {}, "", convertBlock);
   std::vector<cdm::Id> notTetrahedra;
   std::vector<cdm::Id> missingPoints;
   std::vector<cdm::Id> wrongRegions;
-  vtkNew<vtkIdList> ids;
-  for (vtkIdType cell = 0; cell < count; ++cell)
+  for (const Block& block : blocks)
   {
-    const auto id = static_cast<cdm::Id>(cell);
-    if (input->GetCellType(cell) != VTK_TETRA)
-    {
-      if (GetCellDimension(input->GetCellType(cell)) > 2)
-      {
-        notTetrahedra.push_back(id);
-      }
-      continue;
-    }
-    input->GetCellPoints(cell, ids);
-    if (UsesMissingPoints(4, ids->GetPointer(0), input->GetNumberOfPoints()))
-    {
-      missingPoints.push_back(id);
-      continue;
-    }
-    cells.push_back(cell);
-    mesh.Tetrahedra.emplace_back();
-    std::copy_n(ids->GetPointer(0), 4, mesh.Tetrahedra.back().begin());
-    mesh.Regions.push_back(0);
-    if (regions &&
-      (!ToRegion(regions->GetComponent(cell, 0), mesh.Regions.back()) || mesh.Regions.back() < 0))
-    {
-      wrongRegions.push_back(id);
-    }
+    const auto append = [](std::vector<cdm::Id>& all, const std::vector<cdm::Id>& some)
+    { all.insert(all.end(), some.begin(), some.end()); };
+    append(notTetrahedra, block.NotTetrahedra);
+    append(missingPoints, block.MissingPoints);
+    append(wrongRegions, block.WrongRegions);
   }
   if (!notTetrahedra.empty())
   {
@@ -811,21 +903,22 @@ cdm::Status ToTetrahedra(
 //--------------------------------------------------------------------------------------------------
 cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh)
 {
+  std::vector<vtkIdType> cells;
+  const cdm::Status status = ToTetrahedra(input, mesh, cells);
+  const vtkIdType count = input->GetNumberOfCells();
+  if (status.IsOk() && static_cast<vtkIdType>(cells.size()) == count)
+  {
+    return cdm::BuildNeighbors(mesh, GetNumberOfThreads());
+  }
   std::vector<cdm::Id> others;
-  for (vtkIdType cell = 0; cell < std::min(input->GetNumberOfCells(), LargestId); ++cell)
+  for (vtkIdType cell = 0; cell < std::min<vtkIdType>(count, cdm::LargestId); ++cell)
   {
     if (input->GetCellType(cell) != VTK_TETRA)
     {
       others.push_back(static_cast<cdm::Id>(cell));
     }
   }
-  if (!others.empty())
-  {
-    return NotTetrahedra(std::move(others));
-  }
-  std::vector<vtkIdType> cells;
-  const cdm::Status status = ToTetrahedra(input, mesh, cells);
-  return status.IsOk() ? cdm::BuildNeighbors(mesh) : status;
+  return others.empty() ? status : NotTetrahedra(std::move(others));
 }
 
 //--------------------------------------------------------------------------------------------------
@@ -871,7 +964,7 @@ cdm::Status ToSizing(vtkDataSet* input, cdm::SizingField& sizing)
         ListValues(tuple, components) + ".");
     }
   }
-  auto interpolator = std::make_shared<SizingInterpolator>(input, values);
+  const auto interpolator = std::make_shared<const SizingInterpolator>(input, values);
   sizing = [interpolator](const cdm::Vec3& position) { return (*interpolator)(position); };
   return {};
 }
@@ -879,31 +972,33 @@ cdm::Status ToSizing(vtkDataSet* input, cdm::SizingField& sizing)
 //--------------------------------------------------------------------------------------------------
 cdm::Status ToSizingCells(vtkDataSet* input, cdm::SizingCells& cells)
 {
-  const cdm::Status status = CheckArrays(input);
-  if (!status.IsOk())
-  {
-    return status;
-  }
   const vtkIdType count = input->GetNumberOfPoints();
-  if (count > LargestId)
+  for (const cdm::Status& status : { CheckArrays(input), cdm::CheckIdRange(count, "points"),
+         cdm::CheckIdRange(input->GetNumberOfCells(), "cells") })
   {
-    return TooLarge("points", count);
+    if (!status.IsOk())
+    {
+      return status;
+    }
   }
   cells.Points.resize(count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    double x[3];
-    input->GetPoint(i, x);
-    cells.Points[i] = { x[0], x[1], x[2] };
-  }
+  ForEach(cells.Points.size(),
+    [&](std::size_t i)
+    {
+      double x[3];
+      input->GetPoint(static_cast<vtkIdType>(i), x);
+      cells.Points[i] = { x[0], x[1], x[2] };
+    });
   vtkNew<vtkIdList> ids;
   for (vtkIdType cell = 0; cell < input->GetNumberOfCells(); ++cell)
   {
     input->GetCellPoints(cell, ids);
     const vtkIdType size = ids->GetNumberOfIds();
-    if (static_cast<vtkIdType>(cells.Connectivity.size()) + size > LargestId)
+    const cdm::Status status =
+      cdm::CheckIdRange(cells.Connectivity.size() + size, "corners of cells");
+    if (!status.IsOk())
     {
-      return TooLarge("corners of cells", cells.Connectivity.size() + size);
+      return status;
     }
     if (UsesMissingPoints(size, ids->GetPointer(0), count))
     {
@@ -924,10 +1019,15 @@ vtkSmartPointer<vtkPoints> FromPoints(const std::vector<cdm::Vec3>& points)
   auto output = vtkSmartPointer<vtkPoints>::New();
   output->SetDataTypeToDouble();
   output->SetNumberOfPoints(static_cast<vtkIdType>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    output->SetPoint(static_cast<vtkIdType>(i), points[i].X, points[i].Y, points[i].Z);
-  }
+  double* const coordinates = vtkDoubleArray::SafeDownCast(output->GetData())->GetPointer(0);
+  ForEach(points.size(),
+    [&](std::size_t i)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        coordinates[3 * i + axis] = points[i][axis];
+      }
+    });
   return output;
 }
 
@@ -936,14 +1036,8 @@ void FromTriangleMesh(const cdm::TriangleMesh& surface, vtkPolyData* output)
 {
   output->SetPoints(FromPoints(surface.Points));
   const auto count = static_cast<vtkIdType>(surface.Triangles.size());
-  vtkNew<vtkCellArray> cells;
-  cells->AllocateExact(count, 3 * count);
-  for (const cdm::TriangleIds& triangle : surface.Triangles)
-  {
-    const vtkIdType ids[3] = { triangle[0], triangle[1], triangle[2] };
-    cells->InsertNextCell(3, ids);
-  }
-  output->SetPolys(cells);
+  output->SetPolys(
+    MakeCells(count, 3, [&](std::size_t i, int j) { return surface.Triangles[i][j]; }));
   if (!surface.Labels.empty())
   {
     vtkNew<vtkIntArray> labels;
@@ -963,21 +1057,11 @@ void FromTriangleMesh(const cdm::TriangleMesh& surface, vtkPolyData* output)
 void FromTetMesh(const cdm::TetMesh& mesh, vtkUnstructuredGrid* output)
 {
   output->SetPoints(FromPoints(mesh.Points));
-  const auto count = static_cast<vtkIdType>(mesh.Tetrahedra.size());
-  vtkNew<vtkCellArray> cells;
-  cells->AllocateExact(count, 4 * count);
-  vtkNew<vtkIntArray> regions;
-  regions->SetName(RegionIdName);
-  regions->SetNumberOfTuples(count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    const cdm::TetrahedronIds& tetrahedron = mesh.Tetrahedra[i];
-    const vtkIdType ids[4] = { tetrahedron[0], tetrahedron[1], tetrahedron[2], tetrahedron[3] };
-    cells->InsertNextCell(4, ids);
-    regions->SetValue(i, mesh.Regions[i]);
-  }
-  output->SetCells(VTK_TETRA, cells);
-  output->GetCellData()->SetScalars(regions);
+  const std::size_t count = mesh.Tetrahedra.size();
+  output->SetCells(
+    VTK_TETRA, MakeCells(count, 4, [&](std::size_t i, int j) { return mesh.Tetrahedra[i][j]; }));
+  output->GetCellData()->SetScalars(
+    MakeArray<vtkIntArray>(RegionIdName, count, [&](std::size_t i) { return mesh.Regions[i]; }));
 }
 
 //--------------------------------------------------------------------------------------------------

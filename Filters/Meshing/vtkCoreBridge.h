@@ -15,6 +15,7 @@
 
 #include "Core/AdvancingFrontTetrahedralizer.h"
 #include "Core/ExecutionContext.h"
+#include "Core/ParallelLoop.h"
 #include "Core/PolygonSoup.h"
 #include "Core/SizingField.h"
 #include "Core/Status.h"
@@ -22,6 +23,9 @@
 #include "Core/TetMesh.h"
 #include "Core/TriangleMesh.h"
 
+#include <vtkCellArray.h>
+#include <vtkIdTypeArray.h>
+#include <vtkNew.h>
 #include <vtkSmartPointer.h>
 #include <vtkType.h>
 
@@ -61,6 +65,60 @@ cdm::ExecutionContext MakeContext(vtkAlgorithm* filter);
 
 /** Call an engine function; running out of memory becomes a Status. */
 cdm::Status Guard(const std::function<cdm::Status()>& function);
+
+/** For the engine: as many as vtkSMPTools is allowed. */
+int GetNumberOfThreads();
+
+/** body(i) for all items, on so many threads; for short work, without progress. */
+template <typename Body>
+void ForEach(std::size_t count, const Body& body)
+{
+  cdm::ParallelLoop(count, { GetNumberOfThreads(), std::size_t(1) << 14 }, {}, "",
+    [&body](std::size_t begin, std::size_t end, std::size_t)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        body(i);
+      }
+    });
+}
+
+/** Cells with the same number of points: getPoint(i, j) is point j of cell i. */
+template <typename Function>
+vtkSmartPointer<vtkCellArray> MakeCells(std::size_t count, int size, const Function& getPoint)
+{
+  vtkNew<vtkIdTypeArray> offsets;
+  offsets->SetNumberOfValues(static_cast<vtkIdType>(count + 1));
+  vtkNew<vtkIdTypeArray> points;
+  points->SetNumberOfValues(static_cast<vtkIdType>(size * count));
+  vtkIdType* const offset = offsets->GetPointer(0);
+  vtkIdType* const point = points->GetPointer(0);
+  offset[0] = 0;
+  ForEach(count,
+    [&](std::size_t i)
+    {
+      offset[i + 1] = static_cast<vtkIdType>(size * (i + 1));
+      for (int j = 0; j < size; ++j)
+      {
+        point[size * i + j] = getPoint(i, j);
+      }
+    });
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
+  cells->SetData(offsets, points);
+  return cells;
+}
+
+/** An array of one component. */
+template <typename Array, typename Function>
+vtkSmartPointer<Array> MakeArray(const char* name, std::size_t count, const Function& getValue)
+{
+  auto array = vtkSmartPointer<Array>::New();
+  array->SetName(name);
+  array->SetNumberOfValues(static_cast<vtkIdType>(count));
+  auto* const values = array->GetPointer(0);
+  ForEach(count, [&](std::size_t i) { values[i] = getValue(i); });
+  return array;
+}
 
 /** Emit the error and empty all outputs; what RequestData has to return (1 after an abort). */
 int ReportFailure(vtkAlgorithm* filter, vtkInformationVector* outputs, const cdm::Status& status,

@@ -59,16 +59,9 @@ cdm::Status ToFans(vtkPolyData* input, cdm::TriangleMesh& boundary)
 }
 
 template <typename Array, typename Function>
-void AddArray(vtkFieldData* data, const char* name, std::size_t count, Function&& getValue)
+void AddArray(vtkFieldData* data, const char* name, std::size_t count, const Function& getValue)
 {
-  vtkNew<Array> array;
-  array->SetName(name);
-  array->SetNumberOfValues(static_cast<vtkIdType>(count));
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    array->SetValue(static_cast<vtkIdType>(i), getValue(i));
-  }
-  data->AddArray(array);
+  data->AddArray(vtkCoreBridge::MakeArray<Array>(name, count, getValue));
 }
 
 void AddQualities(const cdm::MeshCriteriaReport& report, vtkCellData* data)
@@ -235,8 +228,8 @@ int vtkDelaunayMeshCriteria::RequestData(
       }
       if (step.IsOk())
       {
-        step = cdm::EvaluateMeshCriteria(
-          mesh, surface ? &boundary : nullptr, {}, vtkCoreBridge::MakeContext(this), report);
+        step = cdm::EvaluateMeshCriteria(mesh, surface ? &boundary : nullptr,
+          { vtkCoreBridge::GetNumberOfThreads() }, vtkCoreBridge::MakeContext(this), report);
       }
       return step;
     });

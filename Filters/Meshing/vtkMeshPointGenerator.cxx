@@ -87,11 +87,8 @@ cdm::Status ToSpacing(const double (&spacing)[3], vtkPolyData* surface, cdm::Siz
 
 void AddIntArray(const char* name, const std::vector<cdm::Id>& values, vtkPolyData* output)
 {
-  vtkNew<vtkIntArray> array;
-  array->SetName(name);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  output->GetPointData()->AddArray(array);
+  output->GetPointData()->AddArray(vtkCoreBridge::MakeArray<vtkIntArray>(
+    name, values.size(), [&](std::size_t i) { return values[i]; }));
 }
 } // namespace
 
@@ -165,6 +162,7 @@ int vtkMeshPointGenerator::RequestData(
   options.Seed = static_cast<std::uint64_t>(this->Seed);
   options.BoundaryClearance = this->BoundaryClearance;
   options.MaximumNumberOfPoints = this->MaximumNumberOfPoints;
+  options.NumberOfThreads = vtkCoreBridge::GetNumberOfThreads();
   cdm::MeshPointGeneratorOutput result;
   const cdm::Status status = vtkCoreBridge::Guard(
     [&]
@@ -201,12 +199,8 @@ int vtkMeshPointGenerator::RequestData(
 
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
   output->SetPoints(vtkCoreBridge::FromPoints(result.Points));
-  vtkNew<vtkCellArray> vertices;
-  for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
-  {
-    vertices->InsertNextCell(1, &i);
-  }
-  output->SetVerts(vertices);
+  output->SetVerts(vtkCoreBridge::MakeCells(
+    result.Points.size(), 1, [](std::size_t i, int) { return static_cast<vtkIdType>(i); }));
   AddIntArray(vtkCoreBridge::RegionIdName, result.Regions, output);
   AddIntArray("Layer", result.Layers, output);
   if (result.Points.empty())

@@ -3,6 +3,7 @@
 
 #include "vtkCoreBridge.h"
 
+#include "Core/IdLimits.h"
 #include "Core/SizingField.h"
 
 #include <vtkCellType.h>
@@ -29,6 +30,11 @@ namespace
 /** One finite number for each point, and what can have a gradient. */
 cdm::Status CheckSolution(vtkDataSet* input, vtkDataArray* solution)
 {
+  const cdm::Status status = cdm::CheckIdRange(input->GetNumberOfPoints(), "points");
+  if (!status.IsOk())
+  {
+    return status;
+  }
   bool hasCells = false;
   for (vtkIdType cell = 0; cell < input->GetNumberOfCells() && !hasCells; ++cell)
   {
@@ -129,15 +135,22 @@ int vtkSizingFromSolution::RequestData(
       {
         sizes[i].resize(input->GetNumberOfPoints());
       }
-      for (vtkIdType point = 0; point < input->GetNumberOfPoints(); ++point)
+      vtkCoreBridge::ForEach(sizes[0].size(),
+        [&](std::size_t point)
+        {
+          double slopes[3];
+          gradient->GetTuple(static_cast<vtkIdType>(point), slopes);
+          slopes[0] = this->Anisotropic ? slopes[0] : vtkMath::Norm(slopes);
+          for (int i = 0; i < components; ++i)
+          {
+            const double size = increase / (regularization + std::abs(slopes[i]));
+            sizes[i][point] = std::min(std::max(size, this->MinimumSize), largest);
+          }
+        });
+      for (std::size_t point = 0; point < sizes[0].size(); ++point)
       {
-        double slopes[3];
-        gradient->GetTuple(point, slopes);
-        slopes[0] = this->Anisotropic ? slopes[0] : vtkMath::Norm(slopes);
         for (int i = 0; i < components; ++i)
         {
-          const double size = increase / (regularization + std::abs(slopes[i]));
-          sizes[i][point] = std::min(std::max(size, this->MinimumSize), largest);
           if (!(sizes[i][point] > 0.0 && std::isfinite(sizes[i][point])))
           {
             return cdm::Status::InvalidInput(
@@ -169,13 +182,15 @@ int vtkSizingFromSolution::RequestData(
   sizing->SetName(vtkCoreBridge::SizingName);
   sizing->SetNumberOfComponents(components);
   sizing->SetNumberOfTuples(output->GetNumberOfPoints());
-  for (vtkIdType point = 0; point < output->GetNumberOfPoints(); ++point)
-  {
-    for (int i = 0; i < components; ++i)
+  double* const values = sizing->GetPointer(0);
+  vtkCoreBridge::ForEach(sizes[0].size(),
+    [&](std::size_t point)
     {
-      sizing->SetComponent(point, i, sizes[i][point]);
-    }
-  }
+      for (int i = 0; i < components; ++i)
+      {
+        values[components * point + i] = sizes[i][point];
+      }
+    });
   output->GetPointData()->AddArray(sizing);
   return 1;
 }

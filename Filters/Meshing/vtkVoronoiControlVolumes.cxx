@@ -27,37 +27,28 @@ template <typename Item>
 void MakeVertices(const std::vector<Item>& items, const cdm::TetMesh& mesh, vtkPointData* pointData,
   vtkPolyData* output)
 {
-  const auto count = static_cast<vtkIdType>(items.size());
-  std::vector<cdm::Vec3> positions;
-  std::vector<vtkIdType> sources;
-  vtkNew<vtkIdTypeArray> ids;
-  ids->SetName("PointId");
-  vtkNew<vtkCellArray> vertices;
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    const cdm::Id point = items[i].Point;
-    positions.push_back(mesh.Points[point]);
-    sources.push_back(point);
-    ids->InsertNextValue(point);
-    vertices->InsertNextCell(1, &i);
-  }
+  const std::size_t count = items.size();
+  std::vector<cdm::Vec3> positions(count);
+  std::vector<vtkIdType> sources(count);
+  vtkCoreBridge::ForEach(count,
+    [&](std::size_t i)
+    {
+      sources[i] = items[i].Point;
+      positions[i] = mesh.Points[items[i].Point];
+    });
   output->SetPoints(vtkCoreBridge::FromPoints(positions));
-  output->SetVerts(vertices);
+  output->SetVerts(vtkCoreBridge::MakeCells(
+    count, 1, [](std::size_t i, int) { return static_cast<vtkIdType>(i); }));
   vtkCoreBridge::CopyTuples(pointData, sources, output->GetPointData());
-  output->GetPointData()->AddArray(ids);
+  output->GetPointData()->AddArray(vtkCoreBridge::MakeArray<vtkIdTypeArray>(
+    "PointId", count, [&](std::size_t i) { return sources[i]; }));
 }
 
 template <typename Array, typename Item, typename Function>
 vtkSmartPointer<Array> MakeArray(const char* name, const std::vector<Item>& items, Function&& get)
 {
-  auto array = vtkSmartPointer<Array>::New();
-  array->SetName(name);
-  array->SetNumberOfValues(static_cast<vtkIdType>(items.size()));
-  for (std::size_t i = 0; i < items.size(); ++i)
-  {
-    array->SetValue(static_cast<vtkIdType>(i), get(items[i]));
-  }
-  return array;
+  return vtkCoreBridge::MakeArray<Array>(
+    name, items.size(), [&](std::size_t i) { return get(items[i]); });
 }
 
 void MakeBoxVertices(const cdm::ControlVolumes& volumes, const cdm::TetMesh& mesh,
@@ -74,16 +65,9 @@ void MakeCouplings(const cdm::ControlVolumes& volumes, const cdm::TetMesh& mesh,
   vtkPointData* pointData, vtkPolyData* output)
 {
   const auto& couplings = volumes.Couplings;
-  vtkNew<vtkCellArray> lines;
-  lines->AllocateExact(
-    static_cast<vtkIdType>(couplings.size()), 2 * static_cast<vtkIdType>(couplings.size()));
-  for (const cdm::EdgeCoupling& coupling : couplings)
-  {
-    const vtkIdType ids[2] = { coupling.Points[0], coupling.Points[1] };
-    lines->InsertNextCell(2, ids);
-  }
   output->SetPoints(vtkCoreBridge::FromPoints(mesh.Points));
-  output->SetLines(lines);
+  output->SetLines(vtkCoreBridge::MakeCells(
+    couplings.size(), 2, [&](std::size_t i, int j) { return couplings[i].Points[j]; }));
   output->GetPointData()->PassData(pointData);
   output->GetCellData()->AddArray(MakeArray<vtkIntArray>(vtkCoreBridge::RegionIdName, couplings,
     [](const cdm::EdgeCoupling& coupling) { return coupling.Region; }));
@@ -211,7 +195,8 @@ int vtkVoronoiControlVolumes::RequestData(
       cdm::Status step = vtkCoreBridge::ToTetMesh(input, mesh);
       if (step.IsOk())
       {
-        step = cdm::ComputeControlVolumes(mesh, {}, context.Part(0.0, share), volumes);
+        step = cdm::ComputeControlVolumes(
+          mesh, { vtkCoreBridge::GetNumberOfThreads() }, context.Part(0.0, share), volumes);
       }
       if (step.IsOk() && this->GenerateBoxes)
       {

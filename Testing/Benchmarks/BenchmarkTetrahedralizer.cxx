@@ -21,6 +21,7 @@
  * --list programs: those that there are, one on each line, with the version where it is known.
  */
 #include "Core/AdvancingFrontTetrahedralizer.h"
+#include "Measurement.h"
 #include "TetgenFiles.h"
 
 #ifdef CDM_HAS_CGAL_TRIANGULATION
@@ -41,12 +42,10 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
 #include <functional>
 #include <map>
 #include <random>
@@ -55,8 +54,6 @@
 #include <vector>
 
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace
 {
@@ -164,124 +161,31 @@ PointSet MakePoints(const std::string& input, std::size_t count)
   return points;
 }
 
-rusage GetUsage()
-{
-  rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
-  return usage;
-}
-
-double GetUserTime(const rusage& usage)
-{
-  return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * usage.ru_utime.tv_usec;
-}
-
-struct Result
-{
-  /** User time. */
-  double Seconds = -1.0;
-  /** User and system time, which the kernel cannot tell apart exactly. */
-  double ProcessorSeconds = 0.0;
-  double WallSeconds = 0.0;
-  double Megabytes = 0.0;
-  double Tetrahedra = 0.0;
-};
-
-/** Started by a program when it has its input, and stopped when it has its tetrahedra. */
-struct Clock
-{
-  double User = 0.0;
-  std::clock_t Processor = 0;
-  std::chrono::steady_clock::time_point Wall;
-  Result Measured;
-
-  void Start()
-  {
-    this->User = GetUserTime(GetUsage());
-    this->Processor = std::clock();
-    this->Wall = std::chrono::steady_clock::now();
-  }
-
-  void Stop(std::size_t tetrahedra)
-  {
-    const rusage usage = GetUsage();
-    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - this->Wall;
-    this->Measured.Seconds = GetUserTime(usage) - this->User;
-    this->Measured.ProcessorSeconds =
-      static_cast<double>(std::clock() - this->Processor) / CLOCKS_PER_SEC;
-    this->Measured.WallSeconds = wall.count();
-    this->Measured.Megabytes = static_cast<double>(usage.ru_maxrss) / 1024.0;
-    this->Measured.Tetrahedra = static_cast<double>(tetrahedra);
-  }
-};
-
 /**
  * A program converts the points, starts the clock, meshes, and stops it. Then it gives its result
  * to mesh, unless that is null.
  */
 using Program = std::function<void(const PointSet&, Clock& clock, TetgenMesh* mesh)>;
 
-/** A measurement under way. */
-struct Run
-{
-  pid_t Process = -1;
-  int End = -1;
-};
-
-Run Start(const std::string& input, std::size_t count, const Program& program, double limit)
-{
-  int ends[2];
-  if (pipe(ends) != 0)
-  {
-    return Run();
-  }
-  const pid_t child = fork();
-  if (child == 0)
-  {
-    close(ends[0]);
-    const PointSet points = MakePoints(input, count);
-    const rlim_t seconds = static_cast<rlim_t>(std::ceil(GetUserTime(GetUsage()) + 2.0 * limit));
-    const rlimit bound{ seconds, seconds };
-    setrlimit(RLIMIT_CPU, &bound);
-    Clock clock;
-    program(points, clock, nullptr);
-    const Result& result = clock.Measured;
-    const bool isWritten = write(ends[1], &result, sizeof(result)) == sizeof(result);
-    _exit(isWritten ? 0 : 1);
-  }
-  close(ends[1]);
-  return { child, ends[0] };
-}
-
-Result Finish(const Run& run)
-{
-  Result result;
-  const bool isRead = read(run.End, &result, sizeof(result)) == sizeof(result);
-  close(run.End);
-  int status = 0;
-  waitpid(run.Process, &status, 0);
-  const bool isDone = isRead && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  return isDone && result.Tetrahedra > 0.0 ? result : Result();
-}
-
-/** Several copies at the same time: the wall time is that of the slowest, the rest that of one. */
-Result Measure(
+Measurement MeasureProgram(
   const std::string& input, std::size_t count, const Program& program, int copies, double limit)
 {
-  std::vector<Run> runs;
-  for (int i = 0; i < copies; ++i)
+  const Work work = [&](Clock& clock)
   {
-    runs.push_back(Start(input, count, program, limit));
-  }
-  Result slowest;
-  bool hasFailed = false;
-  for (const Run& run : runs)
-  {
-    const Result result = Finish(run);
-    hasFailed = hasFailed || result.Seconds < 0.0;
-    slowest = result.WallSeconds > slowest.WallSeconds ? result : slowest;
-  }
-  return hasFailed ? Result() : slowest;
+    const PointSet points = MakePoints(input, count);
+    const rlim_t seconds = static_cast<rlim_t>(std::ceil(GetUserTime() + 2.0 * limit));
+    const rlimit bound{ seconds, seconds };
+    setrlimit(RLIMIT_CPU, &bound);
+    program(points, clock, nullptr);
+  };
+  return Measure(work, copies);
+}
+
+/** What a program has made. */
+std::array<double, 2> GetCounts(const PointSet& points, std::size_t tetrahedra)
+{
+  return { tetrahedra > 0 ? static_cast<double>(points.size()) : 0.0,
+    static_cast<double>(tetrahedra) };
 }
 
 void RunOurs(const PointSet& points, Clock& clock, int threads, TetgenMesh* mesh)
@@ -294,7 +198,7 @@ void RunOurs(const PointSet& points, Clock& clock, int threads, TetgenMesh* mesh
   options.NumberOfThreads = threads;
   cdm::AdvancingFrontTetrahedralizerOutput output;
   const cdm::Status status = cdm::TetrahedralizeByAdvancingFront(input, options, {}, output);
-  clock.Stop(status.IsOk() ? output.Mesh.Tetrahedra.size() : 0);
+  clock.Stop(GetCounts(points, status.IsOk() ? output.Mesh.Tetrahedra.size() : 0));
   if (mesh)
   {
     mesh->Points.assign(output.Mesh.Points.begin(), output.Mesh.Points.end());
@@ -319,7 +223,7 @@ void RunCgal(const PointSet& points, Clock& clock, TetgenMesh* mesh)
   // The constructor sorts the points along a curve.
   using Triangulation = CGAL::Delaunay_triangulation_3<Kernel>;
   const Triangulation triangulation(converted.begin(), converted.end());
-  clock.Stop(triangulation.number_of_finite_cells());
+  clock.Stop(GetCounts(points, triangulation.number_of_finite_cells()));
   if (mesh)
   {
     std::map<Triangulation::Vertex_handle, std::size_t> numbers;
@@ -354,7 +258,7 @@ void RunTetgen(const PointSet& points, Clock& clock, TetgenMesh* mesh)
   clock.Start();
   char switches[] = "Q";
   tetrahedralize(switches, &in, &out);
-  clock.Stop(static_cast<std::size_t>(out.numberoftetrahedra));
+  clock.Stop(GetCounts(points, static_cast<std::size_t>(out.numberoftetrahedra)));
   if (mesh)
   {
     mesh->Points = points;
@@ -384,7 +288,7 @@ void RunVtk(const PointSet& points, Clock& clock, TetgenMesh* mesh)
   delaunay->SetInputData(input);
   delaunay->Update();
   vtkUnstructuredGrid* output = delaunay->GetOutput();
-  clock.Stop(static_cast<std::size_t>(output->GetNumberOfCells()));
+  clock.Stop(GetCounts(points, static_cast<std::size_t>(output->GetNumberOfCells())));
   if (mesh)
   {
     mesh->Points = points;
@@ -402,20 +306,6 @@ void RunVtk(const PointSet& points, Clock& clock, TetgenMesh* mesh)
   }
 }
 #endif
-
-/** Of each quantity by itself. */
-Result GetMedian(std::vector<Result> results)
-{
-  const auto middle = results.begin() + static_cast<std::ptrdiff_t>(results.size() / 2);
-  Result median = results.front();
-  for (double Result::*quantity : { &Result::Seconds, &Result::WallSeconds, &Result::Megabytes })
-  {
-    std::nth_element(results.begin(), middle, results.end(),
-      [quantity](const Result& a, const Result& b) { return a.*quantity < b.*quantity; });
-    median.*quantity = (*middle).*quantity;
-  }
-  return median;
-}
 
 struct Entry
 {
@@ -453,12 +343,12 @@ int RunSingle(const std::vector<Entry>& programs, const std::string& name, const
   program->Make(points, clock, meshName.empty() ? nullptr : &mesh);
   std::printf("points %zu seconds %g wall %g megabytes %g tetrahedra %.0f\n", points.size(),
     clock.Measured.ProcessorSeconds, clock.Measured.WallSeconds, clock.Measured.Megabytes,
-    clock.Measured.Tetrahedra);
+    clock.Measured.Counts[1]);
   if (!meshName.empty())
   {
     WriteTetgenFiles(mesh, meshName);
   }
-  return clock.Measured.Tetrahedra > 0.0 ? 0 : 1;
+  return clock.Measured.Counts[1] > 0.0 ? 0 : 1;
 }
 } // namespace
 
@@ -573,7 +463,7 @@ int main(int argc, char* argv[])
   {
     for (const std::string& input : inputs)
     {
-      std::map<std::string, std::vector<Result>> results;
+      std::map<std::string, std::vector<Measurement>> results;
       std::set<std::string> tooSlow;
       for (const Entry& program : programs)
       {
@@ -588,7 +478,7 @@ int main(int argc, char* argv[])
         {
           if (tooSlow.count(name) == 0)
           {
-            const Result result = Measure(input, size, program, copies, limit);
+            const Measurement result = MeasureProgram(input, size, program, copies, limit);
             results[name].push_back(result);
             const bool isFast = result.Seconds >= 0.0 && result.Seconds <= limit;
             costs[{ name, input }] =
@@ -607,7 +497,7 @@ int main(int argc, char* argv[])
         {
           continue;
         }
-        const Result median = GetMedian(results[name]);
+        const Measurement median = GetMedian(results[name]);
         if (median.Seconds < 0.0)
         {
           std::printf("| %s | %zu | %s | fails, or > %g | | | | | |\n", input.c_str(), size,
@@ -616,8 +506,8 @@ int main(int argc, char* argv[])
         }
         std::printf("| %s | %zu | %s | %.3f | %.2f | %.3f | %.0f | %.0f | %.0f |\n", input.c_str(),
           size, name.c_str(), median.Seconds, ours > 0.0 ? median.Seconds / ours : 0.0,
-          median.WallSeconds, median.Tetrahedra / median.Seconds, median.Megabytes,
-          median.Megabytes * 1048576.0 / median.Tetrahedra);
+          median.WallSeconds, median.Counts[1] / median.Seconds, median.Megabytes,
+          median.Megabytes * 1048576.0 / median.Counts[1]);
         std::fflush(stdout);
       }
     }

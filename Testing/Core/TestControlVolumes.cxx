@@ -359,19 +359,36 @@ TEST(ControlVolumes, SharesOfSliversSumUp)
 
 TEST(ControlVolumes, SameForAnyNumberOfThreads)
 {
-  const TetMesh mesh = MakeHullMesh(MakeRandomPoints(6000, 4));
-  const ControlVolumes one = Compute(mesh, 1);
-  const ControlVolumes three = Compute(mesh, 3);
-  ASSERT_EQ(one.Couplings.size(), three.Couplings.size());
-  for (std::size_t i = 0; i < one.Couplings.size(); ++i)
+  TetMesh mesh = MakeHullMesh(MakeRandomPoints(20000, 4));
+  for (std::size_t i = 0; i < mesh.Tetrahedra.size(); ++i)
   {
-    EXPECT_EQ(one.Couplings[i].Points, three.Couplings[i].Points);
-    EXPECT_EQ(one.Couplings[i].Area, three.Couplings[i].Area);
+    mesh.Regions[i] = static_cast<Id>(5.0 * mesh.Points[mesh.Tetrahedra[i][0]].X);
   }
-  ASSERT_EQ(one.Boxes.size(), three.Boxes.size());
-  for (std::size_t i = 0; i < one.Boxes.size(); ++i)
+  const ControlVolumes one = Compute(mesh, 1);
+  for (const int threads : { 2, 3, 8 })
   {
-    EXPECT_EQ(one.Boxes[i].Volume, three.Boxes[i].Volume);
+    const ControlVolumes other = Compute(mesh, threads);
+    ASSERT_EQ(one.Couplings.size(), other.Couplings.size());
+    for (std::size_t i = 0; i < one.Couplings.size(); ++i)
+    {
+      ASSERT_EQ(one.Couplings[i].Points, other.Couplings[i].Points);
+      ASSERT_EQ(one.Couplings[i].Region, other.Couplings[i].Region);
+      ASSERT_EQ(one.Couplings[i].Area, other.Couplings[i].Area);
+    }
+    EXPECT_EQ(one.NegativeCouplings, other.NegativeCouplings);
+    ASSERT_EQ(one.Boxes.size(), other.Boxes.size());
+    for (std::size_t i = 0; i < one.Boxes.size(); ++i)
+    {
+      ASSERT_EQ(one.Boxes[i].Point, other.Boxes[i].Point);
+      ASSERT_EQ(one.Boxes[i].Region, other.Boxes[i].Region);
+      ASSERT_EQ(one.Boxes[i].Volume, other.Boxes[i].Volume);
+    }
+    ASSERT_EQ(one.BoundaryAreas.size(), other.BoundaryAreas.size());
+    for (std::size_t i = 0; i < one.BoundaryAreas.size(); ++i)
+    {
+      ASSERT_EQ(one.BoundaryAreas[i].Point, other.BoundaryAreas[i].Point);
+      ASSERT_EQ(one.BoundaryAreas[i].Area, other.BoundaryAreas[i].Area);
+    }
   }
 }
 

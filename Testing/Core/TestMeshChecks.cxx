@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "EmptySphereSearch.h"
+#include "HullMeshes.h"
 #include "MeshChecks.h"
 #include "Predicates.h"
+#include "SimplexIncidence.h"
 
 #include <gtest/gtest.h>
 
@@ -13,6 +15,7 @@
 #include <utility>
 
 using namespace cdm;
+using namespace testing_core;
 
 namespace
 {
@@ -585,4 +588,88 @@ TEST(EmptySphereSearch, SpheresOfFlatTetrahedraStayNarrow)
       });
   }
   EXPECT_GT(tetrahedra, 5);
+}
+
+TEST(EmptySphereSearch, FindsTheSameWithATreeOfSeveralThreads)
+{
+  const std::vector<Vec3> points = MakeRandomPoints(40000, 8);
+  const EmptySphereSearch one(points, 1);
+  for (const int threads : { 2, 3, 8 })
+  {
+    const EmptySphereSearch other(points, threads);
+    for (Id i = 0; i + 1 < 400; ++i)
+    {
+      const EdgeIds edge{ i, i + 1 };
+      const SphereForm sphere(points[i], points[i + 1]);
+      const auto list = [&](const EmptySphereSearch& search)
+      {
+        std::vector<Id> found;
+        search.FindInside(sphere, edge,
+          [&found](Id point)
+          {
+            found.push_back(point);
+            return found.size() >= 50;
+          });
+        return found;
+      };
+      ASSERT_EQ(list(one), list(other));
+    }
+  }
+}
+
+TEST(SimplexIncidence, HasEachFacetAndEdgeAtItsLowestPoint)
+{
+  const TetMesh mesh = MakeHullMesh(MakeRandomPoints(40000, 9));
+  const std::size_t count = mesh.Tetrahedra.size();
+  for (const int threads : { 1, 2, 3, 8 })
+  {
+    const SimplexIncidence incidence(mesh, threads);
+    std::vector<char> corners(4 * count, 0);
+    std::vector<char> facets(4 * count, 0);
+    std::vector<char> edges(6 * count, 0);
+    std::vector<SimplexIncidence::Record> scratch;
+    for (Id point = 0; point < static_cast<Id>(mesh.Points.size()); ++point)
+    {
+      incidence.ForEachTetrahedron(point,
+        [&](Id tetrahedron, int vertex)
+        {
+          ASSERT_EQ(mesh.Tetrahedra[tetrahedron][vertex], point);
+          ++corners[4 * tetrahedron + vertex];
+        });
+      incidence.ForEachFacet(point, scratch,
+        [&](const TriangleIds& ids, auto begin, auto end)
+        {
+          ASSERT_TRUE(ids[0] == point && ids[0] < ids[1] && ids[1] < ids[2]);
+          for (auto record = begin; record != end; ++record)
+          {
+            TriangleIds facet = GetFacet(mesh.Tetrahedra[record->Simplex / 4], record->Simplex % 4);
+            std::sort(facet.begin(), facet.end());
+            ASSERT_EQ(facet, ids);
+            ++facets[record->Simplex];
+          }
+        });
+      incidence.ForEachEdge(point, scratch,
+        [&](const TriangleIds& ids, auto begin, auto end)
+        {
+          ASSERT_TRUE(ids[0] == point && ids[0] < ids[1] && ids[2] == NoId);
+          for (auto record = begin; record != end; ++record)
+          {
+            const TetrahedronIds& tetrahedron = mesh.Tetrahedra[record->Simplex / 6];
+            const int* ends = TetrahedronEdges[record->Simplex % 6];
+            ASSERT_EQ(ids[0] + ids[1], tetrahedron[ends[0]] + tetrahedron[ends[1]]);
+            ASSERT_EQ(ids[0], std::min(tetrahedron[ends[0]], tetrahedron[ends[1]]));
+            ++edges[record->Simplex];
+          }
+        });
+    }
+    for (const std::vector<char>& visits : { corners, facets, edges })
+    {
+      EXPECT_EQ(std::count(visits.begin(), visits.end(), 1), static_cast<long>(visits.size()));
+    }
+    TetMesh other = mesh;
+    other.Neighbors.clear();
+    ASSERT_TRUE(BuildNeighbors(other, threads).IsOk());
+    EXPECT_TRUE(std::equal(other.Neighbors.begin(), other.Neighbors.end(), mesh.Neighbors.begin(),
+      mesh.Neighbors.end()));
+  }
 }

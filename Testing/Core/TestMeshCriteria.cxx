@@ -272,18 +272,33 @@ TEST(MeshCriteria, GridsAreCleanAndRoundingLeavesNoNegativeSums)
 
 TEST(MeshCriteria, SameForAnyNumberOfThreads)
 {
-  const TetMesh mesh = MakeHullMesh(MakeRandomPoints(9000, 3));
-  const MeshCriteriaReport one = Evaluate(mesh, 1);
-  const MeshCriteriaReport three = Evaluate(mesh, 3);
-  EXPECT_EQ(one.GetCertificate(), three.GetCertificate());
-  ASSERT_EQ(one.Violations.size(), three.Violations.size());
-  ASSERT_GT(one.Violations.size(), 100u);
-  for (std::size_t i = 0; i < one.Violations.size(); ++i)
+  // Enough points for a tree that threads build, and regions in slabs.
+  TetMesh mesh = MakeHullMesh(MakeRandomPoints(40000, 3));
+  for (std::size_t i = 0; i < mesh.Tetrahedra.size(); ++i)
   {
-    EXPECT_EQ(one.Violations[i].Fault, three.Violations[i].Fault);
-    EXPECT_EQ(one.Violations[i].Points, three.Violations[i].Points);
-    EXPECT_EQ(one.Violations[i].Tetrahedron, three.Violations[i].Tetrahedron);
-    EXPECT_EQ(one.Violations[i].Region, three.Violations[i].Region);
+    mesh.Regions[i] = static_cast<Id>(5.0 * mesh.Points[mesh.Tetrahedra[i][0]].X);
+  }
+  const MeshCriteriaReport one = Evaluate(mesh, 1);
+  ASSERT_GT(one.Violations.size(), 100u);
+  for (const int threads : { 2, 3, 8 })
+  {
+    const MeshCriteriaReport other = Evaluate(mesh, threads);
+    EXPECT_EQ(one.GetCertificate(), other.GetCertificate());
+    ASSERT_EQ(one.Violations.size(), other.Violations.size());
+    for (std::size_t i = 0; i < one.Violations.size(); ++i)
+    {
+      ASSERT_EQ(one.Violations[i].Fault, other.Violations[i].Fault);
+      ASSERT_EQ(one.Violations[i].Points, other.Violations[i].Points);
+      ASSERT_EQ(one.Violations[i].Tetrahedron, other.Violations[i].Tetrahedron);
+      ASSERT_EQ(one.Violations[i].Region, other.Violations[i].Region);
+    }
+    ASSERT_EQ(one.Regions.size(), 5u);
+    for (std::size_t i = 0; i < one.Regions.size(); ++i)
+    {
+      EXPECT_EQ(one.Regions[i].Tetrahedra, other.Regions[i].Tetrahedra);
+      EXPECT_EQ(one.Regions[i].Volume, other.Regions[i].Volume);
+      EXPECT_EQ(one.Regions[i].EnclosedVolume, other.Regions[i].EnclosedVolume);
+    }
   }
 }
 

@@ -504,3 +504,45 @@ TEST(MeshPointGenerator, ReportsProgressAndAborts)
     }
   }
 }
+
+TEST(MeshPointGenerator, TheSameForAnyNumberOfThreads)
+{
+  const TriangleMesh stack = MakeStack({ 1.0, 1.0, 1.0 }, { 0.5 }, 0.3);
+  const SizingField graded = [](const Vec3& p) {
+    return 0.02 + 0.1 * Distance(p, { 0.3, 0.2, 0.1 });
+  };
+  const SizingField flat = [](const Vec3& p) {
+    return LocalSpacing(Vec3{ 0.05 + 0.1 * p.X, 0.1, 0.03 + 0.05 * p.Y });
+  };
+  struct Case
+  {
+    PointPlacement Placement;
+    bool HasLayers;
+  };
+  for (const SizingField& sizing : { graded, flat })
+  {
+    for (const Case& one : { Case{ PointPlacement::Octree, false },
+           Case{ PointPlacement::OrthoProduct, true }, Case{ PointPlacement::Random, false },
+           Case{ PointPlacement::Random, true }, Case{ PointPlacement::None, true } })
+    {
+      MeshPointGeneratorOptions options = MakeOptions(one.Placement);
+      options.SmoothingIterations = 2;
+      if (one.HasLayers)
+      {
+        options.Layers = { { 0, 1, 3, 0.01, 1.2 } };
+      }
+      options.NumberOfThreads = 1;
+      const MeshPointGeneratorOutput expected = Generate(stack, sizing, options);
+      EXPECT_GT(expected.Points.size(), one.Placement == PointPlacement::None ? 100u : 3000u);
+      for (const int threads : { 2, 3, 8 })
+      {
+        options.NumberOfThreads = threads;
+        const MeshPointGeneratorOutput output = Generate(stack, sizing, options);
+        EXPECT_EQ(output.Points, expected.Points) << threads;
+        EXPECT_EQ(output.Regions, expected.Regions) << threads;
+        EXPECT_EQ(output.Layers, expected.Layers) << threads;
+        EXPECT_EQ(output.DroppedLayerPoints, expected.DroppedLayerPoints) << threads;
+      }
+    }
+  }
+}

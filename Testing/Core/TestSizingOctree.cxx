@@ -165,3 +165,30 @@ TEST(SizingOctree, RefusesTooFineSizings)
   EXPECT_EQ(deep.Result.Code, StatusCode::InvalidInput);
   EXPECT_NE(deep.Result.Message.find("2^19"), std::string::npos);
 }
+
+TEST(SizingOctree, TheSameForAnyNumberOfThreads)
+{
+  const auto flat = [](const Vec3& p) {
+    return LocalSpacing(Vec3{ 0.01 + 0.3 * p.X, 0.1 + 0.2 * p.Z, 0.02 + 0.5 * p.Y });
+  };
+  for (const SizingField& sizing : { SizingField(GetConeSpacing), SizingField(flat) })
+  {
+    SizingOctreeOptions options;
+    options.NumberOfThreads = 1;
+    const Tree one({ 1.0, 1.5, 0.5 }, sizing, options);
+    EXPECT_GT(one.Octree.GetLeaves().size(), 1000u);
+    for (const int threads : { 2, 3, 8 })
+    {
+      options.NumberOfThreads = threads;
+      const Tree other({ 1.0, 1.5, 0.5 }, sizing, options);
+      ASSERT_EQ(other.Octree.GetLeaves().size(), one.Octree.GetLeaves().size());
+      for (std::size_t i = 0; i < one.Octree.GetLeaves().size(); ++i)
+      {
+        const SizingOctree::Leaf& a = one.Octree.GetLeaves()[i];
+        const SizingOctree::Leaf& b = other.Octree.GetLeaves()[i];
+        ASSERT_TRUE(
+          a.Low == b.Low && a.Size == b.Size && a.Spacing == b.Spacing && a.Region == b.Region);
+      }
+    }
+  }
+}

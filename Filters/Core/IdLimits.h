@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file IdLimits.h
+ * @brief What 32-bit ids can count: asked wherever numbers of things enter the engine.
+ */
+#ifndef cdmIdLimits_h
+#define cdmIdLimits_h
+
+#include "Status.h"
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+namespace cdm
+{
+constexpr std::uint64_t LargestId = std::numeric_limits<Id>::max();
+
+/** Ids made from that of a tetrahedron: 6 * tetrahedron + i for its edges. */
+constexpr std::uint64_t EdgesOfTetrahedron = 6;
+/** Ids made from that of a triangle: 3 * triangle + i for its edges. */
+constexpr std::uint64_t EdgesOfTriangle = 3;
+
+/** InvalidInput if there are too many of them; what names them. */
+inline Status CheckIdRange(std::uint64_t number, const char* what)
+{
+  return number <= LargestId
+    ? Status()
+    : Status::InvalidInput("The input has " + std::to_string(number) + " " + what +
+        ", more than the 2147483647 that 32-bit ids can count. Mesh it in parts.");
+}
+
+inline Status CheckNumberOfTetrahedra(std::uint64_t number)
+{
+  return number <= LargestId / EdgesOfTetrahedron
+    ? Status()
+    : Status::InvalidInput("The mesh has " + std::to_string(number) +
+        " tetrahedra, more than the " + std::to_string(LargestId / EdgesOfTetrahedron) +
+        " whose edges 32-bit ids can count. Split it.");
+}
+
+inline Status CheckNumberOfTriangles(std::uint64_t number)
+{
+  return number <= LargestId / EdgesOfTriangle
+    ? Status()
+    : Status::InvalidInput("The surface has " + std::to_string(number) +
+        " polygons, more than the " + std::to_string(LargestId / EdgesOfTriangle) +
+        " whose edges 32-bit ids can count. Mesh it in parts.");
+}
+} // namespace cdm
+
+#endif
