@@ -204,8 +204,8 @@ def FillChart(chart, title, results):
     chart.GetTitleProperties().SetFontSize(16)
     chart.SetShowLegend(True)
     legend = chart.GetLegend()
-    legend.SetHorizontalAlignment(legend.RIGHT)
-    legend.SetVerticalAlignment(legend.BOTTOM)
+    legend.SetHorizontalAlignment(legend.LEFT)
+    legend.SetVerticalAlignment(legend.TOP)
     legend.SetLabelSize(13)
     done = [result for result in results if GetMedian(result, "seconds")]
     if not done:
