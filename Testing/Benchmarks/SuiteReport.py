@@ -20,7 +20,8 @@ from vtkmodules.vtkViewsContext2D import vtkContextView
 # Shorter times say little: they are left out of ratios.
 SHORTEST = 0.01
 WIDTH, HEIGHT = 1200, 520
-COLOURS = ((38, 94, 170), (214, 96, 38), (62, 150, 81), (140, 84, 158), (120, 120, 120), (196, 160, 0))
+COLOURS = ((38, 94, 170), (214, 96, 38), (62, 150, 81), (140, 84, 158), (120, 120, 120),
+           (196, 160, 0))
 
 INTRODUCTION = """# The suite beside other programs
 
@@ -52,8 +53,9 @@ The Delaunay mesh of the convex hull. Couplings of the tetrahedra at the hull ma
 Devices of `vtkTechnologyStructureSource` with all materials. Ours: criterion 3.2, radius-edge ratio
 1.4, dihedral angle 15 degrees; TetGen: its switches; V is the same largest volume for both, a share
 of the bounding box. CGAL's Mesh_3: edges and circumradii of the regular tetrahedron of that volume,
-radius-edge ratio 2, all edges that bend by a degree. Gmsh takes a size to be met, not a limit: that for which its Delaunay mesh has
-as many tetrahedra as ours, as far as four tries come; both of its algorithms get the same.
+radius-edge ratio 2, all edges that bend by a degree. Gmsh takes a size to be met, not a limit: that
+for which its Delaunay mesh has as many tetrahedra as ours, as far as four tries come; both of its
+algorithms get the same.
 """,
     "models": """## Models
 
@@ -67,7 +69,8 @@ includes the check of the result, which the others do not have.
 Size: random points. `vtkDelaunay3D` ends where the next size would take too long.
 """,
     "device growth": """Size: the volume of the via plug's box by the largest volume of a
-tetrahedron. As the devices above; for Gmsh, too, the edge of the regular tetrahedron of that volume.
+tetrahedron. As the devices above; for Gmsh, too, the edge of the regular tetrahedron of that
+volume.
 """}
 
 
@@ -201,8 +204,8 @@ def FillChart(chart, title, results):
     chart.GetTitleProperties().SetFontSize(16)
     chart.SetShowLegend(True)
     legend = chart.GetLegend()
-    legend.SetHorizontalAlignment(legend.RIGHT)
-    legend.SetVerticalAlignment(legend.BOTTOM)
+    legend.SetHorizontalAlignment(legend.LEFT)
+    legend.SetVerticalAlignment(legend.TOP)
     legend.SetLabelSize(13)
     done = [result for result in results if GetMedian(result, "seconds")]
     if not done:
