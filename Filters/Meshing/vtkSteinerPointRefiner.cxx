@@ -39,7 +39,7 @@ void AddFlags(vtkDataSetAttributes* data, const char* name, const std::vector<T>
   data->AddArray(array);
 }
 
-/** "3 larger, 1 with a smaller dihedral angle", for what there is. */
+/** "3 are too large", for what there is. */
 std::string ListFaults(const cdm::SteinerPointRefinerReport& report)
 {
   std::string text;
@@ -50,9 +50,9 @@ std::string ListFaults(const cdm::SteinerPointRefinerReport& report)
       text += (text.empty() ? "" : ", ") + std::to_string(count) + what;
     }
   };
-  add(report.TooLarge, " larger");
-  add(report.BadlyShaped, " with a larger radius-edge ratio");
-  add(report.Slivers, " with a smaller dihedral angle");
+  add(report.TooLarge, " are too large");
+  add(report.BadlyShaped, " have a larger radius-edge ratio");
+  add(report.Slivers, " have a smaller dihedral angle");
   return text;
 }
 } // namespace
@@ -192,7 +192,7 @@ int vtkSteinerPointRefiner::RequestData(
   }
   if (!faults.empty())
   {
-    vtkWarningMacro(<< "Of " << result.Mesh.Tetrahedra.size() << " tetrahedra there are " << faults
+    vtkWarningMacro(<< "Of " << result.Mesh.Tetrahedra.size() << " tetrahedra " << faults
                     << " than asked for: see the cell array " << FaultName
                     << ". Ask for less, or allow more points.");
   }

@@ -7,9 +7,14 @@ import sys
 import GalleryExample
 
 MODELS = (
-    ("hand", "hand_igl.vtp", ("edges", "front", "mesh")),
-    ("cow", "cow_viewpoint_poly.vtp", ("edges", "mesh")),
-    ("skull", "skull_stein_full.vtp", ("edges", "mesh", "sections")))
+    ("hand", "hand_igl.vtp", (
+        ("hand_edges.png", "GalleryHandEdges.png"), ("hand_front.png", "GalleryHandFront.png"),
+        ("hand_mesh.png", "GalleryHandMesh.png"))),
+    ("cow", "cow_viewpoint_poly.vtp", (
+        ("cow_edges.png", "GalleryCowEdges.png"), ("cow_mesh.png", "GalleryCowMesh.png"))),
+    ("skull", "skull_stein_full.vtp", (
+        ("skull_edges.png", "GallerySkullEdges.png"), ("skull_mesh.png", "GallerySkullMesh.png"),
+        ("skull_sections.png", "GallerySkullSections.png"))))
 folder = os.path.join(os.environ["CDM_SHARED_DIR"], "data")
 missing = [name for _, name, _ in MODELS if not os.path.exists(os.path.join(folder, name))]
 if missing:
@@ -17,7 +22,6 @@ if missing:
     sys.exit(77)
 for kind, name, pictures in MODELS:
     GalleryExample.Check(
-        "solid_models.py", (kind + ".vtu",),
-        [("%s_%s.png" % (kind, picture), "Gallery%s%s.png" % (kind.title(), picture.title()))
-         for picture in pictures],
-        arguments=(kind, os.path.join(folder, name)), certificate="0 inverted, 0 flat, 0 non-Delaunay;")
+        "solid_models.py", (kind + ".vtu",), pictures,
+        arguments=(kind, os.path.join(folder, name)),
+        certificate="0 inverted, 0 flat, 0 non-Delaunay;")
