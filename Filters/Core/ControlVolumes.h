@@ -16,7 +16,7 @@
  * of its boundary, on every mesh; areas are signed, so that this holds where couplings are negative
  * too (those are counted). Deterministic for any number of threads.
  * Failure: InvalidInput names tetrahedra that are inverted or flat.
- * Cost: O(n log n); 140 bytes per tetrahedron.
+ * Cost: O(n log n); 160 bytes per tetrahedron.
  * References: P. Fleischmann, thesis, 3.2.1; R. H. Macneal, "An asymmetrical finite difference
  * network", 1953, doi:10.1090/qam/99978 (couplings).
  */

@@ -171,7 +171,8 @@ TEST(SizingOctree, TheSameForAnyNumberOfThreads)
   const auto flat = [](const Vec3& p) {
     return LocalSpacing(Vec3{ 0.01 + 0.3 * p.X, 0.1 + 0.2 * p.Z, 0.02 + 0.5 * p.Y });
   };
-  for (const SizingField& sizing : { SizingField(GetConeSpacing), SizingField(flat) })
+  const auto cone = [](const Vec3& p) { return 0.3 * GetConeSpacing(p).GetSmallest(); };
+  for (const SizingField& sizing : { SizingField(cone), SizingField(flat) })
   {
     SizingOctreeOptions options;
     options.NumberOfThreads = 1;

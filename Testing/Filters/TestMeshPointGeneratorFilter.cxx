@@ -10,6 +10,7 @@
 #include <vtkMath.h>
 #include <vtkMeshPointGenerator.h>
 #include <vtkRectilinearGrid.h>
+#include <vtkSMPTools.h>
 #include <vtkSphereSource.h>
 #include <vtkTechnologyStructureSource.h>
 
@@ -272,6 +273,36 @@ TEST(MeshPointGeneratorFilter, ReadsSizingsOfAllKinds)
     EXPECT_EQ(planes[1].size(), 4u * finer);
     EXPECT_EQ(planes[2].size(), 16u * finer);
   }
+}
+
+TEST(MeshPointGeneratorFilter, TheSameWithOneThreadAndTwo)
+{
+  // Cells found by the data set itself, by a locator, and only the nearest ones.
+  auto image =
+    MakeImage([](const double x[3]) { return std::vector<double>{ 0.03 + 0.1 * x[0] }; });
+  vtkNew<vtkDataSetTriangleFilter> tetrahedra;
+  tetrahedra->SetInputData(image);
+  tetrahedra->Update();
+  vtkNew<vtkPolyData> points;
+  points->SetPoints(tetrahedra->GetOutput()->GetPoints());
+  points->GetPointData()->ShallowCopy(image->GetPointData());
+  for (vtkDataSet* sizing :
+    std::initializer_list<vtkDataSet*>{ image, tetrahedra->GetOutput(), points })
+  {
+    std::vector<Point> expected;
+    for (const int threads : { 1, 2 })
+    {
+      vtkSMPTools::SetBackend("STDThread");
+      vtkSMPTools::Initialize(threads);
+      Pipeline run(MakeCube());
+      run.Generator->SetInputData(1, sizing);
+      const std::vector<Point> found = GetPositions(run.Run());
+      EXPECT_GT(found.size(), 1000u);
+      expected = threads == 1 ? found : expected;
+      EXPECT_EQ(found, expected);
+    }
+  }
+  vtkSMPTools::SetBackend("Sequential");
 }
 
 TEST(MeshPointGeneratorFilter, MeshesATransistorWithLayers)
