@@ -110,18 +110,42 @@ private:
     Id Outer;
   };
   /** The vertices from First on, Count of them, around the end of the curve; and infinity. */
-  struct Part
+  class Part
   {
-    Id First = 0;
-    Id Count = 0;
-    Id Infinite = 0;
+  public:
+    Part() = default;
+    Part(Id first, Id count, Id infinite)
+      : First(first < infinite ? first : first - infinite), Count(std::max(0, count)),
+        BeforeEnd(std::min(this->Count, infinite - this->First)), Infinite(infinite)
+    {
+    }
 
-    bool Has(Id vertex) const
+    /** How far along the part, or beyond it. */
+    Id GetPlace(Id vertex) const
     {
       const Id place = vertex - this->First;
-      return (place >= 0 ? place : place + this->Infinite) < this->Count ||
-        vertex == this->Infinite;
+      return place >= 0 ? place : place + this->Infinite;
     }
+    /** Asked all the time, and mostly answered by the first comparison. */
+    bool Has(Id vertex) const
+    {
+      return static_cast<std::uint32_t>(vertex - this->First) <
+        static_cast<std::uint32_t>(this->BeforeEnd) ||
+        vertex < this->Count - this->BeforeEnd || vertex == this->Infinite;
+    }
+    /** Without what is from a place on. */
+    Part GetBegin(Id place) const { return { this->First, place, this->Infinite }; }
+    /** From a vertex of it on. */
+    Part GetEnd(Id vertex) const
+    {
+      return { vertex, this->Count - this->GetPlace(vertex), this->Infinite };
+    }
+
+  private:
+    Id First = 0;
+    Id Count = 0;
+    Id BeforeEnd = 0;
+    Id Infinite = 0;
   };
   enum class Answer
   {
@@ -731,14 +755,8 @@ bool Builder::Work(Worker& worker, const std::function<bool(std::size_t)>& mayCo
 bool Builder::HandOver(Worker& from, std::size_t next, Worker& to)
 {
   const std::size_t middle = next + (from.Todo.size() - next) / 2;
-  const auto getPlace = [&](Id vertex)
-  {
-    const Id place = vertex - from.Own.First;
-    return place < 0 ? place + this->Infinite : place;
-  };
-  const Id begin = getPlace(from.Todo[middle]);
-  const Part kept{ from.Own.First, begin, this->Infinite };
-  const Part given{ from.Todo[middle], from.Own.Count - begin, this->Infinite };
+  const Part kept = from.Own.GetBegin(from.Own.GetPlace(from.Todo[middle]));
+  const Part given = from.Own.GetEnd(from.Todo[middle]);
   // Both need a tetrahedron of their own to start from.
   const auto findStart = [&](const Part& own, std::size_t first, std::size_t last, Id& start)
   {

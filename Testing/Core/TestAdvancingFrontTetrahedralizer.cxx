@@ -311,7 +311,7 @@ TEST(PointsOnly, DoesNotDependOnThreadsAndNumbers)
     options.CloseOpenBoundary = true;
     AdvancingFrontTetrahedralizerOutput expected;
     ASSERT_TRUE(TetrahedralizeByAdvancingFront(input, options, {}, expected).IsOk());
-    for (const int threads : { 2, 3, 8 })
+    for (const int threads : { 2, 3, 8, 61 })
     {
       options.NumberOfThreads = threads;
       AdvancingFrontTetrahedralizerOutput output;
