@@ -2,6 +2,7 @@
 #include "SteinerPointRefiner.h"
 
 #include "AdvancingFrontTetrahedralizer.h"
+#include "FeatureSizes.h"
 #include "Measures.h"
 #include "MeshBoundary.h"
 #include "MeshChecks.h"
@@ -32,11 +33,6 @@ constexpr double BoundaryEdgeRatio = 1.15;
 constexpr double FlatAngle = 1e-2;
 /** By how much a point of theirs is moved on the boundary, in radii of their circle. */
 constexpr double NudgeRatio = 1e-9;
-/** Degrees: dihedral angles of the input below this count as sharp. */
-constexpr double SharpAngle = 60.0;
-/** Plane angles of the input count as sharp if their sine is below this: a triangle with such
- * an angle has a ratio of circumradius to shortest edge above 1.4. */
-constexpr double SharpSine = 0.36;
 
 class Refiner
 {
@@ -71,7 +67,6 @@ private:
     return this->Round->GetRequestedTriangles().size() + this->Round->GetRequestedEdges().size();
   }
   bool HasRequests() const { return this->CountRequests() > 0; }
-  std::vector<char> FindSharpPoints() const;
   void FindFaults();
   void MakeOutput();
 
@@ -89,6 +84,8 @@ private:
   std::vector<Id> SurfaceSources;
   /** See InteriorPoint::Size; empty while only sizes are refined. */
   std::vector<double> SurfaceSizes;
+  /** Of the surface when sizes were measured. */
+  std::unique_ptr<FeatureSizes> Features;
   std::vector<InteriorPoint> Interior;
   SliverMemory Memory;
   std::unique_ptr<VolumeRefinement> Round;
@@ -357,9 +354,16 @@ Status Refiner::StartRound()
   return status;
 }
 
-/** Sizes of new points of the surface, where it is negative, from those around them. */
+/**
+ * Sizes of new points of the surface, where they are negative: from those around them, and from edges
+ * that come close to each other.
+ */
 void Refiner::CollectSurfaceSizes()
 {
+  const auto first =
+    static_cast<std::size_t>(std::find_if(this->SurfaceSizes.begin(), this->SurfaceSizes.end(),
+                               [](double size) { return size < 0.0; }) -
+      this->SurfaceSizes.begin());
   bool isDone = false;
   while (!isDone)
   {
@@ -385,11 +389,16 @@ void Refiner::CollectSurfaceSizes()
     }
     this->SurfaceSizes = std::move(sizes);
   }
+  for (std::size_t p = first; p < this->SurfaceSizes.size(); ++p)
+  {
+    this->SurfaceSizes[p] = this->Features->Find(this->Surface.Points[p], this->SurfaceSizes[p]);
+  }
 }
 
-/** The shortest edge at each point of the mesh. */
+/** The shortest edge at each point of the mesh, and how close edges of the surface are. */
 void Refiner::MeasureSizes()
 {
+  this->Features = std::make_unique<FeatureSizes>(this->Surface.Points, this->Edges);
   const std::vector<double> sizes = FindShortestEdges(this->Round->GetMesh());
   this->SurfaceSizes.assign(
     sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(this->Surface.Points.size()));
@@ -492,44 +501,10 @@ bool Refiner::NudgeFlatBoundary()
   return isNudged;
 }
 
-/** Points of the surface on edges or at corners with a sharp angle. */
-std::vector<char> Refiner::FindSharpPoints() const
-{
-  std::vector<char> isSharp(this->Surface.Points.size(), 0);
-  std::vector<std::vector<Id>> ends(this->Surface.Points.size());
-  for (const StructuralEdge& edge : this->Edges)
-  {
-    for (int i = 0; i < 2; ++i)
-    {
-      if (edge.DihedralAngle >= 0.0 && edge.DihedralAngle < SharpAngle)
-      {
-        isSharp[edge.Points[i]] = 1;
-      }
-      ends[edge.Points[i]].push_back(edge.Points[1 - i]);
-    }
-  }
-  for (Id p = 0; p < static_cast<Id>(ends.size()); ++p)
-  {
-    for (std::size_t i = 0; i < ends[p].size() && !isSharp[p]; ++i)
-    {
-      const Vec3 u = this->Surface.Points[ends[p][i]] - this->Surface.Points[p];
-      for (std::size_t j = i + 1; j < ends[p].size(); ++j)
-      {
-        const Vec3 v = this->Surface.Points[ends[p][j]] - this->Surface.Points[p];
-        if (Dot(u, v) > 0.0 && Norm(Cross(u, v)) < SharpSine * Norm(u) * Norm(v))
-        {
-          isSharp[p] = 1;
-        }
-      }
-    }
-  }
-  return isSharp;
-}
-
 void Refiner::FindFaults()
 {
   const TetMesh& mesh = this->Output.Mesh;
-  const std::vector<char> isSharp = this->FindSharpPoints();
+  const SharpAngles& sharp = this->Round->GetSharpAngles();
   SteinerPointRefinerReport& report = this->Output.Report;
   for (std::size_t t = 0; t < mesh.Tetrahedra.size(); ++t)
   {
@@ -546,9 +521,8 @@ void Refiner::FindFaults()
       : SteinerFault::None;
     if (found == SteinerFault::Shape || found == SteinerFault::Sliver)
     {
-      const bool isInevitable = this->Round->IsAcrossLayer(ids, mesh.Regions[t]) ||
-        std::any_of(ids.begin(), ids.end(),
-          [&](Id id) { return id < static_cast<Id>(isSharp.size()) && isSharp[id]; });
+      const bool isInevitable = this->Round->GetLayers().IsAcross(ids, mesh.Regions[t]) ||
+        sharp.IsAtCorner(ids) || sharp.IsAcross(ids);
       found = isInevitable ? SteinerFault::Inevitable : found;
     }
     report.TooLarge += found == SteinerFault::Size;

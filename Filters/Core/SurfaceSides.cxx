@@ -1,45 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SurfaceSides.h"
 
+#include "DisjointSets.h"
 #include "Predicates.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace cdm
 {
 namespace
 {
-class DisjointSets
-{
-public:
-  explicit DisjointSets(std::size_t size) : Parents(size)
-  {
-    std::iota(this->Parents.begin(), this->Parents.end(), 0);
-  }
-
-  Id Find(Id i)
-  {
-    while (this->Parents[i] != i)
-    {
-      this->Parents[i] = this->Parents[this->Parents[i]];
-      i = this->Parents[i];
-    }
-    return i;
-  }
-
-  /** The smaller representative stays. */
-  void Unite(Id i, Id j)
-  {
-    i = this->Find(i);
-    j = this->Find(j);
-    this->Parents[std::max(i, j)] = std::min(i, j);
-  }
-
-private:
-  std::vector<Id> Parents;
-};
-
 std::vector<TriangleAtEdge> CollectEdgeUses(const TriangleMesh& surface)
 {
   std::vector<TriangleAtEdge> uses;

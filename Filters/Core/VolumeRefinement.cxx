@@ -21,12 +21,6 @@ constexpr std::size_t ReportInterval = 256;
 constexpr double SizeRatio = 0.1;
 /** Points are moved where angles are below this multiple of the target: it leaves some room. */
 constexpr double MoveRatio = 1.1;
-/** Cosine of the angles between the sides of a layer, and of a side's normal and an upright edge. */
-constexpr double AcrossCosine = 0.85;
-/** Length of an upright edge across a layer, in lengths of the longest edge of its tetrahedron ... */
-constexpr double ThinRatio = 0.75;
-/** ... and thickness of the layer if the edge is not upright. */
-constexpr double VeryThinRatio = 0.35;
 /** Free points closer to others than this part of the sizing are removed. */
 constexpr double CloseRatio = 0.3;
 /** First step of the search for a new point's place, in radii of the sphere that it destroys. */
@@ -68,7 +62,8 @@ VolumeRefinement::VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
   : Mesh(std::move(mesh)), Surface(surface), Edges(edges), Limits(limits),
     NumberOfSurfacePoints(static_cast<Id>(surface.Points.size())),
     MaximumNewPoints(maximumNewPoints), Memory(memory), Spheres(surface, edges),
-    IsTriangleRequested(surface.Triangles.size(), 0), IsEdgeRequested(edges.size(), 0)
+    Sharp(surface, edges), Layers(surface), IsTriangleRequested(surface.Triangles.size(), 0),
+    IsEdgeRequested(edges.size(), 0)
 {
   for (std::size_t p = 0; p < surface.Points.size(); ++p)
   {
@@ -85,6 +80,46 @@ VolumeRefinement::VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
     }
   }
   this->PointTriangles.Build(this->NumberOfSurfacePoints, pairs);
+  this->BoundSizes();
+}
+
+/** No size is larger than another one and the way there, along edges. */
+void VolumeRefinement::BoundSizes()
+{
+  std::vector<Id> changed;
+  const auto bound = [&](Id t)
+  {
+    const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
+    for (const auto& edge : TetrahedronEdges)
+    {
+      InteriorPoint* first = &this->Points[ids[edge[0]]];
+      InteriorPoint* second = &this->Points[ids[edge[1]]];
+      Id larger = ids[edge[1]];
+      if (first->Size > second->Size)
+      {
+        std::swap(first, second);
+        larger = ids[edge[0]];
+      }
+      const double size = first->Size + Distance(first->Position, second->Position);
+      if (second->Size > size)
+      {
+        second->Size = size;
+        changed.push_back(larger);
+      }
+    }
+  };
+  for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
+  {
+    bound(t);
+  }
+  std::vector<Id> star;
+  while (!changed.empty())
+  {
+    const Id point = changed.back();
+    changed.pop_back();
+    this->Mesh.FindStar(point, star);
+    std::for_each(star.begin(), star.end(), bound);
+  }
 }
 
 std::vector<InteriorPoint> VolumeRefinement::GetInterior() const
@@ -108,67 +143,12 @@ std::vector<TetrahedronIds> VolumeRefinement::FindSliversOfSurface(double angle)
     const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
     if (!this->Mesh.IsDead(t) &&
       *std::max_element(ids.begin(), ids.end()) < this->NumberOfSurfacePoints &&
-      this->GetAngle(t) < angle && !this->IsAcrossLayer(ids, this->GetMesh().Regions[t]))
+      this->GetAngle(t) < angle && !this->Layers.IsAcross(ids, this->GetMesh().Regions[t]))
     {
       slivers.push_back(ids);
     }
   }
   return slivers;
-}
-
-bool VolumeRefinement::IsAcrossLayer(const TetrahedronIds& ids, Id region) const
-{
-  if (*std::max_element(ids.begin(), ids.end()) >= this->NumberOfSurfacePoints)
-  {
-    return false;
-  }
-  const std::array<Vec3, 4> vertices = this->GetVertices(ids);
-  double longest = 0.0;
-  for (const auto& edge : TetrahedronEdges)
-  {
-    longest = std::max(longest, Distance(vertices[edge[0]], vertices[edge[1]]));
-  }
-  // Normals of the boundary of the region, out of it, at each vertex.
-  std::array<std::vector<Vec3>, 4> normals;
-  for (int v = 0; v < 4; ++v)
-  {
-    for (Id t : this->PointTriangles[ids[v]])
-    {
-      const TriangleIds& triangle = this->Surface.Triangles[t];
-      const RegionPair& labels = this->Surface.Labels[t];
-      const Vec3& a = this->Surface.Points[triangle[0]];
-      const Vec3 normal =
-        Cross(this->Surface.Points[triangle[1]] - a, this->Surface.Points[triangle[2]] - a);
-      if (labels.Back == region || labels.Front == region)
-      {
-        normals[v].push_back((labels.Back == region ? 1.0 : -1.0) / Norm(normal) * normal);
-      }
-    }
-  }
-  return std::any_of(std::begin(TetrahedronEdges), std::end(TetrahedronEdges),
-    [&](const int(&edge)[2])
-    {
-      const Vec3 direction = vertices[edge[1]] - vertices[edge[0]];
-      const double length = Norm(direction);
-      for (const Vec3& first : normals[edge[0]])
-      {
-        // How far it is to the other side.
-        const double height = -Dot(first, direction);
-        const bool isUpright = height >= AcrossCosine * length && length <= ThinRatio * longest;
-        if (!isUpright && !(height > 0.0 && height <= VeryThinRatio * longest))
-        {
-          continue;
-        }
-        for (const Vec3& second : normals[edge[1]])
-        {
-          if (Dot(first, second) <= -AcrossCosine)
-          {
-            return true;
-          }
-        }
-      }
-      return false;
-    });
 }
 
 bool VolumeRefinement::IsFree(Id point) const
@@ -492,7 +472,8 @@ Status VolumeRefinement::RefineByLimits(bool isShapeTested, const ExecutionConte
     const TetrahedronFault fault =
       this->Limits.Find(this->GetVertices(ids), isShapeTested, target, severity);
     if (fault == TetrahedronFault::Size ||
-      (fault == TetrahedronFault::Shape && !this->IsAcrossLayer(ids, this->GetMesh().Regions[t])))
+      (fault == TetrahedronFault::Shape && !this->Sharp.IsAcross(ids) &&
+        !this->Layers.IsAcross(ids, this->GetMesh().Regions[t])))
     {
       tasks.push({ fault, severity, t, this->Mesh.GetStamp(t) });
     }
@@ -724,7 +705,7 @@ Status VolumeRefinement::PerturbSlivers(
     {
       const double angle = this->Mesh.IsDead(t) ? 180.0 : this->GetAngle(t);
       if (angle < MoveRatio * target &&
-        !this->IsAcrossLayer(this->GetMesh().Tetrahedra[t], this->GetMesh().Regions[t]))
+        !this->Layers.IsAcross(this->GetMesh().Tetrahedra[t], this->GetMesh().Regions[t]))
       {
         slivers.push_back({ angle, t, this->Mesh.GetStamp(t) });
       }
@@ -749,7 +730,7 @@ Status VolumeRefinement::PerturbSlivers(
       const TetrahedronIds ids = this->GetMesh().Tetrahedra[sliver.Tetrahedron];
       const TetrahedronIds names = this->GetNames(ids);
       Id left = NoId;
-      const bool isBad = sliver.Angle < target;
+      const bool isBad = sliver.Angle < target && !this->Sharp.IsAcross(ids);
       const bool isHopeless = this->Memory.IsHopeless(names, isBad && mayInsert);
       if (!isHopeless &&
         this->Mend(

@@ -15,9 +15,12 @@
  *    the boundary that is in the way is requested to be split. Each change makes the smallest angle
  *    of what it replaces larger, and breaks no limit that was kept.
  *
- * Sharp input angles would be refined for ever. Each point has a size, the shortest edge at it before
- * any shape was refined; no point comes closer to it than a tenth of that, but for size limits.
- * Tetrahedra across a thin layer, from one side to the other, are flat on purpose: only size counts.
+ * Sharp input angles would be refined for ever: a tetrahedron across one (SharpAngles.h) is refined
+ * for its size only; if it is a sliver, its points are moved. Each point has a size, the
+ * shortest edge at it before any shape was refined, or how close edges of the boundary come to each
+ * other there (FeatureSizes.h), and at most the size of another point and the way from there; no point
+ * comes closer to it than a tenth of that, but for size limits. Of tetrahedra across a thin layer
+ * (ThinLayers.h) only the size counts.
  *
  * References: J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998,
  * doi:10.1145/276884.276894 (what is split instead, and why it ends); J. Tournois, R. Srinivasan,
@@ -31,8 +34,10 @@
 #include "DynamicTetrahedralization.h"
 #include "ExecutionContext.h"
 #include "IdLists.h"
+#include "SharpAngles.h"
 #include "Status.h"
 #include "TetrahedronLimits.h"
+#include "ThinLayers.h"
 
 #include <map>
 #include <unordered_map>
@@ -141,12 +146,8 @@ public:
   const TetMesh& GetMesh() const { return this->Mesh.GetMesh(); }
   const VolumeRefinementReport& GetReport() const { return this->Report; }
 
-  /**
-   * Whether a tetrahedron of a region reaches from one side of a thin layer to the other: all its
-   * points lie on the boundary, two of them on sides that face each other, close to each other for
-   * its size.
-   */
-  bool IsAcrossLayer(const TetrahedronIds& ids, Id region) const;
+  const ThinLayers& GetLayers() const { return this->Layers; }
+  const SharpAngles& GetSharpAngles() const { return this->Sharp; }
 
 private:
   struct Task
@@ -164,6 +165,7 @@ private:
                                    : a.Tetrahedron > b.Tetrahedron;
     }
   };
+  void BoundSizes();
   bool IsFree(Id point) const;
   bool IsFull() const;
   std::array<Vec3, 4> GetVertices(const TetrahedronIds& ids) const;
@@ -194,6 +196,8 @@ private:
   const Id MaximumNewPoints;
   SliverMemory& Memory;
   BoundarySpheres Spheres;
+  const SharpAngles Sharp;
+  const ThinLayers Layers;
   /** One for each point of the mesh. */
   std::vector<InteriorPoint> Points;
   VolumeRefinementReport Report;

@@ -59,6 +59,37 @@ PolygonSoup MakeLayers(double thickness)
   return complex.GetSoup();
 }
 
+/** A prism over a polygon in the xz plane, counter-clockwise seen from -y, as long as wanted. */
+PolygonSoup MakePrism(const std::vector<Vec3>& outline, double length)
+{
+  PolygonSoup soup;
+  const Id count = static_cast<Id>(outline.size());
+  for (double y : { 0.0, length })
+  {
+    for (const Vec3& point : outline)
+    {
+      soup.Points.push_back({ point.X, y, point.Z });
+    }
+  }
+  for (Id i = 0; i < count; ++i)
+  {
+    soup.Connectivity.push_back(i);
+  }
+  soup.Offsets.push_back(count);
+  for (Id i = count; i > 0; --i)
+  {
+    soup.Connectivity.push_back(count + i - 1);
+  }
+  soup.Offsets.push_back(2 * count);
+  for (Id i = 0; i < count; ++i)
+  {
+    const Id j = (i + 1) % count;
+    soup.Connectivity.insert(soup.Connectivity.end(), { j, i, count + i, count + j });
+    soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+  }
+  return soup;
+}
+
 /** A prism whose side facets meet at an angle in degrees. */
 PolygonSoup MakeWedge(double angle)
 {
@@ -179,6 +210,18 @@ TEST(SteinerPointRefiner, BoxesGetNoSliversAtAll)
   }
 }
 
+TEST(SteinerPointRefiner, LongAndFlatBoxesAreNoThinLayers)
+{
+  for (const Vec3& size : { Vec3{ 1.0, 2.0, 2.0 }, Vec3{ 6.0, 1.0, 1.0 }, Vec3{ 10.0, 6.0, 1.0 },
+         Vec3{ 1.0, 0.1, 1.0 }, Vec3{ 0.1, 0.1, 5.0 } })
+  {
+    const Stage3 mesh = MakeMesh(MakeBox(size));
+    SteinerPointRefinerInput input;
+    input.Mesh = &mesh.Output.Mesh;
+    ExpectNoFaults(Refine(input, SteinerPointRefinerOptions()).Report);
+  }
+}
+
 TEST(SteinerPointRefiner, TurnedBoxesGetNoFlatTetrahedra)
 {
   // Their facets are plane but for rounding, and many of their points lie on one circle.
@@ -259,6 +302,44 @@ TEST(SteinerPointRefiner, ThinLayersStayThinAndSharpWedgesEnd)
     EXPECT_EQ(output.Report.Slivers, 0);
     EXPECT_LT(output.Mesh.Points.size(), 3000u);
   }
+}
+
+TEST(SteinerPointRefiner, LongEdgesCloseToEachOtherSetTheSize)
+{
+  // The only short edges of a low step are at its ends.
+  const Stage3 mesh =
+    MakeMesh(MakePrism({ { 0.0, 0.0, 0.0 }, { 2.0, 0.0, 0.0 }, { 2.0, 0.0, 1.0 }, { 1.0, 0.0, 1.0 },
+                         { 1.0, 0.0, 1.1 }, { 0.0, 0.0, 1.1 } },
+      6.0));
+  SteinerPointRefinerInput input;
+  input.Mesh = &mesh.Output.Mesh;
+  ExpectNoFaults(Refine(input, SteinerPointRefinerOptions()).Report);
+}
+
+TEST(SteinerPointRefiner, ManyEdgesAtOnePointAreNotRefinedForEver)
+{
+  // A cone of many facets: plane angles of 3 degrees at the apex.
+  constexpr Id count = 36;
+  PolygonSoup soup;
+  soup.Points.push_back({ 0.0, 0.0, 3.0 });
+  for (Id i = 0; i < count; ++i)
+  {
+    soup.Points.push_back({ std::cos(2.0 * Pi * i / count), std::sin(2.0 * Pi * i / count), 0.0 });
+    soup.Connectivity.insert(soup.Connectivity.end(), { 0, 1 + i, 1 + (i + 1) % count });
+    soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+  }
+  for (Id i = count; i > 0; --i)
+  {
+    soup.Connectivity.push_back(i);
+  }
+  soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+  const Stage3 mesh = MakeMesh(soup);
+  SteinerPointRefinerInput input;
+  input.Mesh = &mesh.Output.Mesh;
+  const SteinerPointRefinerOutput output = Refine(input, SteinerPointRefinerOptions());
+  EXPECT_EQ(output.Report.BadlyShaped, 0);
+  EXPECT_EQ(output.Report.Slivers, 0);
+  EXPECT_LT(output.Mesh.Tetrahedra.size(), 2000u);
 }
 
 TEST(SteinerPointRefiner, FollowsTheSizing)
