@@ -24,6 +24,42 @@
 namespace
 {
 constexpr const char* RegionIdName = "RegionId";
+/** Settings of ParaView. The colors of regions are those of Macros/region_cut.py. */
+constexpr const char* ColorMaps = R"({
+  "standard_presets" : {
+    "ProblemKind" : "Brewer Qualitative Set3",
+    "RefinementFault" : "Brewer Qualitative Set3"
+  },
+  "array_lookup_tables" : {
+    "RegionId" : {
+      "PVLookupTable" : {
+        "IndexedLookup" : 1,
+        "IndexedColors" : [
+          0.49, 0.65, 0.84, 0.96, 0.74, 0.24, 0.82, 0.34, 0.32, 0.55, 0.75, 0.48,
+          0.66, 0.53, 0.78, 0.95, 0.60, 0.40, 0.42, 0.73, 0.74, 0.93, 0.66, 0.74,
+          0.71, 0.69, 0.45, 0.62, 0.62, 0.66, 0.31, 0.46, 0.66, 0.35, 0.66, 0.58
+        ]
+      }
+    },
+    "ProblemKind" : {
+      "PVLookupTable" : {
+        "Annotations" : [
+          "0", "Self-intersection", "1", "Degenerate polygon", "2", "Duplicate polygon",
+          "3", "Invalid outline", "4", "T-junction", "5", "Patched gap", "6", "Open edge",
+          "7", "Reversed polygon"
+        ]
+      }
+    },
+    "RefinementFault" : {
+      "PVLookupTable" : {
+        "Annotations" : [
+          "0", "None", "1", "Too large", "2", "Radius-edge ratio", "3", "Dihedral angle",
+          "4", "Inevitable"
+        ]
+      }
+    }
+  }
+})";
 /** More regions than that are not told apart by colors and names. */
 constexpr int MaximumNumberOfRegions = 64;
 
@@ -46,7 +82,8 @@ bool AddTexts(pqDataRepresentation* representation, QMap<int, QString>& texts)
   const int association =
     vtkSMPropertyHelper(representation->getProxy(), "ColorArrayName").GetInputArrayAssociation();
   vtkPVDataInformation* information = representation->getInputDataInformation();
-  vtkPVArrayInformation* regions = information->GetArrayInformation(RegionIdName, association);
+  vtkPVArrayInformation* regions =
+    information ? information->GetArrayInformation(RegionIdName, association) : nullptr;
   if (!regions || regions->GetNumberOfTuples() == 0)
   {
     return true;
@@ -70,8 +107,7 @@ void RegionColors::Start()
   if (pqApplicationCore* core = pqApplicationCore::instance())
   {
     // Below the settings of the user and of the site.
-    vtkSMSettings::GetInstance()->AddCollectionFromString(
-      R"({ "standard_presets" : { "RegionId" : "Brewer Qualitative Set3" } })", 0.0);
+    vtkSMSettings::GetInstance()->AddCollectionFromString(ColorMaps, 0.0);
     new RegionColors(core);
   }
 }
@@ -153,7 +189,7 @@ bool RegionColors::SetTexts(vtkSMProxy* colors, QMap<int, QString> texts)
     const QString text = annotations.GetAsString(i + 1);
     const int region = value.toInt();
     // ParaView's own texts are the values.
-    const bool isOurs = text == value || text == this->Texts.value(region);
+    const bool isOurs = region >= 0 && (text == value || text == this->Texts.value(region));
     const bool isThere = texts.contains(region);
     const QString newText = isOurs && isThere ? texts[region] : text;
     texts.remove(region);
