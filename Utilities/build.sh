@@ -15,7 +15,10 @@ packages=(
   qttools5-dev qtxmlpatterns5-dev-tools   # help pages in ParaView
 )
 if [ "$1" = ON ]; then
-  packages+=(libeigen3-dev gmsh)   # solvers, and meshes to compare with
+  packages+=(
+    libeigen3-dev gmsh       # solvers, and meshes to compare with
+    xdotool imagemagick      # a mouse for the GUI, and pictures of the whole screen
+  )
 fi
 packages+=(${more_packages[@]+"${more_packages[@]}"})
 

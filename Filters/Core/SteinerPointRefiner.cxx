@@ -658,7 +658,9 @@ Status RefineBySteinerPoints(const SteinerPointRefinerInput& input,
     [&](double fraction, const char* activity)
     {
       largest = std::max(largest, fraction);
-      isGoingOn = context.Continue(largest, activity);
+      const std::string text =
+        std::string(activity) + ", round " + std::to_string(output.Report.Rounds + 1);
+      isGoingOn = context.Continue(largest, text.c_str());
     },
     [&] { return !isGoingOn; });
   const Status status = Refiner(input, options, ascending, output).Run();

@@ -159,8 +159,8 @@ void AbortBehavior::OfferAgain(pqPipelineSource* source, vtkAlgorithm* algorithm
   if (QMainWindow* window =
         this->Button ? qobject_cast<QMainWindow*>(this->Button->window()) : nullptr)
   {
-    window->statusBar()->showMessage(source->getSMName() +
-      " was aborted, its output is empty or not finished. Apply runs it again.");
+    // There is room for no more.
+    window->statusBar()->showMessage("Aborted. Apply runs it again.");
   }
   source->setModifiedState(pqProxy::MODIFIED);
   const auto applied = std::make_shared<QMetaObject::Connection>();

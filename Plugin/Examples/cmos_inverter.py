@@ -22,8 +22,8 @@ DIRECTION = (-0.55, -0.75, 0.62)
 
 def Run(folder):
     device = gallery.MakeDevice(
-        "CmosInverter", ContactWidth=0.14, ChannelWidth=0.4, TrenchWidth=0.2, LineThickness=0.16,
-        GateOxideThickness=0.01)
+        "CmosInverter", ContactWidth=0.08, ChannelWidth=0.4, TrenchWidth=0.2, LineThickness=0.16,
+        GateOxideThickness=0.005)
     width = device.GetOutput().GetBounds()[3]
 
     def GetLength(x, y, z):
@@ -32,7 +32,7 @@ def Run(folder):
         distance = numpy.sqrt(
             numpy.maximum(abs(x) - 0.2, 0.0)**2 + numpy.maximum(across - 0.2, 0.0)**2
             + numpy.where(z > 0.0, 4.0 * z, z)**2)
-        return numpy.minimum(0.4, 0.07 + 0.5 * distance)
+        return numpy.minimum(0.4, 0.06 + 0.4 * distance)
 
     mesh = gallery.MakeMesh(device, sizing=gallery.MakeSizing(device, GetLength))
     wrong = gallery.Report("CMOS inverter", mesh, THESIS)

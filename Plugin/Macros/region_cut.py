@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A macro: cuts the mesh open and gives each region a color of its own, with its name.
 
-In ParaView: Macros > Import New Macro, once; then select a mesh with the cell array RegionId and
+In ParaView: Macros > Import new macro, once; then select a mesh with the cell array RegionId and
 choose the macro. The half of the mesh in front of a plane across the shortest side of its bounding
 box goes, in whole tetrahedra, and the camera looks at the cut. The plane can be moved in the
-properties of the clip that the macro makes.
+properties of the clip that the macro makes; there, Show Plane shows it.
 """
 from paraview.simple import *
 
@@ -74,5 +74,8 @@ def CutRegions(source, view):
 # A macro runs in ParaView's console; anything else only imports this.
 if __name__ in ("__main__", "__vtkconsole__"):
     activeView = GetActiveViewOrCreate("RenderView")
-    SetActiveSource(CutRegions(GetActiveSource(), activeView))
+    activeClip = CutRegions(GetActiveSource(), activeView)
+    SetActiveSource(activeClip)
+    # The handles of the plane would hide what is cut.
+    Hide3DWidgets(proxy=activeClip.ClipType)
     Render(activeView)

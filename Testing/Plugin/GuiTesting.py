@@ -30,7 +30,7 @@ def Start(folder, events, output, *options):
     return subprocess.Popen(command, cwd=folder, stdout=output, stderr=subprocess.STDOUT)
 
 
-def Run(folder, events, seconds=240):
+def Run(folder, events, seconds=540):
     """Starts ParaView as above, waits until it ends, and checks that all went well."""
     with open(os.path.join(folder, "output.txt"), "w+", encoding="utf-8") as output:
         process = Start(folder, events, output)

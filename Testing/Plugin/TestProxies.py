@@ -186,6 +186,12 @@ aborted.MaximumEdgeLength = 0.5
 aborted.UpdatePipeline()
 assert abs(Volume(aborted) - 6.0) < 6e-12, "after an abort it runs again"
 
+texts = []
+algorithm.AddObserver("ProgressEvent", lambda *_: texts.append(algorithm.GetProgressText()))
+aborted.AddSteinerPoints = 1
+aborted.UpdatePipeline()
+assert "Steiner points: Refining tetrahedra, round 2" in texts, texts
+
 device = TechnologyStructureSource()
 device.UpdatePipeline()
 assert Count(device) > 0
