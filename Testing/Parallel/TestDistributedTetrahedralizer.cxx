@@ -24,6 +24,7 @@ using Keys = std::vector<CellKey<4>>;
 
 constexpr auto MakeRandomPoints = testing_points::MakeRandom<Point>;
 constexpr auto MakeGridPoints = testing_points::MakeGrid<Point>;
+constexpr auto MakePointsOnSphere = testing_points::MakeOnSphere<Point>;
 
 /** Points and cells of a piece: every process takes its share, or one has all. */
 enum class Sharing
@@ -271,6 +272,21 @@ TEST(DistributedTetrahedralizer, Grids)
   }
   ExpectSameAsSerial(MakePoints(MakeGridPoints(12, 1.0, 0.0, seed)), nullptr, Sharing::Slices);
   ExpectSameAsSerial(MakePoints(MakeGridPoints(12, 1.0, 0.17, seed)), nullptr, Sharing::Slices);
+}
+
+TEST(DistributedTetrahedralizer, PointsOnOneSphere)
+{
+  const unsigned seed = 29;
+  std::cout << "seed " << seed << "\n";
+  const auto few = MakePoints(MakePointsOnSphere(9945, seed));
+  for (Sharing sharing : Sharings)
+  {
+    ExpectSameAsSerial(few, nullptr, sharing);
+  }
+  // Whether each tetrahedron has been tested against each point shows in the time it takes.
+  const auto many = MakePointsOnSphere(6000029, seed);
+  EXPECT_EQ(many.size(), 45504u);
+  ExpectSameAsSerial(MakePoints(many), nullptr, Sharing::Slices);
 }
 
 TEST(DistributedTetrahedralizer, TwoInputs)
