@@ -40,8 +40,9 @@
  * others that it shares tetrahedra with: for points exactly on one sphere these are all of them.
  *
  * References: R. Shewchuk, "Star splaying", 2005, doi:10.1145/1064092.1064129 (stars that are
- * completed one by one agree, and then are right: step 5); D. Funke, P. Sanders, "Parallel d-D Delaunay triangulations in shared
- * and distributed memory", 2017, doi:10.1137/1.9781611974768.17 (only the border is done again).
+ * completed one by one agree, and are right then: step 5); D. Funke, P. Sanders, "Parallel d-D
+ * Delaunay triangulations in shared and distributed memory", 2017,
+ * doi:10.1137/1.9781611974768.17 (only the border is done again).
  */
 #ifndef cdmPartTetrahedralization_h
 #define cdmPartTetrahedralization_h
