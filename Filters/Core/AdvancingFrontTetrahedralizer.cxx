@@ -4,6 +4,7 @@
 #include "DelaunayTetrahedralization.h"
 #include "DuplicateTriangles.h"
 #include "FacetPolygons.h"
+#include "IdLimits.h"
 #include "ParallelLoop.h"
 #include "Predicates.h"
 #include "SpatialSort.h"
@@ -178,6 +179,12 @@ Status AdvancingFront::CollectPoints()
 {
   const TriangleMesh none;
   const TriangleMesh& surface = this->Input.Surface != nullptr ? *this->Input.Surface : none;
+  const Status range = CheckNumberOfPoints(
+    surface.Points.size(), this->Input.MeshPoints != nullptr ? this->Input.MeshPoints->size() : 0);
+  if (!range.IsOk())
+  {
+    return range;
+  }
   this->Surface = surface;
   this->HasLabels = !surface.Labels.empty();
   this->Surface.SourceCells.resize(surface.Triangles.size());

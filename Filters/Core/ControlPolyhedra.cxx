@@ -3,6 +3,8 @@
 
 #include "IdLimits.h"
 #include "Measures.h"
+#include "ParallelLoop.h"
+#include "ParallelSort.h"
 #include "Predicates.h"
 #include "SimplexIncidence.h"
 #include "VoronoiMeasures.h"
@@ -15,7 +17,6 @@ namespace cdm
 {
 namespace
 {
-constexpr Id ContinueInterval = 1 << 10;
 constexpr const char* Activity = "Making polyhedra";
 
 /** Tangent of the angle by which two facets may bend and still be drawn as one plane. */
@@ -30,7 +31,7 @@ struct EdgeUse
   Id Opposite;
 };
 
-/** Sets of equal things, each named by its smallest member. */
+/** Sets of equal things, each named by its smallest member, in whatever order they are united. */
 class EqualSets
 {
 public:
@@ -53,6 +54,16 @@ public:
     b = this->Find(b);
     this->Parents[std::max(a, b)] = std::min(a, b);
   }
+  /** The name of each thing's set. */
+  std::vector<Id> TakeNames()
+  {
+    // A parent is smaller than its children.
+    for (Id& parent : this->Parents)
+    {
+      parent = this->Parents[parent];
+    }
+    return std::move(this->Parents);
+  }
 
 private:
   std::vector<Id> Parents;
@@ -65,9 +76,11 @@ private:
 class PolyhedronMaker
 {
 public:
-  PolyhedronMaker(const TetMesh& mesh, const ControlVolumes& volumes, ControlPolyhedra& polyhedra)
-    : Mesh(mesh), Volumes(volumes), Polyhedra(polyhedra), Sets(0)
+  PolyhedronMaker(const TetMesh& mesh, const ControlVolumes& volumes,
+    const ControlVolumeOptions& options, ControlPolyhedra& polyhedra)
+    : Mesh(mesh), Volumes(volumes), Polyhedra(polyhedra)
   {
+    this->LoopOptions.NumberOfThreads = options.NumberOfThreads;
   }
 
   Status Run(const ExecutionContext& context);
@@ -79,15 +92,28 @@ private:
     Id Region;
     Id Polygon;
   };
+  /** Polygons of dual vertices that are made one after the other, and who uses them. */
+  struct Polygons
+  {
+    std::vector<Id> Offsets{ 0 };
+    std::vector<Id> Vertices;
+    /** Their polygons are counted from the first of these. */
+    std::vector<Use> Uses;
+
+    Id GetSize() const { return static_cast<Id>(this->Offsets.size()) - 1; }
+  };
   using RecordIterator = std::vector<SimplexIncidence::Record>::const_iterator;
 
   void CollectBorders();
   void FindFlatEdges();
   bool UniteVertices(const ExecutionContext& context);
-  void AddPolygonsAround(const EdgeIds& edge, RecordIterator begin, RecordIterator end);
-  void AddBorderPolygons();
-  void GatherBoxes();
-  Id AddPolygon();
+  bool MakePolygons(const ExecutionContext& context);
+  void AddPolygonsAround(
+    const EdgeIds& edge, RecordIterator begin, RecordIterator end, Polygons& polygons) const;
+  void AddBorderPolygons(Polygons& polygons) const;
+  bool NumberPoints(const ExecutionContext& context);
+  bool GatherBoxes(const ExecutionContext& context);
+  Id AddPolygon(std::vector<Id>& vertices, Polygons& polygons) const;
 
   bool IsBorder(Id tetrahedron, int facet) const
   {
@@ -110,12 +136,13 @@ private:
     return this->FlatEdges[edgeVertex - this->FirstEdge][0] != NoId;
   }
   bool AreFlat(const EdgeUse& first, const EdgeUse& second) const;
-  void WalkAround(Id border, int corner, std::vector<char>& isVisited);
+  void WalkAround(Id border, int corner, std::vector<char>& isVisited, Polygons& polygons) const;
   Vec3 GetPosition(Id vertex) const;
 
   const TetMesh& Mesh;
   const ControlVolumes& Volumes;
   ControlPolyhedra& Polyhedra;
+  ParallelLoopOptions LoopOptions;
   /** By facet id: index of a border facet, the same from both sides of an interface, or NoId. */
   std::vector<Id> BorderIndices;
   /** A facet id of each border facet, in the region with the larger id. */
@@ -127,12 +154,10 @@ private:
   Id FirstEdge = 0;
   Id FirstTetrahedron = 0;
   Id FirstPoint = 0;
-  EqualSets Sets;
-  /** Output point of each dual vertex, or NoId. */
-  std::vector<Id> OutputPoints;
-  /** Dual vertices of the polygon in the making. */
-  std::vector<Id> Polygon;
-  std::vector<Use> Uses;
+  /** Of each dual vertex the lowest one at the same place. */
+  std::vector<Id> Names;
+  /** Those of each block of points, then those of the border. */
+  std::vector<Polygons> Blocks;
 };
 
 Status PolyhedronMaker::Run(const ExecutionContext& context)
@@ -153,27 +178,32 @@ Status PolyhedronMaker::Run(const ExecutionContext& context)
     return status;
   }
   this->FindFlatEdges();
-  if (!this->UniteVertices(context.Part(0.1, 0.3)))
-  {
-    return Status::Aborted();
-  }
-  const SimplexIncidence incidence(this->Mesh, 1);
-  std::vector<SimplexIncidence::Record> scratch;
-  const Id count = static_cast<Id>(this->Mesh.Points.size());
-  for (Id point = 0; point < count; ++point)
-  {
-    if (point % ContinueInterval == 0 && !context.Continue(0.3 + 0.6 * point / count, Activity))
+  return this->UniteVertices(context.Part(0.1, 0.3)) &&
+      this->MakePolygons(context.Part(0.3, 0.7)) && this->NumberPoints(context.Part(0.7, 0.9)) &&
+      this->GatherBoxes(context.Part(0.9, 1.0))
+    ? Status()
+    : Status::Aborted();
+}
+
+bool PolyhedronMaker::MakePolygons(const ExecutionContext& context)
+{
+  const SimplexIncidence incidence(this->Mesh, this->LoopOptions.NumberOfThreads);
+  const std::size_t count = this->Mesh.Points.size();
+  this->Blocks.resize(GetNumberOfBlocks(count, this->LoopOptions) + 1);
+  const bool isDone = ParallelLoop(count, this->LoopOptions, context, Activity,
+    [&](std::size_t begin, std::size_t end, std::size_t block)
     {
-      return Status::Aborted();
-    }
-    incidence.ForEachEdge(point, scratch,
-      [&](const TriangleIds& points, RecordIterator begin, RecordIterator end) {
-        this->AddPolygonsAround({ points[0], points[1] }, begin, end);
-      });
-  }
-  this->AddBorderPolygons();
-  this->GatherBoxes();
-  return context.Continue(1.0, Activity) ? Status() : Status::Aborted();
+      std::vector<SimplexIncidence::Record> scratch;
+      for (std::size_t point = begin; point < end; ++point)
+      {
+        incidence.ForEachEdge(static_cast<Id>(point), scratch,
+          [&](const TriangleIds& points, RecordIterator first, RecordIterator last) {
+            this->AddPolygonsAround({ points[0], points[1] }, first, last, this->Blocks[block]);
+          });
+      }
+    });
+  this->AddBorderPolygons(this->Blocks.back());
+  return isDone;
 }
 
 void PolyhedronMaker::CollectBorders()
@@ -260,17 +290,10 @@ void PolyhedronMaker::FindFlatEdges()
 
 bool PolyhedronMaker::UniteVertices(const ExecutionContext& context)
 {
-  const Id size = this->FirstPoint + static_cast<Id>(this->Mesh.Points.size());
-  this->Sets = EqualSets(size);
-  this->OutputPoints.assign(size, NoId);
   const std::vector<Vec3>& points = this->Mesh.Points;
-  const Id count = static_cast<Id>(this->Mesh.Tetrahedra.size());
-  for (Id i = 0; i < count; ++i)
+  using Pairs = std::vector<std::pair<Id, Id>>;
+  const auto uniteInside = [&](Id i, Pairs& pairs)
   {
-    if (i % ContinueInterval == 0 && !context.Continue(static_cast<double>(i) / count, Activity))
-    {
-      return false;
-    }
     const TetrahedronIds& ids = this->Mesh.Tetrahedra[i];
     for (int facet = 0; facet < 4; ++facet)
     {
@@ -281,18 +304,18 @@ bool PolyhedronMaker::UniteVertices(const ExecutionContext& context)
         if (InEquatorialSphere(points[triangle[0]], points[triangle[1]], points[triangle[2]],
               points[ids[facet]]) == 0)
         {
-          this->Sets.Unite(this->FirstTetrahedron + i, this->BorderIndices[4 * i + facet]);
+          pairs.emplace_back(this->FirstTetrahedron + i, this->BorderIndices[4 * i + facet]);
         }
       }
       else if (neighbor > 4 * i &&
         InSphere(points[ids[0]], points[ids[1]], points[ids[2]], points[ids[3]],
           points[this->Mesh.Tetrahedra[neighbor / 4][neighbor % 4]]) == 0)
       {
-        this->Sets.Unite(this->FirstTetrahedron + i, this->FirstTetrahedron + neighbor / 4);
+        pairs.emplace_back(this->FirstTetrahedron + i, this->FirstTetrahedron + neighbor / 4);
       }
     }
-  }
-  for (Id border = 0; border < this->FirstEdge; ++border)
+  };
+  const auto uniteOnBorder = [&](Id border, Pairs& pairs)
   {
     const TriangleIds ids = this->GetBorderFacet(border);
     for (int i = 0; i < 3; ++i)
@@ -303,7 +326,7 @@ bool PolyhedronMaker::UniteVertices(const ExecutionContext& context)
       const Id edge = this->GetEdgeVertex(a, b);
       if (InDiametralSphere(points[a], points[b], points[c]) == 0)
       {
-        this->Sets.Unite(border, edge);
+        pairs.emplace_back(border, edge);
       }
       const EdgeIds& flat = this->FlatEdges[edge - this->FirstEdge];
       if (flat[0] == border)
@@ -314,12 +337,36 @@ bool PolyhedronMaker::UniteVertices(const ExecutionContext& context)
         if (Orientation(points[a], points[b], points[c], points[opposite]) == 0 &&
           InEquatorialSphere(points[a], points[b], points[c], points[opposite]) == 0)
         {
-          this->Sets.Unite(border, flat[1]);
+          pairs.emplace_back(border, flat[1]);
         }
       }
     }
-  }
-  return true;
+  };
+  EqualSets sets(this->FirstPoint + static_cast<Id>(points.size()));
+  const auto uniteAll = [&](std::size_t count, const ExecutionContext& part, const auto& collect)
+  {
+    std::vector<Pairs> blocks(GetNumberOfBlocks(count, this->LoopOptions));
+    const bool isDone = ParallelLoop(count, this->LoopOptions, part, Activity,
+      [&](std::size_t begin, std::size_t end, std::size_t block)
+      {
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          collect(static_cast<Id>(i), blocks[block]);
+        }
+      });
+    for (const Pairs& pairs : blocks)
+    {
+      for (const auto& [one, other] : pairs)
+      {
+        sets.Unite(one, other);
+      }
+    }
+    return isDone;
+  };
+  const bool isDone = uniteAll(this->Mesh.Tetrahedra.size(), context.Part(0.0, 0.8), uniteInside) &&
+    uniteAll(this->BorderFacets.size(), context.Part(0.8, 1.0), uniteOnBorder);
+  this->Names = sets.TakeNames();
+  return isDone;
 }
 
 Vec3 PolyhedronMaker::GetPosition(Id vertex) const
@@ -343,38 +390,29 @@ Vec3 PolyhedronMaker::GetPosition(Id vertex) const
   return points[vertex - this->FirstPoint];
 }
 
-/** The polygon of the collected dual vertices, or NoId if fewer than three of them differ. */
-Id PolyhedronMaker::AddPolygon()
+/** The polygon of dual vertices, or NoId if fewer than three of them differ. */
+Id PolyhedronMaker::AddPolygon(std::vector<Id>& vertices, Polygons& polygons) const
 {
-  for (Id& vertex : this->Polygon)
+  for (Id& vertex : vertices)
   {
-    vertex = this->Sets.Find(vertex);
+    vertex = this->Names[vertex];
   }
-  this->Polygon.erase(std::unique(this->Polygon.begin(), this->Polygon.end()), this->Polygon.end());
-  while (this->Polygon.size() > 1 && this->Polygon.front() == this->Polygon.back())
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  while (vertices.size() > 1 && vertices.front() == vertices.back())
   {
-    this->Polygon.pop_back();
+    vertices.pop_back();
   }
-  if (this->Polygon.size() < 3)
+  if (vertices.size() < 3)
   {
     return NoId;
   }
-  for (const Id vertex : this->Polygon)
-  {
-    Id& output = this->OutputPoints[vertex];
-    if (output == NoId)
-    {
-      output = static_cast<Id>(this->Polyhedra.Points.size());
-      this->Polyhedra.Points.push_back(this->GetPosition(vertex));
-    }
-    this->Polyhedra.Connectivity.push_back(output);
-  }
-  this->Polyhedra.Offsets.push_back(static_cast<Id>(this->Polyhedra.Connectivity.size()));
-  return static_cast<Id>(this->Polyhedra.Offsets.size()) - 2;
+  polygons.Vertices.insert(polygons.Vertices.end(), vertices.begin(), vertices.end());
+  polygons.Offsets.push_back(static_cast<Id>(polygons.Vertices.size()));
+  return polygons.GetSize() - 1;
 }
 
 void PolyhedronMaker::AddPolygonsAround(
-  const EdgeIds& edge, RecordIterator begin, RecordIterator end)
+  const EdgeIds& edge, RecordIterator begin, RecordIterator end, Polygons& polygons) const
 {
   // For each tetrahedron the facets through which one enters and leaves it when going around the
   // edge counter-clockwise, seen against its direction.
@@ -404,37 +442,38 @@ void PolyhedronMaker::AddPolygonsAround(
     return std::find_if(steps.begin(), steps.end(),
       [&](const Step& step) { return step.Tetrahedron == tetrahedron; });
   };
+  std::vector<Id> vertices;
   const auto walk = [&](std::vector<Step>::iterator step)
   {
     const Id region = this->Mesh.Regions[step->Tetrahedron];
     const bool isOpen = this->IsBorder(step->Tetrahedron, step->Entry);
-    this->Polygon.clear();
+    vertices.clear();
     if (isOpen)
     {
-      this->Polygon.push_back(this->BorderIndices[4 * step->Tetrahedron + step->Entry]);
+      vertices.push_back(this->BorderIndices[4 * step->Tetrahedron + step->Entry]);
     }
     while (!step->IsVisited)
     {
       step->IsVisited = true;
-      this->Polygon.push_back(this->FirstTetrahedron + step->Tetrahedron);
+      vertices.push_back(this->FirstTetrahedron + step->Tetrahedron);
       const Id exit = 4 * step->Tetrahedron + step->Exit;
       if (this->BorderIndices[exit] != NoId)
       {
-        this->Polygon.push_back(this->BorderIndices[exit]);
+        vertices.push_back(this->BorderIndices[exit]);
         const Id middle = this->GetEdgeVertex(edge[0], edge[1]);
         if (!this->IsFlat(middle))
         {
-          this->Polygon.push_back(middle);
+          vertices.push_back(middle);
         }
         break;
       }
       step = findStep(this->Mesh.Neighbors[step->Tetrahedron][step->Exit] / 4);
     }
-    const Id polygon = this->AddPolygon();
+    const Id polygon = this->AddPolygon(vertices, polygons);
     if (polygon != NoId)
     {
-      this->Uses.push_back({ edge[0], region, polygon });
-      this->Uses.push_back({ edge[1], region, ~polygon });
+      polygons.Uses.push_back({ edge[0], region, polygon });
+      polygons.Uses.push_back({ edge[1], region, ~polygon });
     }
   };
   // Fans between two border facets first; what is left are closed rings.
@@ -454,7 +493,7 @@ void PolyhedronMaker::AddPolygonsAround(
   }
 }
 
-void PolyhedronMaker::AddBorderPolygons()
+void PolyhedronMaker::AddBorderPolygons(Polygons& polygons) const
 {
   std::vector<char> isVisited(3 * this->BorderFacets.size(), 0);
   // Fans that begin and end at edges where the border bends first; what is left goes all around.
@@ -468,7 +507,7 @@ void PolyhedronMaker::AddBorderPolygons()
         const Id entry = this->GetEdgeVertex(ids[corner], ids[(corner + 1) % 3]);
         if (!isVisited[3 * border + corner] && this->IsFlat(entry) != isOpen)
         {
-          this->WalkAround(border, corner, isVisited);
+          this->WalkAround(border, corner, isVisited, polygons);
         }
       }
     }
@@ -476,25 +515,26 @@ void PolyhedronMaker::AddBorderPolygons()
 }
 
 /** Add the part of a plane piece of the border that belongs to the point at a corner. */
-void PolyhedronMaker::WalkAround(Id border, int corner, std::vector<char>& isVisited)
+void PolyhedronMaker::WalkAround(
+  Id border, int corner, std::vector<char>& isVisited, Polygons& polygons) const
 {
   const Id facet = this->BorderFacets[border];
   const Id neighbor = this->Mesh.Neighbors[facet / 4][facet % 4];
   const Id point = this->GetBorderFacet(border)[corner];
   const Id entry = this->GetEdgeVertex(point, this->GetBorderFacet(border)[(corner + 1) % 3]);
-  this->Polygon.clear();
+  std::vector<Id> vertices;
   if (!this->IsFlat(entry))
   {
-    this->Polygon = { this->FirstPoint + point, entry };
+    vertices = { this->FirstPoint + point, entry };
   }
   while (!isVisited[3 * border + corner])
   {
     isVisited[3 * border + corner] = 1;
-    this->Polygon.push_back(border);
+    vertices.push_back(border);
     const Id exit = this->GetEdgeVertex(point, this->GetBorderFacet(border)[(corner + 2) % 3]);
     if (!this->IsFlat(exit))
     {
-      this->Polygon.push_back(exit);
+      vertices.push_back(exit);
       break;
     }
     const EdgeIds& flat = this->FlatEdges[exit - this->FirstEdge];
@@ -502,38 +542,96 @@ void PolyhedronMaker::WalkAround(Id border, int corner, std::vector<char>& isVis
     const TriangleIds next = this->GetBorderFacet(border);
     corner = static_cast<int>(std::find(next.begin(), next.end(), point) - next.begin());
   }
-  const Id polygon = this->AddPolygon();
+  const Id polygon = this->AddPolygon(vertices, polygons);
   if (polygon != NoId)
   {
-    this->Uses.push_back({ point, this->Mesh.Regions[facet / 4], polygon });
+    polygons.Uses.push_back({ point, this->Mesh.Regions[facet / 4], polygon });
     if (neighbor != NoId)
     {
-      this->Uses.push_back({ point, this->Mesh.Regions[neighbor / 4], ~polygon });
+      polygons.Uses.push_back({ point, this->Mesh.Regions[neighbor / 4], ~polygon });
     }
   }
 }
 
-void PolyhedronMaker::GatherBoxes()
+/** Puts the blocks together; points are numbered where they come first. */
+bool PolyhedronMaker::NumberPoints(const ExecutionContext& context)
 {
-  std::stable_sort(this->Uses.begin(), this->Uses.end(),
+  std::size_t polygons = 1;
+  std::size_t corners = 0;
+  for (const Polygons& block : this->Blocks)
+  {
+    polygons += block.Offsets.size();
+    corners += block.Vertices.size();
+  }
+  this->Polyhedra.Offsets.reserve(polygons);
+  this->Polyhedra.Connectivity.reserve(corners);
+  std::vector<Id> numbers(this->Names.size(), NoId);
+  std::vector<Id> vertices;
+  for (Polygons& block : this->Blocks)
+  {
+    const Id start = static_cast<Id>(this->Polyhedra.Connectivity.size());
+    std::for_each(block.Offsets.begin() + 1, block.Offsets.end(),
+      [&](Id offset) { this->Polyhedra.Offsets.push_back(start + offset); });
+    for (const Id vertex : block.Vertices)
+    {
+      if (numbers[vertex] == NoId)
+      {
+        numbers[vertex] = static_cast<Id>(vertices.size());
+        vertices.push_back(vertex);
+      }
+      this->Polyhedra.Connectivity.push_back(numbers[vertex]);
+    }
+    block.Vertices = std::vector<Id>();
+  }
+  this->Polyhedra.Points.resize(vertices.size());
+  return ParallelLoop(vertices.size(), this->LoopOptions, context, Activity,
+    [&](std::size_t begin, std::size_t end, std::size_t)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        this->Polyhedra.Points[i] = this->GetPosition(vertices[i]);
+      }
+    });
+}
+
+bool PolyhedronMaker::GatherBoxes(const ExecutionContext& context)
+{
+  std::vector<Use> uses;
+  Id first = 0;
+  for (const Polygons& block : this->Blocks)
+  {
+    for (const Use& use : block.Uses)
+    {
+      uses.push_back(
+        { use.Point, use.Region, use.Polygon < 0 ? use.Polygon - first : use.Polygon + first });
+    }
+    first += block.GetSize();
+  }
+  // A box has a polygon once.
+  const bool isDone = ParallelSort(uses, this->LoopOptions.NumberOfThreads, context, Activity,
     [](const Use& a, const Use& b)
-    { return std::tie(a.Point, a.Region) < std::tie(b.Point, b.Region); });
-  auto use = this->Uses.cbegin();
+    {
+      const Id polygonOfA = a.Polygon < 0 ? ~a.Polygon : a.Polygon;
+      const Id polygonOfB = b.Polygon < 0 ? ~b.Polygon : b.Polygon;
+      return std::tie(a.Point, a.Region, polygonOfA) < std::tie(b.Point, b.Region, polygonOfB);
+    });
+  auto use = uses.cbegin();
   for (const ControlBox& box : this->Volumes.Boxes)
   {
-    for (; use != this->Uses.cend() && use->Point == box.Point && use->Region == box.Region; ++use)
+    for (; use != uses.cend() && use->Point == box.Point && use->Region == box.Region; ++use)
     {
       this->Polyhedra.BoxPolygons.push_back(use->Polygon);
     }
     this->Polyhedra.BoxOffsets.push_back(static_cast<Id>(this->Polyhedra.BoxPolygons.size()));
   }
+  return isDone;
 }
 } // namespace
 
 Status MakeControlPolyhedra(const TetMesh& mesh, const ControlVolumes& volumes,
-  const ExecutionContext& context, ControlPolyhedra& polyhedra)
+  const ControlVolumeOptions& options, const ExecutionContext& context, ControlPolyhedra& polyhedra)
 {
   polyhedra = {};
-  return PolyhedronMaker(mesh, volumes, polyhedra).Run(context);
+  return PolyhedronMaker(mesh, volumes, options, polyhedra).Run(context);
 }
 } // namespace cdm

@@ -14,6 +14,7 @@
  * Guarantees: each polyhedron is closed, its polygons turned outwards; the volume within is that of
  * ControlBox. On a Delaunay mesh without negative couplings the polyhedra are the Voronoi boxes
  * clipped to the regions; otherwise they fold over and overlap. Polygons are plane to rounding.
+ * The same for any number of threads.
  * Cost: O(n log n); 300 bytes per tetrahedron.
  */
 #ifndef cdmControlPolyhedra_h
@@ -37,7 +38,8 @@ struct ControlPolyhedra
 
 /** The mesh and what ComputeControlVolumes() made of it. */
 Status MakeControlPolyhedra(const TetMesh& mesh, const ControlVolumes& volumes,
-  const ExecutionContext& context, ControlPolyhedra& polyhedra);
+  const ControlVolumeOptions& options, const ExecutionContext& context,
+  ControlPolyhedra& polyhedra);
 } // namespace cdm
 
 #endif

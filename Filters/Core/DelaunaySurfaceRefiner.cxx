@@ -3,6 +3,7 @@
 
 #include "BallIndex.h"
 #include "DuplicateTriangles.h"
+#include "IdLimits.h"
 #include "IdLists.h"
 #include "MatchingPoints.h"
 #include "Measures.h"
@@ -209,6 +210,12 @@ Status SurfaceRefiner::Prepare()
   {
     return Status::InvalidInput("The surface has no triangles; there is nothing to refine.");
   }
+  const Status range = CheckNumberOfPoints(
+    surface.Points.size(), this->Input.MeshPoints != nullptr ? this->Input.MeshPoints->size() : 0);
+  if (!range.IsOk())
+  {
+    return range;
+  }
   this->Points = surface.Points;
   this->NumberOfSurfacePoints = static_cast<Id>(surface.Points.size());
   for (Id i = 0; i < this->NumberOfSurfacePoints; ++i)
@@ -280,7 +287,7 @@ Status SurfaceRefiner::Prepare()
     : static_cast<Id>(std::min<std::size_t>(
         std::max<std::size_t>(isSizeWanted ? 1000000 : 20000, 50 * surface.Triangles.size()) +
           this->Output.KeptMeshPoints.size(),
-        std::numeric_limits<Id>::max() / 8));
+        LargestId / 8));
   this->Octree.Insert(this->Points);
   this->Surface = std::make_unique<RefinableSurface>(surface, edges.Edges, this->Points);
   return Status();
@@ -1623,6 +1630,12 @@ Status SurfaceRefiner::Refine()
     if (steps % ReportInterval == 0 && !part.Continue(done, "Refining the surface"))
     {
       return Status::Aborted();
+    }
+    const Status range =
+      CheckRefinement(this->Points.size(), this->Surface->GetNumberOfTriangles());
+    if (!range.IsOk())
+    {
+      return range;
     }
     if (!this->EdgeQueue.empty())
     {

@@ -47,6 +47,26 @@ inline Status CheckNumberOfTriangles(std::uint64_t number)
         " polygons, more than the " + std::to_string(LargestId / EdgesOfTriangle) +
         " whose edges 32-bit ids can count. Mesh it in parts.");
 }
+
+/** Points of a surface and mesh points get ids together, and so does the point at infinity. */
+inline Status CheckNumberOfPoints(std::uint64_t ofSurface, std::uint64_t ofMesh)
+{
+  return CheckIdRange(ofSurface + ofMesh + 1, "points, those of the surface and mesh points");
+}
+
+/** Asked before each step of a refinement: are there ids for what the step may make? */
+inline Status CheckRefinement(std::uint64_t numberOfPoints, std::uint64_t numberOfTriangles)
+{
+  // Far more than a step makes.
+  constexpr std::uint64_t room = 1 << 20;
+  return numberOfPoints + room <= LargestId &&
+      numberOfTriangles + room <= LargestId / EdgesOfTriangle
+    ? Status()
+    : Status::InvalidInput("The refined surface has " + std::to_string(numberOfPoints) +
+        " points with the mesh points and " + std::to_string(numberOfTriangles) +
+        " triangles, and is not finished: 32-bit ids cannot count many more. Ask for larger "
+        "triangles, or mesh it in parts.");
+}
 } // namespace cdm
 
 #endif

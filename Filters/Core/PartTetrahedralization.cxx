@@ -7,12 +7,14 @@
 #include "Predicates.h"
 #include "PulledSphere.h"
 #include "SpatialSort.h"
-#include "TetMesh.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
+#include <type_traits>
+#include <unordered_set>
 #include <utility>
 
 namespace cdm
@@ -27,6 +29,13 @@ constexpr std::size_t LargestHalo = 256;
 /** Points in the answer to one query: twice as many each round, so that there are few rounds. */
 constexpr std::size_t FirstAnswerSize = 8;
 constexpr int LastDoubling = 20;
+/**
+ * Points that the searches of a round may test, for each of them and each own point. Usual
+ * distributions need up to 20, points on one sphere a part of all points.
+ */
+constexpr std::size_t LargestWork = 64;
+/** Tetrahedra at a point whose neighbors are looked at for a tetrahedron that is not known. */
+constexpr Id LargestStar = 64;
 /** How often the context is asked, in tetrahedra or queries: each may have to look at many points. */
 constexpr std::size_t ReportInterval = 64;
 constexpr const char* Activity = "Completing the tetrahedra between parts";
@@ -166,6 +175,7 @@ public:
 
   void Visit(Id point, const Vec3& position)
   {
+    ++this->NumberOfTests;
     const std::pair<double, Id> found{ SquaredNorm(position - this->Center), point };
     if (this->Found.size() == this->Limit && !(found < this->Found.back()))
     {
@@ -184,7 +194,14 @@ public:
     this->Found.insert(std::upper_bound(this->Found.begin(), this->Found.end(), found), found);
   }
 
-  const std::vector<std::pair<double, Id>>& GetFound() const { return this->Found; }
+  std::size_t GetNumberOfTests() const { return this->NumberOfTests; }
+  std::vector<Id> GetFound() const
+  {
+    std::vector<Id> points(this->Found.size());
+    std::transform(this->Found.begin(), this->Found.end(), points.begin(),
+      [](const std::pair<double, Id>& found) { return found.second; });
+    return points;
+  }
 
 private:
   const ConflictQuery& Query;
@@ -192,25 +209,21 @@ private:
   const Form& Shape;
   const std::vector<NumberedPoint>& Points;
   const std::size_t Limit;
+  std::size_t NumberOfTests = 0;
   /** Squared distance and point, ascending. */
   std::vector<std::pair<double, Id>> Found;
 };
 
-std::vector<std::pair<double, Id>> FindConflicts(const ConflictQuery& query,
-  const PointOctree& octree, const std::vector<NumberedPoint>& points, std::size_t limit)
+TetMesh MakeMesh(const std::vector<NumberedPoint>& points, RawVector<TetrahedronIds> tetrahedra)
 {
-  const auto& v = query.Vertices;
-  if (query.IsFacet != 0)
+  TetMesh mesh;
+  mesh.Points.reserve(points.size());
+  for (const NumberedPoint& point : points)
   {
-    const FacetForm form(v[0], v[1], v[2], v[3]);
-    ConflictSearch<FacetForm> search(query, form, points, limit);
-    octree.Visit(search);
-    return search.GetFound();
+    mesh.Points.push_back(point.Position);
   }
-  const SphereForm form(v[0], v[1], v[2], v[3]);
-  ConflictSearch<SphereForm> search(query, form, points, limit);
-  octree.Visit(search);
-  return search.GetFound();
+  mesh.Tetrahedra = std::move(tetrahedra);
+  return mesh;
 }
 
 /** A box that surely holds the ball of a tetrahedron; false if rounding leaves that open. */
@@ -434,7 +447,8 @@ void PartTetrahedralization::AddPoints(const std::vector<NumberedPoint>& points)
         [](const NumberedPoint& p, const NumberedPoint& q) { return p.Number < q.Number; });
     const bool isOwn =
       place != this->Points.begin() + this->NumberOfOwnPoints && place->Number == point.Number;
-    if (!isOwn && this->HaloNumbers.insert(point.Number).second)
+    if (!isOwn &&
+      this->HaloPlaces.emplace(point.Number, static_cast<Id>(this->Points.size())).second)
     {
       this->Points.push_back(point);
     }
@@ -469,9 +483,26 @@ bool PartTetrahedralization::IsCovered(const TetrahedronIds& ids) const
       { return this->IsOwn(id) && IsWithin(ball, this->Blocks[this->BlockOfPoint[id]]); });
 }
 
-bool PartTetrahedralization::IsInConflictWithOwn(const Doubt& doubt) const
+/** Own points in conflict, up to a number of them that are nearest to the center of the query. */
+std::vector<Id> PartTetrahedralization::FindConflicts(const ConflictQuery& query, std::size_t limit)
 {
-  return !FindConflicts(this->MakeQuery(doubt), this->Octree, this->Points, 1).empty();
+  const auto find = [&](const auto& form)
+  {
+    ConflictSearch<std::decay_t<decltype(form)>> search(query, form, this->Points, limit);
+    this->Octree.Visit(search);
+    this->NumberOfTests += search.GetNumberOfTests();
+    ++this->NumberOfSearches;
+    return search.GetFound();
+  };
+  const auto& v = query.Vertices;
+  return query.IsFacet != 0 ? find(FacetForm(v[0], v[1], v[2], v[3]))
+                            : find(SphereForm(v[0], v[1], v[2], v[3]));
+}
+
+bool PartTetrahedralization::GaveUp() const
+{
+  return this->NumberOfTests >
+    LargestWork * (static_cast<std::size_t>(this->NumberOfOwnPoints) + this->NumberOfSearches);
 }
 
 /** A tetrahedron, or a facet of the hull, with an own point, that is right for the points known. */
@@ -537,9 +568,17 @@ Status PartTetrahedralization::Update(int numberOfThreads, const ExecutionContex
     return range;
   }
   const bool isFirst = this->Round == 0;
+  const bool isWhole = isFirst || this->ComparesStars;
   ++this->Round;
-  const bool isNeeded =
-    isFirst ? this->NumberOfOwnPoints > 0 : this->FirstNew < static_cast<Id>(this->Points.size());
+  this->NumberOfTests = 0;
+  this->NumberOfSearches = 0;
+  const bool isNeeded = this->NumberOfOwnPoints > 0 &&
+    (isFirst || this->FirstNew < static_cast<Id>(this->Points.size()));
+  if (this->ComparesStars && !isNeeded)
+  {
+    // The others may have other stars by now: they are asked the same again.
+    return {};
+  }
   this->Doubts.clear();
   for (std::size_t part = 0; part < this->Bounds.size(); ++part)
   {
@@ -558,7 +597,7 @@ Status PartTetrahedralization::Update(int numberOfThreads, const ExecutionContex
   std::vector<Id> points;
   for (Id i = 0; i < static_cast<Id>(this->Points.size()); ++i)
   {
-    if (!this->IsOwn(i) || this->IsOpen[i])
+    if (isWhole || !this->IsOwn(i) || this->IsOpen[i])
     {
       points.push_back(i);
     }
@@ -598,6 +637,13 @@ Status PartTetrahedralization::Update(int numberOfThreads, const ExecutionContex
   };
   const ExecutionContext part = context.Part(0.8, 1.0);
   std::fill(this->IsOpen.begin(), this->IsOpen.end(), 0);
+  if (this->ComparesStars)
+  {
+    this->Tetrahedra.clear();
+    this->Hull.clear();
+    this->Stars.reset();
+  }
+  RawVector<TetrahedronIds> known;
   for (std::size_t t = 0; t < all.Tetrahedra.size(); ++t)
   {
     if (t % ReportInterval == 0 &&
@@ -618,6 +664,10 @@ Status PartTetrahedralization::Update(int numberOfThreads, const ExecutionContex
       const TriangleIds facet = GetFacet(ids, static_cast<int>(inner % 4));
       doubt = { { facet[0], facet[1], facet[2], ids[inner % 4] }, true, false };
     }
+    else if (this->ComparesStars)
+    {
+      known.push_back(doubt.Ids);
+    }
     bool hasOwn = false;
     bool hasNew = isFirst;
     for (int i = 0; i < doubt.GetSize(); ++i)
@@ -625,42 +675,194 @@ Status PartTetrahedralization::Update(int numberOfThreads, const ExecutionContex
       hasOwn = hasOwn || this->IsOwn(doubt.Ids[i]);
       hasNew = hasNew || doubt.Ids[i] >= this->FirstNew;
     }
-    if (hasOwn && hasNew && (isFirst || !this->IsInConflictWithOwn(doubt)))
+    if (hasOwn && this->ComparesStars)
+    {
+      this->Compare(doubt);
+    }
+    else if (hasOwn && hasNew &&
+      (isFirst || this->FindConflicts(this->MakeQuery(doubt), 1).empty()))
     {
       this->Classify(doubt);
     }
+    if (this->GaveUp())
+    {
+      break;
+    }
   }
   this->FirstNew = static_cast<Id>(this->Points.size());
+  if (this->ComparesStars)
+  {
+    this->Stars = std::make_unique<KnownStars>(this->Points, std::move(known));
+  }
   return {};
 }
 
+PartTetrahedralization::KnownStars::KnownStars(
+  const std::vector<NumberedPoint>& points, RawVector<TetrahedronIds> tetrahedra)
+  : Mesh(MakeMesh(points, std::move(tetrahedra))), Incidence(this->Mesh, 1)
+{
+}
+
+/** Asks for a tetrahedron, or a facet of the hull, with an own point where it has other points. */
+void PartTetrahedralization::Compare(const Doubt& doubt)
+{
+  for (std::size_t part = 0; part < this->Bounds.size(); ++part)
+  {
+    bool isAsked = false;
+    for (int i = 0; i < doubt.GetSize() && static_cast<int>(part) != this->Part; ++i)
+    {
+      const Vec3& position = this->Points[doubt.Ids[i]].Position;
+      isAsked = isAsked ||
+        (!this->IsOwn(doubt.Ids[i]) && this->Bounds[part].Overlaps({ position, position }));
+    }
+    if (isAsked)
+    {
+      this->Queries[part].push_back(this->MakeQuery(doubt));
+    }
+  }
+  this->Take(doubt);
+}
+
+/** The place of a point that has been tetrahedralized, or NoId. */
+Id PartTetrahedralization::FindPlace(std::int64_t number) const
+{
+  const auto end = this->Points.begin() + this->NumberOfOwnPoints;
+  const auto own = std::lower_bound(this->Points.begin(), end, number,
+    [](const NumberedPoint& point, std::int64_t wanted) { return point.Number < wanted; });
+  if (own != end && own->Number == number)
+  {
+    return static_cast<Id>(own - this->Points.begin());
+  }
+  const auto halo = this->HaloPlaces.find(number);
+  return halo != this->HaloPlaces.end() && halo->second < this->FirstNew ? halo->second : NoId;
+}
+
+/**
+ * Whether there is a tetrahedron or facet of the hull in the stars of this part as well. If not,
+ * found gets points in conflict, or else this part learns its points.
+ */
+Status PartTetrahedralization::LookUp(
+  const ConflictQuery& query, bool& hasConflict, std::vector<Id>& found)
+{
+  TetrahedronIds ids;
+  std::transform(query.Numbers.begin(), query.Numbers.end(), ids.begin(),
+    [this](std::int64_t number) { return this->FindPlace(number); });
+  hasConflict = false;
+  // Only the bounds of this part hold the points.
+  if (std::none_of(ids.begin(), ids.end() - query.IsFacet,
+        [this](Id id) { return id != NoId && this->IsOwn(id); }))
+  {
+    return {};
+  }
+  // All neighbors of one of its points are looked at, of that with the fewest.
+  const SimplexIncidence& incidence = this->Stars->Incidence;
+  Id center = NoId;
+  for (int i = 0; i < 4; ++i)
+  {
+    if (ids[i] == NoId)
+    {
+      this->AddPoints({ { query.Vertices[i], query.Numbers[i] } });
+    }
+    else if (i < 4 - query.IsFacet &&
+      (center == NoId || incidence.CountTetrahedra(ids[i]) < incidence.CountTetrahedra(center)))
+    {
+      center = ids[i];
+    }
+  }
+  const bool isKnown = std::find(ids.begin(), ids.end(), NoId) == ids.end();
+  hasConflict = true;
+  if (!isKnown && incidence.CountTetrahedra(center) > LargestStar)
+  {
+    return {};
+  }
+  const auto isVertex = [&](Id id) { return std::find(ids.begin(), ids.end(), id) != ids.end(); };
+  bool hasSame = false;
+  bool hasBeyond = false;
+  std::vector<Id> neighbors;
+  incidence.ForEachTetrahedron(center,
+    [&](Id tetrahedron, int)
+    {
+      const TetrahedronIds& other = this->Stars->Mesh.Tetrahedra[tetrahedron];
+      const auto common = std::count_if(other.begin(), other.end(), isVertex);
+      const bool hasApex = std::find(other.begin(), other.end(), ids[3]) != other.end();
+      hasSame = hasSame || common == 4;
+      hasBeyond = hasBeyond || (query.IsFacet != 0 && common == 3 && !hasApex);
+      neighbors.insert(neighbors.end(), other.begin(), other.end());
+    });
+  hasConflict = !hasSame || hasBeyond;
+  if (!hasConflict)
+  {
+    return {};
+  }
+  std::sort(neighbors.begin(), neighbors.end());
+  neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
+  std::copy_if(neighbors.begin(), neighbors.end(), std::back_inserter(found),
+    [&](Id id) { return !isVertex(id) && IsInConflict(query, this->Points[id]); });
+  return isKnown && query.IsFacet == 0 && found.empty()
+    ? Status::InternalError("Parts of the mesh do not agree on a tetrahedron.")
+    : Status();
+}
+
 Status PartTetrahedralization::Answer(const std::vector<ConflictQuery>& queries,
-  const ExecutionContext& context, ConflictAnswers& answers) const
+  const ExecutionContext& context, ConflictAnswers& answers)
 {
   answers = ConflictAnswers();
   const std::size_t limit = FirstAnswerSize << std::min(this->Round - 1, LastDoubling);
   std::unordered_set<Id> sent;
-  for (std::size_t i = 0; i < queries.size(); ++i)
+  for (std::size_t i = 0; i < queries.size() && !this->GaveUp(); ++i)
   {
     if (i % ReportInterval == 0 && !context.Continue(double(i) / double(queries.size()), Activity))
     {
       return Status::Aborted();
     }
-    const auto found = FindConflicts(queries[i], this->Octree, this->Points, limit);
-    answers.HasConflict.push_back(found.empty() ? 0 : 1);
-    for (const auto& item : found)
+    std::vector<Id> found;
+    bool hasConflict = false;
+    if (this->ComparesStars)
     {
-      if (sent.insert(item.second).second)
+      const Status status = this->LookUp(queries[i], hasConflict, found);
+      if (!status.IsOk())
       {
-        answers.Points.push_back(this->Points[item.second]);
+        return status;
+      }
+    }
+    else
+    {
+      found = this->FindConflicts(queries[i], limit);
+      hasConflict = !found.empty();
+    }
+    answers.HasConflict.push_back(hasConflict ? 1 : 0);
+    for (Id point : found)
+    {
+      if (sent.insert(point).second)
+      {
+        answers.Points.push_back(this->Points[point]);
       }
     }
   }
   return {};
 }
 
+void PartTetrahedralization::CompareStars()
+{
+  this->ComparesStars = true;
+  // All points known are tetrahedralized again.
+  this->FirstNew = 0;
+}
+
 bool PartTetrahedralization::TakeAnswers(const std::vector<ConflictAnswers>& answers)
 {
+  bool isFinal = true;
+  for (const ConflictAnswers& answer : answers)
+  {
+    this->AddPoints(answer.Points);
+    isFinal = isFinal &&
+      std::count(answer.HasConflict.begin(), answer.HasConflict.end(), 0) ==
+        static_cast<std::ptrdiff_t>(answer.HasConflict.size());
+  }
+  if (this->ComparesStars)
+  {
+    return isFinal;
+  }
   for (std::size_t part = 0; part < answers.size(); ++part)
   {
     for (std::size_t i = 0; i < answers[part].HasConflict.size(); ++i)
@@ -668,9 +870,7 @@ bool PartTetrahedralization::TakeAnswers(const std::vector<ConflictAnswers>& ans
       Doubt& doubt = this->Doubts[this->DoubtsOfQueries[part][i]];
       doubt.HasConflict = doubt.HasConflict || answers[part].HasConflict[i] != 0;
     }
-    this->AddPoints(answers[part].Points);
   }
-  bool isFinal = true;
   for (const Doubt& doubt : this->Doubts)
   {
     if (!doubt.HasConflict)
@@ -678,7 +878,6 @@ bool PartTetrahedralization::TakeAnswers(const std::vector<ConflictAnswers>& ans
       this->Take(doubt);
       continue;
     }
-    isFinal = false;
     for (int i = 0; i < doubt.GetSize(); ++i)
     {
       if (this->IsOwn(doubt.Ids[i]))

@@ -20,7 +20,14 @@
  *  4. otherwise the tetrahedron is not Delaunay. In the next round the own points of all such ones,
  *     the halo and the new points are tetrahedralized, O(surface) of them: of its tetrahedra those
  *     are right that hold a new point and are not in conflict with an own point, and only they can
- *     be new. The rounds end when nothing is in conflict.
+ *     be new. The rounds end when nothing is in conflict;
+ *  5. where very many points lie near the sphere of each tetrahedron, as on one sphere, looking for
+ *     conflicts would take O(n^2). Parts then compare stars instead of spheres: each makes all
+ *     tetrahedra of the points it knows, and asks those that have a point of a tetrahedron whether
+ *     they have this tetrahedron too. If not, they learn its points, or answer with points in
+ *     conflict: some are among the neighbors of each of its points. Stars that agree are right: they
+ *     make one complex, locally Delaunay at all of its facets, and connected, as all parts know the
+ *     same first points.
  * The star of an own point is then closed, with all of its tetrahedra Delaunay: it is the point's
  * star in the tetrahedralization of all points. A tetrahedron belongs to the part with its lowest
  * numbered point; it is the same in all parts that have one of its points.
@@ -28,13 +35,14 @@
  * Guarantees: the tetrahedra at the points of all parts are those of BuildDelaunayTetrahedralization()
  * for all points, whatever the parts are; all decisions are exact.
  * Cost: O(n log n) for the n own points and O(halo) per round, of which there are two or three for
- * usual distributions. 70 bytes per tetrahedron of the part at the peak, 16 of them stay. A tetrahedron
- * is tested against all points near its sphere: with n points on one sphere but for rounding that is
- * O(n^2) (Testing/Benchmarks/Distributed.md).
+ * usual distributions. 70 bytes per tetrahedron of the part at the peak, 16 of them stay. Where stars
+ * are compared O(n log n) for own points and halo per round, and the part that has a point has all
+ * others that it shares tetrahedra with: for points exactly on one sphere these are all of them.
  *
  * References: R. Shewchuk, "Star splaying", 2005, doi:10.1145/1064092.1064129 (stars that are
- * completed one by one agree); D. Funke, P. Sanders, "Parallel d-D Delaunay triangulations in shared
- * and distributed memory", 2017, doi:10.1137/1.9781611974768.17 (only the border is done again).
+ * completed one by one agree, and are right then: step 5); D. Funke, P. Sanders, "Parallel d-D
+ * Delaunay triangulations in shared and distributed memory", 2017,
+ * doi:10.1137/1.9781611974768.17 (only the border is done again).
  */
 #ifndef cdmPartTetrahedralization_h
 #define cdmPartTetrahedralization_h
@@ -43,14 +51,17 @@
 #include "ExecutionContext.h"
 #include "PointOctree.h"
 #include "RawVector.h"
+#include "SimplexIncidence.h"
 #include "Status.h"
+#include "TetMesh.h"
 #include "Types.h"
 #include "Vec3.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <unordered_set>
+#include <memory>
+#include <unordered_map>
 #include <vector>
 
 namespace cdm
@@ -131,9 +142,13 @@ public:
   const std::vector<std::vector<ConflictQuery>>& GetQueries() const { return this->Queries; }
   /** As the part that is asked. */
   Status Answer(const std::vector<ConflictQuery>& queries, const ExecutionContext& context,
-    ConflictAnswers& answers) const;
-  /** From each part. False if the part has to be updated again. */
+    ConflictAnswers& answers);
+  /** Whether looking for conflicts took too long in this round: answers are not complete then. */
+  bool GaveUp() const;
+  /** From each part, if none gave up. False if the part has to be updated again. */
   bool TakeAnswers(const std::vector<ConflictAnswers>& answers);
+  /** By all parts instead, if one gave up: from the next round on stars are compared. */
+  void CompareStars();
 
   /** The own points, then the halo; what follows names them by their place here. */
   const std::vector<NumberedPoint>& GetPoints() const { return this->Points; }
@@ -162,12 +177,24 @@ private:
     int GetSize() const { return this->IsFacet ? 3 : 4; }
   };
 
+  /** The tetrahedra of all points known, those at each point. */
+  struct KnownStars
+  {
+    KnownStars(const std::vector<NumberedPoint>& points, RawVector<TetrahedronIds> tetrahedra);
+
+    TetMesh Mesh;
+    SimplexIncidence Incidence;
+  };
+
   void MakeBlocks(Id* begin, Id* end);
   void Classify(const Doubt& doubt);
   void Take(const Doubt& doubt);
   ConflictQuery MakeQuery(const Doubt& doubt) const;
   bool IsCovered(const TetrahedronIds& ids) const;
-  bool IsInConflictWithOwn(const Doubt& doubt) const;
+  void Compare(const Doubt& doubt);
+  std::vector<Id> FindConflicts(const ConflictQuery& query, std::size_t limit);
+  Status LookUp(const ConflictQuery& query, bool& hasConflict, std::vector<Id>& found);
+  Id FindPlace(std::int64_t number) const;
 
   std::vector<NumberedPoint> Points;
   Id NumberOfOwnPoints;
@@ -181,9 +208,15 @@ private:
   std::vector<Id> BlockOfPoint;
   /** For each part the blocks whose boxes it was asked for. */
   std::vector<std::vector<Id>> BlocksOfBoxes;
-  std::unordered_set<std::int64_t> HaloNumbers;
+  /** The place of each point of the halo among the points, by its number. */
+  std::unordered_map<std::int64_t, Id> HaloPlaces;
 
   int Round = 0;
+  /** Points tested by searches for conflicts in this round, and how many these were. */
+  std::size_t NumberOfTests = 0;
+  std::size_t NumberOfSearches = 0;
+  bool ComparesStars = false;
+  std::unique_ptr<KnownStars> Stars;
   /** The first point that is new in this round. */
   Id FirstNew = 0;
   /** Own points that take part in the next round. */

@@ -46,6 +46,8 @@ public:
   /** Whether a tetrahedron has the point. */
   bool IsUsed(Id point) const { return this->Begin[point] < this->Begin[point + 1]; }
 
+  Id CountTetrahedra(Id point) const { return this->Begin[point + 1] - this->Begin[point]; }
+
   /** Calls visit(tetrahedron, i) where the point is vertex i of it; tetrahedra ascend. */
   template <typename Visitor>
   void ForEachTetrahedron(Id point, Visitor&& visit) const

@@ -9,9 +9,12 @@
  *
  * BoundGradation() lowers sizes given at the points of cells until they grow nowhere faster than
  * wanted: the largest sizes below the given ones with |h(a) - h(b)| <= g |a - b| for any two points
- * of a cell, by Dijkstra's algorithm from the smallest size on.
+ * of a cell, from the smallest size on, as Dijkstra's algorithm does, but for many points of similar
+ * size at a time, which threads share: points that are lowered meanwhile are visited again. Which
+ * thread is first does not matter: the largest such sizes are unique, with their rounding too.
  *
- * Cost: O(n log n) for n points in cells of bounded size; 40 bytes per point.
+ * Cost: O(n log n) for n points in cells of bounded size, of which some are visited twice; 40 bytes
+ * per point.
  * References: H. Borouchaki, F. Hecht, P. J. Frey, "Mesh gradation control", 1998,
  * doi:10.1002/(SICI)1097-0207(19981130)43:6<1143::AID-NME470>3.0.CO;2-I (the h-variation);
  * P.-O. Persson, "Mesh size functions for implicit geometries and PDE-based gradient limiting",
@@ -78,9 +81,17 @@ struct SizingCells
   std::vector<Id> Connectivity;
 };
 
-/** One size for each point; gradation > 0. */
-Status BoundGradation(const SizingCells& cells, double gradation, const ExecutionContext& context,
-  std::vector<double>& sizes);
+struct GradationOptions
+{
+  /** How much larger sizes may be for each unit of distance. > 0. */
+  double Gradation = 0.3;
+  /** 0: one for each processor core. The sizes do not depend on it. */
+  int NumberOfThreads = 0;
+};
+
+/** One size for each point. */
+Status BoundGradation(const SizingCells& cells, const GradationOptions& options,
+  const ExecutionContext& context, std::vector<double>& sizes);
 } // namespace cdm
 
 #endif

@@ -219,6 +219,11 @@ cdm::Status DistributedMesh::Tetrahedralize()
           return step;
         });
     }
+    if (status.IsOk() && this->Processes.Maximum(this->Part->GaveUp() ? 1 : 0) > 0)
+    {
+      this->Part->CompareStars();
+      continue;
+    }
     std::vector<std::vector<char>> conflictsThere;
     std::vector<std::vector<cdm::NumberedPoint>> pointsThere;
     if (status.IsOk())

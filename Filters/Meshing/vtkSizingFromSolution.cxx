@@ -166,7 +166,7 @@ int vtkSizingFromSolution::RequestData(
       }
       for (int i = 0; i < components && step.IsOk() && this->Gradation > 0.0; ++i)
       {
-        step = cdm::BoundGradation(cells, this->Gradation,
+        step = cdm::BoundGradation(cells, { this->Gradation, vtkCoreBridge::GetNumberOfThreads() },
           context.Part(0.5 + 0.5 * i / components, 0.5 + 0.5 * (i + 1) / components), sizes[i]);
       }
       return step;

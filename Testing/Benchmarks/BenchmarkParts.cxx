@@ -159,10 +159,16 @@ void Measure(const std::string& kind, std::size_t numberOfPoints, int numberOfPa
           answers[r][s].HasConflict.size() + answers[r][s].Points.size() * sizeof(NumberedPoint));
       }
     }
+    const bool gaveUp = std::any_of(
+      parts.begin(), parts.end(), [](const PartTetrahedralization& part) { return part.GaveUp(); });
     for (std::size_t r = 0; r < count; ++r)
     {
       const double start = GetSeconds();
-      isFinal = parts[r].TakeAnswers(answers[r]) && isFinal;
+      if (gaveUp)
+      {
+        parts[r].CompareStars();
+      }
+      isFinal = !gaveUp && parts[r].TakeAnswers(answers[r]) && isFinal;
       costs[r].Others += GetSeconds() - start;
     }
   }

@@ -88,7 +88,7 @@ void ExpectSums(const TetMesh& mesh, const ControlVolumes& volumes, double toler
 void ExpectClosedPolyhedra(const TetMesh& mesh, const ControlVolumes& volumes, double tolerance)
 {
   ControlPolyhedra polyhedra;
-  ASSERT_TRUE(MakeControlPolyhedra(mesh, volumes, {}, polyhedra).IsOk());
+  ASSERT_TRUE(MakeControlPolyhedra(mesh, volumes, {}, {}, polyhedra).IsOk());
   ASSERT_EQ(volumes.Boxes.size() + 1, polyhedra.BoxOffsets.size());
   for (std::size_t box = 0; box < volumes.Boxes.size(); ++box)
   {
@@ -206,7 +206,7 @@ TEST(ControlVolumes, CubicGrid)
   ExpectClosedPolyhedra(mesh, volumes, 1e-17);
 
   ControlPolyhedra polyhedra;
-  ASSERT_TRUE(MakeControlPolyhedra(mesh, volumes, {}, polyhedra).IsOk());
+  ASSERT_TRUE(MakeControlPolyhedra(mesh, volumes, {}, {}, polyhedra).IsOk());
   for (std::size_t box = 0; box < volumes.Boxes.size(); ++box)
   {
     if (countSides(mesh.Points[volumes.Boxes[box].Point]) == 0)
@@ -235,7 +235,7 @@ TEST(ControlVolumes, BodyCenteredLattice)
     return low > 0.9 && high < size - 1.9;
   };
   ControlPolyhedra polyhedra;
-  ASSERT_TRUE(MakeControlPolyhedra(mesh, volumes, {}, polyhedra).IsOk());
+  ASSERT_TRUE(MakeControlPolyhedra(mesh, volumes, {}, {}, polyhedra).IsOk());
   int inner = 0;
   for (std::size_t i = 0; i < volumes.Boxes.size(); ++i)
   {
@@ -392,6 +392,38 @@ TEST(ControlVolumes, SameForAnyNumberOfThreads)
   }
 }
 
+TEST(ControlVolumes, PolyhedraAreTheSameForAnyNumberOfThreads)
+{
+  // Regions with flat and bent borders, cospherical cells, and more points than a block has.
+  TetMesh random = MakeHullMesh(MakeRandomPoints(20000, 14));
+  SplitAt(random, 0.5);
+  TetMesh grid = MakeHullMesh(MakeGrid(24, 1.0));
+  SplitAt(grid, 11.0);
+  for (const TetMesh& mesh : { random, grid })
+  {
+    const ControlVolumes volumes = Compute(mesh);
+    const auto make = [&](int threads)
+    {
+      ControlPolyhedra polyhedra;
+      ControlVolumeOptions options;
+      options.NumberOfThreads = threads;
+      EXPECT_TRUE(MakeControlPolyhedra(mesh, volumes, options, {}, polyhedra).IsOk());
+      return polyhedra;
+    };
+    const ControlPolyhedra one = make(1);
+    EXPECT_EQ(volumes.Boxes.size() + 1, one.BoxOffsets.size());
+    for (const int threads : { 2, 3, 8 })
+    {
+      const ControlPolyhedra other = make(threads);
+      EXPECT_TRUE(one.Points == other.Points) << threads;
+      EXPECT_TRUE(one.Offsets == other.Offsets) << threads;
+      EXPECT_TRUE(one.Connectivity == other.Connectivity) << threads;
+      EXPECT_TRUE(one.BoxOffsets == other.BoxOffsets) << threads;
+      EXPECT_TRUE(one.BoxPolygons == other.BoxPolygons) << threads;
+    }
+  }
+}
+
 TEST(ControlVolumes, BadTetrahedraAndAbort)
 {
   TetMesh mesh = MakeHullMesh(MakeRandomPoints(3000, 5));
@@ -403,6 +435,10 @@ TEST(ControlVolumes, BadTetrahedraAndAbort)
       [&] { return reached >= limit; });
     ControlVolumes volumes;
     EXPECT_TRUE(ComputeControlVolumes(mesh, {}, context, volumes).IsAborted());
+    volumes = Compute(mesh);
+    reached = -1.0;
+    ControlPolyhedra polyhedra;
+    EXPECT_TRUE(MakeControlPolyhedra(mesh, volumes, {}, context, polyhedra).IsAborted());
   }
   std::swap(mesh.Tetrahedra[7][0], mesh.Tetrahedra[7][1]);
   ControlVolumes volumes;

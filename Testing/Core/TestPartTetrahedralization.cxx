@@ -86,6 +86,7 @@ struct Traffic
   int Rounds = 0;
   std::size_t Halo = 0;
   std::size_t Queries = 0;
+  bool ComparesStars = false;
 };
 
 /** Lets parts talk to each other in turn; checks what each has, and puts together what each owns. */
@@ -154,9 +155,16 @@ Whole MakeParts(const std::vector<Vec3>& points, const std::vector<int>& partOf,
         EXPECT_TRUE(parts[s].Answer(queries, {}, answers[r][s]).IsOk());
       }
     }
+    const bool gaveUp = std::any_of(
+      parts.begin(), parts.end(), [](const PartTetrahedralization& part) { return part.GaveUp(); });
     for (std::size_t r = 0; r < count; ++r)
     {
-      isFinished = parts[r].TakeAnswers(answers[r]) && isFinished;
+      if (gaveUp)
+      {
+        parts[r].CompareStars();
+        traffic.ComparesStars = true;
+      }
+      isFinished = !gaveUp && parts[r].TakeAnswers(answers[r]) && isFinished;
     }
   }
   Whole whole;
@@ -212,7 +220,7 @@ Whole MakeParts(const std::vector<Vec3>& points, const std::vector<int>& partOf,
 }
 
 /** One, two, three and seven parts give the same tetrahedra as no parts. */
-void ExpectSame(const std::vector<Vec3>& points, const char* name)
+void ExpectSame(const std::vector<Vec3>& points, const char* name, bool comparesStars = false)
 {
   const Whole expected = MakeWhole(points);
   for (int numberOfParts : { 1, 2, 3, 7 })
@@ -233,6 +241,7 @@ void ExpectSame(const std::vector<Vec3>& points, const char* name)
     const Whole whole = MakeParts(points, partOf, numberOfParts, cells, expected, traffic);
     EXPECT_EQ(whole.Tetrahedra, expected.Tetrahedra);
     EXPECT_EQ(whole.Hull, expected.Hull);
+    EXPECT_TRUE(traffic.ComparesStars || !comparesStars || numberOfParts == 1);
     std::cout << name << ": " << points.size() << " points, " << numberOfParts
               << " parts: " << traffic.Rounds << " rounds, " << traffic.Halo
               << " points of others, " << traffic.Queries << " queries\n";
@@ -241,6 +250,7 @@ void ExpectSame(const std::vector<Vec3>& points, const char* name)
 
 constexpr auto MakeRandom = testing_points::MakeRandom<Vec3>;
 constexpr auto MakeGrid = testing_points::MakeGrid<Vec3>;
+constexpr auto MakeOnSphere = testing_points::MakeOnSphere<Vec3>;
 } // namespace
 
 TEST(PartTetrahedralization, RandomPoints)
@@ -266,24 +276,7 @@ TEST(PartTetrahedralization, Spheres)
 {
   const unsigned seed = 13;
   std::cout << "seed " << seed << "\n";
-  // Exactly on one sphere: signed permutations of the triples with x^2 + y^2 + z^2 = 5^2 * 13^2 ...
-  std::vector<Vec3> exact;
-  const int radius2 = 1105 * 9;
-  for (int x = -100; x <= 100; ++x)
-  {
-    for (int y = -100; y <= 100; ++y)
-    {
-      for (int z = -100; z <= 100; ++z)
-      {
-        if (x * x + y * y + z * z == radius2)
-        {
-          exact.push_back({ double(x), double(y), double(z) });
-        }
-      }
-    }
-  }
-  std::mt19937 generator(seed);
-  std::shuffle(exact.begin(), exact.end(), generator);
+  std::vector<Vec3> exact = MakeOnSphere(1105 * 9, seed);
   ASSERT_GT(exact.size(), 100u);
   ExpectSame(exact, "exactly on a sphere");
   exact.push_back({ 0.5, 0.25, 0.125 });
@@ -295,6 +288,36 @@ TEST(PartTetrahedralization, Spheres)
     rounded.push_back((1.0 / Norm(p)) * p);
   }
   ExpectSame(rounded, "on a sphere, rounded");
+  for (const Vec3& p : MakeRandom(1000, seed + 1))
+  {
+    rounded.push_back(p);
+  }
+  ExpectSame(rounded, "on a sphere, rounded, and elsewhere");
+}
+
+TEST(PartTetrahedralization, ManyPointsOnASphere)
+{
+  // To test each tetrahedron against each point would take minutes.
+  const unsigned seed = 18;
+  std::cout << "seed " << seed << "\n";
+  const std::vector<Vec3> exact = MakeOnSphere(600066, seed);
+  ASSERT_EQ(exact.size(), 14112u);
+  ExpectSame(exact, "exactly on a sphere", true);
+  std::vector<Vec3> rounded;
+  for (const Vec3& p : exact)
+  {
+    rounded.push_back((1.0 / Norm(p)) * p);
+  }
+  ExpectSame(rounded, "on a sphere, rounded", true);
+  // Close to it, and on both sides of a plane that has many of them.
+  std::vector<Vec3> moved;
+  for (const Vec3& p : MakeRandom(4000, seed))
+  {
+    const Vec3 q = p - Vec3{ 0.5, 0.5, 0.5 };
+    moved.push_back(((1.0 + 1e-7 * p.X) / Norm(q)) * q);
+    moved.push_back({ p.X, p.Y, 0.0 });
+  }
+  ExpectSame(moved, "near a sphere, and in a plane");
 }
 
 TEST(PartTetrahedralization, UnevenPoints)

@@ -66,7 +66,7 @@ TEST(SizingField, BoundsTheGradation)
   }
   constexpr double gradation = 0.4;
   std::vector<double> sizes = given;
-  ASSERT_TRUE(BoundGradation(cells, gradation, {}, sizes).IsOk());
+  ASSERT_TRUE(BoundGradation(cells, { gradation }, {}, sizes).IsOk());
   std::vector<char> isReached(sizes.size(), 0);
   for (std::size_t i = 0; i < sizes.size(); ++i)
   {
@@ -109,9 +109,74 @@ TEST(SizingField, GradationOfAChainIsTheClosedForm)
       cells.Offsets.push_back(2 * i);
     }
   }
-  ASSERT_TRUE(BoundGradation(cells, 0.5, {}, sizes).IsOk());
+  ASSERT_TRUE(BoundGradation(cells, { 0.5 }, {}, sizes).IsOk());
   for (int i = 0; i <= 100; ++i)
   {
     EXPECT_NEAR(sizes[i], std::min(10.0, 0.5 + 0.5 * 0.25 * std::abs(i - 30)), 1e-13);
   }
+}
+
+TEST(SizingField, GradationIsTheSameForAnyNumberOfThreads)
+{
+  // The cells of a grid of 40^3 cubes, moved and graded: sizes of a layer, scattered ones, and a
+  // single small one that reaches all points.
+  const unsigned seed = 18;
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  const auto uniform = [&random] { return random() / 4294967296.0; };
+  constexpr int size = 41;
+  SizingCells cells;
+  for (int i = 0; i < size * size * size; ++i)
+  {
+    cells.Points.push_back({ std::pow((i % size + 0.3 * uniform()) / size, 3.0),
+      (i / size % size + 0.3 * uniform()) / size, (i / size / size + 0.3 * uniform()) / size });
+  }
+  for (int i = 0; i < size * size * size; ++i)
+  {
+    if (i % size + 1 < size && i / size % size + 1 < size && i / size / size + 1 < size)
+    {
+      for (int corner = 0; corner < 8; ++corner)
+      {
+        cells.Connectivity.push_back(
+          i + (corner & 1) + size * (corner >> 1 & 1) + size * size * (corner >> 2));
+      }
+      cells.Offsets.push_back(static_cast<Id>(cells.Connectivity.size()));
+    }
+  }
+  std::vector<double> given[3];
+  for (const Vec3& p : cells.Points)
+  {
+    given[0].push_back(1.0 / (1.0 + 200.0 / std::cosh(50.0 * (p.Y - 0.5))));
+    given[1].push_back(std::pow(10.0, -4.0 + 5.0 * uniform()));
+    given[2].push_back(1e3);
+  }
+  given[2][size / 2] = 1e-6;
+  for (const std::vector<double>& sizes : given)
+  {
+    std::vector<double> one = sizes;
+    ASSERT_TRUE(BoundGradation(cells, { 0.3, 1 }, {}, one).IsOk());
+    EXPECT_TRUE(one != sizes);
+    // A field that is bounded stays as it is.
+    std::vector<double> again = one;
+    ASSERT_TRUE(BoundGradation(cells, { 0.3, 2 }, {}, again).IsOk());
+    EXPECT_TRUE(one == again);
+    for (const int threads : { 2, 3, 8 })
+    {
+      std::vector<double> other = sizes;
+      ASSERT_TRUE(BoundGradation(cells, { 0.3, threads }, {}, other).IsOk());
+      EXPECT_TRUE(one == other) << threads;
+    }
+  }
+  // All points at one place, and no sizes at all.
+  SizingCells heap = cells;
+  heap.Points.assign(heap.Points.size(), Vec3());
+  std::vector<double> sizes = given[1];
+  ASSERT_TRUE(BoundGradation(heap, {}, {}, sizes).IsOk());
+  const double smallest = *std::min_element(given[1].begin(), given[1].end());
+  EXPECT_EQ(
+    std::count(sizes.begin(), sizes.end(), smallest), static_cast<std::ptrdiff_t>(sizes.size()));
+  sizes.clear();
+  EXPECT_TRUE(BoundGradation({}, {}, {}, sizes).IsOk());
+  const ExecutionContext aborting({}, [] { return true; });
+  EXPECT_TRUE(BoundGradation(cells, {}, aborting, given[0]).IsAborted());
 }

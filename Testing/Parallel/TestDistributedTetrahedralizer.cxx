@@ -24,6 +24,7 @@ using Keys = std::vector<CellKey<4>>;
 
 constexpr auto MakeRandomPoints = testing_points::MakeRandom<Point>;
 constexpr auto MakeGridPoints = testing_points::MakeGrid<Point>;
+constexpr auto MakePointsOnSphere = testing_points::MakeOnSphere<Point>;
 
 /** Points and cells of a piece: every process takes its share, or one has all. */
 enum class Sharing
@@ -273,6 +274,67 @@ TEST(DistributedTetrahedralizer, Grids)
   ExpectSameAsSerial(MakePoints(MakeGridPoints(12, 1.0, 0.17, seed)), nullptr, Sharing::Slices);
 }
 
+TEST(DistributedTetrahedralizer, PointsOnOneSphere)
+{
+  const unsigned seed = 29;
+  std::cout << "seed " << seed << "\n";
+  const auto few = MakePoints(MakePointsOnSphere(9945, seed));
+  for (Sharing sharing : Sharings)
+  {
+    ExpectSameAsSerial(few, nullptr, sharing);
+  }
+  // Whether each tetrahedron has been tested against each point shows in the time it takes.
+  const auto many = MakePointsOnSphere(6000029, seed);
+  EXPECT_EQ(many.size(), 45504u);
+  ExpectSameAsSerial(MakePoints(many), nullptr, Sharing::Slices);
+}
+
+TEST(DistributedTetrahedralizer, DuplicatePointsOnTheCut)
+{
+  // Whole planes of a grid lie on a cut; each point comes twice, from different processes.
+  const unsigned seed = 30;
+  std::cout << "seed " << seed << "\n";
+  std::vector<Point> doubled = MakeGridPoints(8, 1.0, 0.0, seed);
+  const std::vector<Point> others = MakeGridPoints(8, 1.0, 0.0, seed + 1);
+  doubled.insert(doubled.end(), others.begin(), others.end());
+  const auto corners = MakePoints({ { 0, 0, 0 }, { 7, 0, 0 }, { 0, 7, 0 }, { 7, 7, 7 } });
+  for (Sharing sharing : Sharings)
+  {
+    ExpectSameAsSerial(corners, MakePoints(doubled), sharing);
+  }
+  vtkNew<vtkDistributedTetrahedralizer> filter;
+  filter->SetInputData(MakePiece(corners, Sharing::Slices));
+  filter->SetInputData(1, MakePiece(MakePoints(doubled), Sharing::Slices));
+  filter->UpdatePiece(GetRank(), GetSize(), 0);
+  EXPECT_EQ(filter->GetNumberOfUnusedMeshPoints(), 512 + 4) << "copies of each other, of corners";
+}
+
+TEST(DistributedTetrahedralizer, ProcessesThatHaveNothing)
+{
+  // No points, no arrays, no vtkPoints: on one process, or on all but one.
+  const auto points = WithLinear(MakePoints(MakeRandomPoints(500, 31)));
+  vtkNew<vtkDistributedTetrahedralizer> alone;
+  alone->SetController(nullptr);
+  alone->SetInputData(points);
+  alone->Update();
+  const Keys expected = GetCells<4>(alone->GetOutput(), "RegionId");
+  for (int owner = 0; owner < GetSize(); ++owner)
+  {
+    vtkNew<vtkPolyData> nothing;
+    vtkNew<vtkDistributedTetrahedralizer> filter;
+    vtkNew<EventRecorder> recorder;
+    recorder->Watch(filter);
+    filter->SetInputData(GetRank() == owner ? points.Get() : nothing.Get());
+    filter->UpdatePiece(GetRank(), GetSize(), 0);
+    EXPECT_EQ(recorder->Errors, "");
+    EXPECT_TRUE(GatherCells(GetCells<4>(filter->GetOutput(), "RegionId")) == expected);
+    if (filter->GetOutput()->GetNumberOfPoints() > 0)
+    {
+      ExpectLinear(filter->GetOutput(), 1e-12);
+    }
+  }
+}
+
 TEST(DistributedTetrahedralizer, TwoInputs)
 {
   const unsigned seed = 23;
@@ -362,26 +424,28 @@ TEST(DistributedTetrahedralizer, SameForAnyNumberOfProcesses)
 
 TEST(DistributedTetrahedralizer, ErrorsOfOneProcessEndAll)
 {
-  const int culprit = GetSize() - 1;
   const auto points = MakePoints(MakeRandomPoints(100, 26));
   vtkNew<vtkDistributedTetrahedralizer> filter;
-  const auto piece = MakePiece(points, Sharing::Dealt);
-  if (GetRank() == culprit)
+  for (int culprit = 0; culprit < GetSize(); ++culprit)
   {
-    piece->GetPoints()->SetPoint(3, 0.0, std::nan(""), 0.0);
-  }
-  filter->SetInputData(piece);
-  ExpectErrorEverywhere(
-    filter, culprit, "Point 3 of the input has coordinates that are not finite");
+    const auto piece = MakePiece(points, Sharing::Dealt);
+    if (GetRank() == culprit)
+    {
+      piece->GetPoints()->SetPoint(3, 0.0, std::nan(""), 0.0);
+    }
+    filter->SetInputData(piece);
+    ExpectErrorEverywhere(
+      filter, culprit, "Point 3 of the input has coordinates that are not finite");
 
-  // A cell that is no triangle.
-  const auto cube = MakeCube();
-  if (GetRank() != culprit)
-  {
-    cube->SetPolys(nullptr);
+    // A cell that is no triangle.
+    const auto cube = MakeCube();
+    if (GetRank() != culprit)
+    {
+      cube->SetPolys(nullptr);
+    }
+    filter->SetInputData(cube);
+    ExpectErrorEverywhere(filter, culprit, "not triangles");
   }
-  filter->SetInputData(cube);
-  ExpectErrorEverywhere(filter, culprit, "not triangles");
 
   // Two points with one global id.
   const auto confused = MakePiece(points, Sharing::Dealt);

@@ -43,6 +43,37 @@ std::vector<Point> MakeGrid(int size, double spacing, double angle, unsigned see
   std::shuffle(points.begin(), points.end(), generator);
   return points;
 }
+
+/** All points with whole coordinates on a sphere about the origin, in random order. */
+template <typename Point>
+std::vector<Point> MakeOnSphere(long long squaredRadius, unsigned seed)
+{
+  const auto getRoot = [](long long square)
+  { return std::llround(std::sqrt(static_cast<double>(square))); };
+  std::vector<Point> points;
+  const long long radius = getRoot(squaredRadius) + 1;
+  for (long long x = -radius; x <= radius; ++x)
+  {
+    for (long long y = -radius; y <= radius; ++y)
+    {
+      const long long rest = squaredRadius - x * x - y * y;
+      const long long z = rest >= 0 ? getRoot(rest) : 0;
+      if (z * z == rest)
+      {
+        points.push_back(
+          { static_cast<double>(x), static_cast<double>(y), static_cast<double>(z) });
+        if (z > 0)
+        {
+          points.push_back(
+            { static_cast<double>(x), static_cast<double>(y), static_cast<double>(-z) });
+        }
+      }
+    }
+  }
+  std::mt19937 generator(seed);
+  std::shuffle(points.begin(), points.end(), generator);
+  return points;
+}
 } // namespace testing_points
 
 #endif
