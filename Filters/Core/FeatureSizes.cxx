@@ -9,6 +9,8 @@ namespace
 {
 /** The first radius of a search, in limits; the next ones are four times as large. */
 constexpr double FirstRadius = 1.0 / 64.0;
+/** In limits: edges closer to each other are a strip that nobody fills with well shaped elements. */
+constexpr double SmallestSize = 0.01;
 
 double GetDistance(const Vec3& position, const std::array<Vec3, 2>& ends)
 {
@@ -69,11 +71,12 @@ double FeatureSizes::Find(const Vec3& position, double limit) const
     std::sort(near.begin(), near.end());
     for (auto second = near.begin(); second != near.end(); ++second)
     {
-      if (std::any_of(near.begin(), second,
-            [&](const std::pair<double, Id>& first) {
-              return AreDisjoint(
-                this->Segments[first.second].Ids, this->Segments[second->second].Ids);
-            }))
+      if (second->first >= SmallestSize * limit &&
+        std::any_of(near.begin(), second,
+          [&](const std::pair<double, Id>& first) {
+            return AreDisjoint(
+              this->Segments[first.second].Ids, this->Segments[second->second].Ids);
+          }))
       {
         return second->first;
       }

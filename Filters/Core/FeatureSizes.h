@@ -29,7 +29,7 @@ class FeatureSizes
 public:
   FeatureSizes(const std::vector<Vec3>& points, const std::vector<StructuralEdge>& edges);
 
-  /** At most the limit. */
+  /** At most the limit; pairs of edges closer than a hundredth of it are left out. */
   double Find(const Vec3& position, double limit) const;
 
 private:

@@ -11,7 +11,7 @@
  *     tetrahedralized with the mesh points (AdvancingFrontTetrahedralizer.h);
  *  3. for this boundary the inside is refined (VolumeRefinement.h): Steiner points in tetrahedra that
  *     are too large, then also in badly shaped ones, where each comes no closer to others than a
- *     tenth of the shortest edge that was there before; what disturbs the boundary is requested to
+ *     fifth of the shortest edge that was there before; what disturbs the boundary is requested to
  *     be split instead;
  *  4. if little is requested any more: points of slivers are moved, taken out or added. Where points
  *     of one plane facet lie on a circle but for rounding, a new one of them is moved along the

@@ -18,7 +18,7 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t ReportInterval = 256;
 
 /** What is left of a point's size between it and a new one. */
-constexpr double SizeRatio = 0.1;
+constexpr double SizeRatio = 0.2;
 /** Points are moved where angles are below this multiple of the target: it leaves some room. */
 constexpr double MoveRatio = 1.1;
 /** Free points closer to others than this part of the sizing are removed. */

@@ -19,7 +19,7 @@
  * for its size only; if it is a sliver, its points are moved. Each point has a size, the
  * shortest edge at it before any shape was refined, or how close edges of the boundary come to each
  * other there (FeatureSizes.h), and at most the size of another point and the way from there; no point
- * comes closer to it than a tenth of that, but for size limits. Of tetrahedra across a thin layer
+ * comes closer to it than a fifth of that, but for size limits. Of tetrahedra across a thin layer
  * (ThinLayers.h) only the size counts.
  *
  * References: J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998,
@@ -49,7 +49,7 @@ namespace cdm
 struct InteriorPoint
 {
   Vec3 Position;
-  /** No other point comes closer than a tenth of this; 0: no bound. */
+  /** No other point comes closer than a fifth of this; 0: no bound. */
   double Size = 0.0;
   /** Whether it may be moved and removed. */
   bool IsFree = false;
