@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ControlPolyhedra.h"
 
+#include "DisjointSets.h"
 #include "IdLimits.h"
 #include "Measures.h"
 #include "ParallelLoop.h"
@@ -10,7 +11,6 @@
 #include "VoronoiMeasures.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 namespace cdm
@@ -29,44 +29,6 @@ struct EdgeUse
   /** Index of the border facet, and its vertex that is not on the edge. */
   Id Facet;
   Id Opposite;
-};
-
-/** Sets of equal things, each named by its smallest member, in whatever order they are united. */
-class EqualSets
-{
-public:
-  explicit EqualSets(Id size) : Parents(size)
-  {
-    std::iota(this->Parents.begin(), this->Parents.end(), 0);
-  }
-  Id Find(Id item)
-  {
-    while (this->Parents[item] != item)
-    {
-      this->Parents[item] = this->Parents[this->Parents[item]];
-      item = this->Parents[item];
-    }
-    return item;
-  }
-  void Unite(Id a, Id b)
-  {
-    a = this->Find(a);
-    b = this->Find(b);
-    this->Parents[std::max(a, b)] = std::min(a, b);
-  }
-  /** The name of each thing's set. */
-  std::vector<Id> TakeNames()
-  {
-    // A parent is smaller than its children.
-    for (Id& parent : this->Parents)
-    {
-      parent = this->Parents[parent];
-    }
-    return std::move(this->Parents);
-  }
-
-private:
-  std::vector<Id> Parents;
 };
 
 /**
@@ -342,7 +304,8 @@ bool PolyhedronMaker::UniteVertices(const ExecutionContext& context)
       }
     }
   };
-  EqualSets sets(this->FirstPoint + static_cast<Id>(points.size()));
+  // Things that are equal are named by the smallest of them.
+  DisjointSets sets(static_cast<std::size_t>(this->FirstPoint) + points.size());
   const auto uniteAll = [&](std::size_t count, const ExecutionContext& part, const auto& collect)
   {
     std::vector<Pairs> blocks(GetNumberOfBlocks(count, this->LoopOptions));

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace cdm
@@ -41,6 +42,17 @@ public:
     i = this->Find(i);
     j = this->Find(j);
     this->Parents[std::max(i, j)] = std::min(i, j);
+  }
+
+  /** The smallest number of each one's set; ends the object. */
+  std::vector<Id> TakeNames()
+  {
+    // A parent is smaller than its children.
+    for (Id& parent : this->Parents)
+    {
+      parent = this->Parents[parent];
+    }
+    return std::move(this->Parents);
   }
 
 private:

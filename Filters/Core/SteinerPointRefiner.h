@@ -20,9 +20,9 @@
  *
  * Guarantees: the mesh is Delaunay by the pulling rule and conforms to the same surface; facets on
  * it fulfil criterion 3.1 at least. Points of the surface, and those inside that are not free, keep
- * their coordinates. Deterministic, whatever the number of threads. Tetrahedra across thin layers,
- * and those at sharp angles that would be refined for ever, stay as they are: Faults tells which
- * tetrahedra miss what was asked for, the report counts them.
+ * their coordinates. Deterministic, whatever the number of threads. Tetrahedra across thin layers
+ * (ThinLayers.h) and across sharp angles (SharpAngles.h), which would be refined for ever, are not
+ * refined for their shape: Faults tells which tetrahedra miss what was asked for, the report counts them.
  * Failure: InvalidInput names tetrahedra without a region, inverted or flat ones, triangles that are
  * no facets or facets that are missing among them, points that are not finite. Cells are tetrahedra
  * if no boundary is given, otherwise its triangles. The output is then empty, as after an abort.

@@ -19,7 +19,7 @@ DIRECTION = (0.85, -0.6, 0.55)
 
 def Run(folder):
     device = gallery.MakeDevice("DramInterconnect", LineWidth=0.12)
-    mesh = gallery.MakeMesh(device, 0.28)
+    mesh = gallery.MakeMesh(device, 0.29)
     wrong = gallery.Report("DRAM interconnect", mesh, THESIS)
     gallery.Save(mesh, os.path.join(folder, "dram_interconnect.vtu"))
     colours = [gallery.OXIDE] + [LINE if name.startswith("WordLine") else BIT_LINE

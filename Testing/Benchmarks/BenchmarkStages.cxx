@@ -324,6 +324,13 @@ int main(int argc, char* argv[])
     {
       chosen.push_back(value);
     }
+    else if (option != "--memory")
+    {
+      std::fprintf(stderr,
+        "Usage: BenchmarkStages [-n points] [-r repetitions] [-t threads] [-s stage]...\n"
+        "       BenchmarkStages --memory [-n points] [-s stage]...\n");
+      return 1;
+    }
   }
   std::printf(isMemory ? "| stage | points | MB | B/point | B/tetrahedron |\n"
                          "|---|---:|---:|---:|---:|\n"

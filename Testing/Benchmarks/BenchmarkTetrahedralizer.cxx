@@ -363,10 +363,10 @@ int main(int argc, char* argv[])
   int repetitions = 5;
   int threads = 1;
   double limit = 100.0;
-  for (int i = 1; i + 1 < argc; i += 2)
+  for (int i = 1; i < argc; i += 2)
   {
     const std::string option = argv[i];
-    const char* const value = argv[i + 1];
+    const char* const value = i + 1 < argc ? argv[i + 1] : "";
     if (option == "-n")
     {
       sizes.push_back(static_cast<std::size_t>(std::atof(value)));
@@ -402,6 +402,11 @@ int main(int argc, char* argv[])
     else if (option == "--list")
     {
       isList = true;
+    }
+    else
+    {
+      std::fprintf(stderr, "Unknown option %s: see the top of the source.\n", argv[i]);
+      return 1;
     }
   }
   if (sizes.empty())
