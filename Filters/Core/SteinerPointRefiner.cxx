@@ -42,14 +42,15 @@ public:
     : Input(input), Options(options), Context(context),
       Output(output), Limits{ options.RadiusEdgeRatio, options.MaximumVolume,
         options.MaximumEdgeLength, input.Sizing },
-      MaximumNewPoints(options.MaximumNewPoints > 0 ? options.MaximumNewPoints
-                                                    : std::numeric_limits<Id>::max() / 8)
+      MaximumNewPoints(GetMaximumNewPoints(input, options))
   {
   }
 
   Status Run();
 
 private:
+  static Id GetMaximumNewPoints(
+    const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options);
   Status CheckInput() const;
   Status CheckBoundary() const;
   void ExtractSurface();
@@ -67,6 +68,7 @@ private:
     return this->Round->GetRequestedTriangles().size() + this->Round->GetRequestedEdges().size();
   }
   bool HasRequests() const { return this->CountRequests() > 0; }
+  bool IsFull() const;
   void FindFaults();
   void MakeOutput();
 
@@ -92,6 +94,28 @@ private:
   /** Whether the last round has split nothing of what was requested. */
   bool IsStuck = false;
 };
+
+Id Refiner::GetMaximumNewPoints(
+  const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options)
+{
+  if (options.MaximumNewPoints > 0)
+  {
+    return options.MaximumNewPoints;
+  }
+  constexpr Id largest = std::numeric_limits<Id>::max() / 8;
+  const bool hasSizes =
+    options.MaximumVolume > 0.0 || options.MaximumEdgeLength > 0.0 || input.Sizing;
+  return hasSizes
+    ? largest
+    : static_cast<Id>(std::min<std::size_t>(largest, 50000 + 200 * input.Mesh->Points.size()));
+}
+
+bool Refiner::IsFull() const
+{
+  return this->Output.Report.BoundaryPoints + this->Output.Report.InteriorPoints +
+    this->Round->GetReport().InsertedPoints >=
+    this->MaximumNewPoints;
+}
 
 Status Refiner::CheckInput() const
 {
@@ -602,7 +626,7 @@ Status Refiner::Run()
     if (!areSizesDone)
     {
       status = this->RefineRound(false);
-      areSizesDone = status.IsOk() && (this->IsStuck || !this->HasRequests());
+      areSizesDone = status.IsOk() && (this->IsStuck || !this->HasRequests() || this->IsFull());
       if (areSizesDone)
       {
         this->MeasureSizes();
@@ -612,21 +636,24 @@ Status Refiner::Run()
     if (areSizesDone && status.IsOk())
     {
       status = this->RefineRound(true);
-      if (status.IsOk() && (this->IsStuck || this->CountRequests() <= FewRequests))
+      const bool isFull = this->IsFull();
+      if (status.IsOk() && (this->IsStuck || isFull || this->CountRequests() <= FewRequests))
       {
         const Id inserted = this->Round->GetReport().InsertedPoints;
         if (this->Options.DihedralAngleTarget > 0.0)
         {
           ++sliverRounds;
           status = this->Round->PerturbSlivers(this->Options.DihedralAngleTarget,
-            sliverRounds < MaximumSliverRounds ? SliverMeans::Requests : SliverMeans::Points,
+            isFull                                 ? SliverMeans::Moves
+              : sliverRounds < MaximumSliverRounds ? SliverMeans::Requests
+                                                   : SliverMeans::Points,
             this->GetRoundContext());
           status = status.IsOk() ? this->RefineRound(true) : status;
         }
-        const bool isNudged = status.IsOk() && this->Options.DihedralAngleTarget > 0.0 &&
+        const bool isNudged = status.IsOk() && !isFull && this->Options.DihedralAngleTarget > 0.0 &&
           sliverRounds < MaximumSliverRounds && this->NudgeFlatBoundary();
         isDone = !isNudged &&
-          (this->IsStuck || sliverRounds >= MaximumSliverRounds ||
+          (this->IsStuck || isFull || sliverRounds >= MaximumSliverRounds ||
             (!this->HasRequests() && this->Round->GetReport().InsertedPoints == inserted));
       }
     }

@@ -55,7 +55,10 @@ struct SteinerPointRefinerOptions
   SurfaceCriterion Criterion = SurfaceCriterion::SmallestSphere;
   /** What counts as flat, see StructuralEdges.h. */
   StructuralEdgeOptions StructuralEdges;
-  /** The refinement stops when it has made so many points. 0: no limit. */
+  /**
+   * The refinement stops when it has made about so many points. 0: no limit where sizes are asked for,
+   * otherwise 200 for each point of the mesh and 50000: shapes that need more are hardly to be had.
+   */
   Id MaximumNewPoints = 0;
   /** Threads to use, at least 1; the result does not depend on it. */
   int NumberOfThreads = 1;

@@ -137,7 +137,10 @@ public:
   ///@}
 
   ///@{
-  /** The refinement stops when it has made so many points. Default 0: no limit; range >= 0. */
+  /**
+   * The refinement stops when it has made about so many points. Default 0: no limit where sizes are
+   * asked for, otherwise 200 for each point of the mesh and 50000; range >= 0.
+   */
   vtkSetClampMacro(MaximumNewPoints, int, 0, VTK_INT_MAX);
   vtkGetMacro(MaximumNewPoints, int);
   ///@}
