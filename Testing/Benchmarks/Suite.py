@@ -80,7 +80,9 @@ class Program:
         self.Clock = clock
 
     def GetCommand(self, files):
-        return [word.format(**files) for word in self.Command]
+        words = [word.format(**files) for word in self.Command]
+        # An option without a name is left out with its value.
+        return [word for before, word in zip([None] + words, words) if before != "" and word]
 
     def GetSeconds(self, text):
         """Processor time without reading and writing, as the program says it."""
