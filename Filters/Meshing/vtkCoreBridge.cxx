@@ -35,7 +35,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <new>
 #include <sstream>
 #include <stdexcept>
@@ -317,11 +316,10 @@ public:
 
   cdm::LocalSpacing operator()(const cdm::Vec3& position) const
   {
-    std::unique_ptr<Place> place = this->TakePlace();
-    const cdm::LocalSpacing spacing = this->Find(position, *place);
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    this->FreePlaces.push_back(std::move(place));
-    return spacing;
+    // One for each thread, without a lock: threads that ask for one all the time wait for each other.
+    thread_local Place place;
+    place.Weights.resize(this->NumberOfWeights);
+    return this->Find(position, place);
   }
 
 private:
@@ -341,21 +339,6 @@ private:
     /** One of the values. */
     double Tuple[MaximumSizingComponents];
   };
-
-  /** Each is used by one query at a time. */
-  std::unique_ptr<Place> TakePlace() const
-  {
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    if (this->FreePlaces.empty())
-    {
-      auto place = std::make_unique<Place>();
-      place->Weights.resize(this->NumberOfWeights);
-      return place;
-    }
-    std::unique_ptr<Place> place = std::move(this->FreePlaces.back());
-    this->FreePlaces.pop_back();
-    return place;
-  }
 
   cdm::LocalSpacing Find(const cdm::Vec3& position, Place& place) const
   {
@@ -467,8 +450,6 @@ private:
   std::size_t NumberOfWeights;
   vtkNew<vtkStaticCellLocator> Cells;
   vtkNew<vtkStaticPointLocator> Points;
-  mutable std::mutex Mutex;
-  mutable std::vector<std::unique_ptr<Place>> FreePlaces;
 };
 } // namespace
 
