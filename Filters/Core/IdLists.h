@@ -64,6 +64,23 @@ private:
   std::vector<Id> End;
   std::vector<Id> Ids;
 };
+
+/** The triangles at each point. */
+inline IdLists ListTrianglesAtPoints(
+  const std::vector<TriangleIds>& triangles, std::size_t numberOfPoints)
+{
+  std::vector<std::pair<Id, Id>> pairs;
+  for (Id t = 0; t < static_cast<Id>(triangles.size()); ++t)
+  {
+    for (Id point : triangles[t])
+    {
+      pairs.emplace_back(point, t);
+    }
+  }
+  IdLists lists;
+  lists.Build(static_cast<Id>(numberOfPoints), pairs);
+  return lists;
+}
 } // namespace cdm
 
 #endif

@@ -58,7 +58,7 @@ private:
   Status Translate(Status status, const std::vector<Id>& sources) const;
   Status StartRound();
   Status RefineRound(bool isShapeTested);
-  void CollectSurfaceSizes();
+  void CollectSurfaceSizes(std::size_t first);
   void MeasureSizes();
   void CollectReport();
   bool NudgeFlatBoundary();
@@ -68,7 +68,6 @@ private:
     return this->Round->GetRequestedTriangles().size() + this->Round->GetRequestedEdges().size();
   }
   bool HasRequests() const { return this->CountRequests() > 0; }
-  bool IsFull() const;
   void FindFaults();
   void MakeOutput();
 
@@ -108,13 +107,6 @@ Id Refiner::GetMaximumNewPoints(
   return hasSizes
     ? largest
     : static_cast<Id>(std::min<std::size_t>(largest, 50000 + 200 * input.Mesh->Points.size()));
-}
-
-bool Refiner::IsFull() const
-{
-  return this->Output.Report.BoundaryPoints + this->Output.Report.InteriorPoints +
-    this->Round->GetReport().InsertedPoints >=
-    this->MaximumNewPoints;
 }
 
 Status Refiner::CheckInput() const
@@ -367,7 +359,7 @@ Status Refiner::StartRound()
   if (!this->SurfaceSizes.empty())
   {
     this->SurfaceSizes.resize(this->Surface.Points.size(), -1.0);
-    this->CollectSurfaceSizes();
+    this->CollectSurfaceSizes(static_cast<std::size_t>(oldPoints));
   }
   this->Round = std::make_unique<VolumeRefinement>(std::move(made.Mesh), this->Surface, this->Edges,
     this->SurfaceSizes, this->Interior, this->Limits,
@@ -379,15 +371,11 @@ Status Refiner::StartRound()
 }
 
 /**
- * Sizes of new points of the surface, where they are negative: from those around them, and from edges
- * that come close to each other.
+ * Sizes of the surface's points from the first new one on, which are negative: from those around them,
+ * and from edges that come close to each other.
  */
-void Refiner::CollectSurfaceSizes()
+void Refiner::CollectSurfaceSizes(std::size_t first)
 {
-  const auto first =
-    static_cast<std::size_t>(std::find_if(this->SurfaceSizes.begin(), this->SurfaceSizes.end(),
-                               [](double size) { return size < 0.0; }) -
-      this->SurfaceSizes.begin());
   bool isDone = false;
   while (!isDone)
   {
@@ -626,7 +614,8 @@ Status Refiner::Run()
     if (!areSizesDone)
     {
       status = this->RefineRound(false);
-      areSizesDone = status.IsOk() && (this->IsStuck || !this->HasRequests() || this->IsFull());
+      areSizesDone =
+        status.IsOk() && (this->IsStuck || !this->HasRequests() || this->Round->IsFull());
       if (areSizesDone)
       {
         this->MeasureSizes();
@@ -636,7 +625,7 @@ Status Refiner::Run()
     if (areSizesDone && status.IsOk())
     {
       status = this->RefineRound(true);
-      const bool isFull = this->IsFull();
+      const bool isFull = this->Round->IsFull();
       if (status.IsOk() && (this->IsStuck || isFull || this->CountRequests() <= FewRequests))
       {
         const Id inserted = this->Round->GetReport().InsertedPoints;

@@ -41,31 +41,23 @@ Id GetRegion(const TriangleMesh& surface, Id face)
 }
 } // namespace
 
-ThinLayers::ThinLayers(const TriangleMesh& surface) : Surface(surface)
+ThinLayers::ThinLayers(const TriangleMesh& surface, const IdLists& pointTriangles)
+  : Surface(surface), PointTriangles(pointTriangles)
 {
-  std::vector<std::pair<Id, Id>> pairs;
   for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()); ++t)
   {
-    for (Id id : surface.Triangles[t])
+    const Vec3 normal = GetNormal(surface, t);
+    for (double sign : { 1.0, -1.0 })
     {
-      pairs.emplace_back(id, t);
+      this->Faces.push_back({ sign / Norm(normal) * normal });
     }
   }
-  this->PointTriangles.Build(static_cast<Id>(surface.Points.size()), pairs);
   this->MeasureWidths();
 }
 
 void ThinLayers::MeasureWidths()
 {
-  const std::size_t count = 2 * this->Surface.Triangles.size();
-  std::vector<double> areas(count, 0.0);
-  std::vector<Vec3> normals;
-  for (Id face = 0; face < static_cast<Id>(count); ++face)
-  {
-    const Vec3 normal = GetNormal(this->Surface, face / 2);
-    normals.push_back((face % 2 == 0 ? 1.0 : -1.0) / Norm(normal) * normal);
-  }
-
+  const std::size_t count = this->Faces.size();
   DisjointSets sides(count);
   // Faces and the lengths of their edges at which the side ends.
   std::vector<std::pair<Id, double>> rims;
@@ -89,7 +81,7 @@ void ThinLayers::MeasureWidths()
       for (Id other : around)
       {
         if (other != face && GetRegion(this->Surface, other) == region &&
-          Dot(normals[face], normals[other]) > SmoothCosine)
+          Dot(this->Faces[face].Normal, this->Faces[other].Normal) > SmoothCosine)
         {
           sides.Unite(face, other);
           goesOn = true;
@@ -102,6 +94,7 @@ void ThinLayers::MeasureWidths()
     }
   }
 
+  std::vector<double> areas(count, 0.0);
   std::vector<double> perimeters(count, 0.0);
   for (const auto& [face, length] : rims)
   {
@@ -115,9 +108,8 @@ void ThinLayers::MeasureWidths()
   {
     const Id side = sides.Find(face);
     const double square = std::sqrt(areas[side]);
-    this->Widths.push_back(perimeters[side] * square > 4.0 * areas[side]
-        ? 4.0 * areas[side] / perimeters[side]
-        : square);
+    this->Faces[face].Width =
+      perimeters[side] * square > 4.0 * areas[side] ? 4.0 * areas[side] / perimeters[side] : square;
   }
 }
 
@@ -129,10 +121,7 @@ std::vector<ThinLayers::Face> ThinLayers::GetFaces(Id point, Id region) const
     const RegionPair& labels = this->Surface.Labels[t];
     if (labels.Back == region || labels.Front == region)
     {
-      const bool isBehind = labels.Back == region;
-      const Vec3 normal = GetNormal(this->Surface, t);
-      faces.push_back({ (isBehind ? 1.0 : -1.0) / Norm(normal) * normal,
-        this->Widths[2 * t + (isBehind ? 0 : 1)] });
+      faces.push_back(this->Faces[2 * t + (labels.Back == region ? 0 : 1)]);
     }
   }
   return faces;

@@ -27,26 +27,28 @@ namespace cdm
 class ThinLayers
 {
 public:
-  /** The surface has labels, and has to outlive the object. */
-  explicit ThinLayers(const TriangleMesh& surface);
+  /** The surface has labels. Triangles at each of its points. Both have to outlive the object. */
+  ThinLayers(const TriangleMesh& surface, const IdLists& pointTriangles);
 
   /** Of a region; ids of points that the surface does not have are larger than its own. */
   bool IsAcross(const TetrahedronIds& ids, Id region) const;
 
 private:
-  /** A triangle as seen from the region: its normal out of it, and how wide its side is. */
+  /** A triangle as seen from the region on one side. */
   struct Face
   {
+    /** Out of the region, of length one. */
     Vec3 Normal;
-    double Width;
+    /** How wide the side is that the face belongs to. */
+    double Width = 0.0;
   };
   void MeasureWidths();
   std::vector<Face> GetFaces(Id point, Id region) const;
 
   const TriangleMesh& Surface;
-  IdLists PointTriangles;
-  /** Widths of the sides at 2 * t, behind a triangle, and 2 * t + 1, in front of it. */
-  std::vector<double> Widths;
+  const IdLists& PointTriangles;
+  /** 2 * t as seen from behind a triangle, 2 * t + 1 from its front. */
+  std::vector<Face> Faces;
 };
 } // namespace cdm
 

@@ -62,8 +62,9 @@ VolumeRefinement::VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
   : Mesh(std::move(mesh)), Surface(surface), Edges(edges), Limits(limits),
     NumberOfSurfacePoints(static_cast<Id>(surface.Points.size())),
     MaximumNewPoints(maximumNewPoints), Memory(memory), Spheres(surface, edges),
-    Sharp(surface, edges), Layers(surface), IsTriangleRequested(surface.Triangles.size(), 0),
-    IsEdgeRequested(edges.size(), 0)
+    PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
+    Sharp(surface, edges), Layers(surface, this->PointTriangles),
+    IsTriangleRequested(surface.Triangles.size(), 0), IsEdgeRequested(edges.size(), 0)
 {
   for (std::size_t p = 0; p < surface.Points.size(); ++p)
   {
@@ -71,15 +72,6 @@ VolumeRefinement::VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
       NoId, static_cast<Id>(p) });
   }
   this->Points.insert(this->Points.end(), interior.begin(), interior.end());
-  std::vector<std::pair<Id, Id>> pairs;
-  for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()); ++t)
-  {
-    for (Id id : surface.Triangles[t])
-    {
-      pairs.emplace_back(id, t);
-    }
-  }
-  this->PointTriangles.Build(this->NumberOfSurfacePoints, pairs);
   this->BoundSizes();
 }
 
@@ -155,11 +147,6 @@ bool VolumeRefinement::IsFree(Id point) const
 {
   return point >= this->NumberOfSurfacePoints && this->Points[point].IsFree &&
     this->Mesh.GetTetrahedronAt(point) != NoId;
-}
-
-bool VolumeRefinement::IsFull() const
-{
-  return this->Report.InsertedPoints >= this->MaximumNewPoints;
 }
 
 std::array<Vec3, 4> VolumeRefinement::GetVertices(const TetrahedronIds& ids) const

@@ -145,6 +145,8 @@ public:
   std::vector<InteriorPoint> GetInterior() const;
   const TetMesh& GetMesh() const { return this->Mesh.GetMesh(); }
   const VolumeRefinementReport& GetReport() const { return this->Report; }
+  /** Whether it has made as many points as it may. */
+  bool IsFull() const { return this->Report.InsertedPoints >= this->MaximumNewPoints; }
 
   const ThinLayers& GetLayers() const { return this->Layers; }
   const SharpAngles& GetSharpAngles() const { return this->Sharp; }
@@ -167,7 +169,6 @@ private:
   };
   void BoundSizes();
   bool IsFree(Id point) const;
-  bool IsFull() const;
   std::array<Vec3, 4> GetVertices(const TetrahedronIds& ids) const;
   double GetAngle(Id tetrahedron) const;
   double RateHole(const Vec3& position, double required) const;
@@ -196,15 +197,14 @@ private:
   const Id MaximumNewPoints;
   SliverMemory& Memory;
   BoundarySpheres Spheres;
+  /** Triangles at each point of the surface. */
+  const IdLists PointTriangles;
   const SharpAngles Sharp;
   const ThinLayers Layers;
   /** One for each point of the mesh. */
   std::vector<InteriorPoint> Points;
   VolumeRefinementReport Report;
   SliverMeans Means = SliverMeans::Moves;
-
-  /** Triangles at each point of the surface. */
-  IdLists PointTriangles;
 
   std::vector<Id> RequestedTriangles;
   std::vector<EdgeIds> RequestedEdges;

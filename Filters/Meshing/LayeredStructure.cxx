@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LayeredStructure.h"
 
+#include "Core/DisjointSets.h"
 #include "Core/Predicates.h"
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <set>
 #include <unordered_map>
 #include <utility>
@@ -32,31 +32,6 @@ Edge GetEdge(const Loop& loop, std::size_t i)
 {
   return MakeEdge(loop[i], loop[(i + 1) % loop.size()]);
 }
-
-/** Classes of integers that can be united. */
-class DisjointSets
-{
-public:
-  explicit DisjointSets(std::size_t size) : Parents(size)
-  {
-    std::iota(this->Parents.begin(), this->Parents.end(), 0);
-  }
-
-  Id Find(Id i)
-  {
-    while (this->Parents[i] != i)
-    {
-      this->Parents[i] = this->Parents[this->Parents[i]];
-      i = this->Parents[i];
-    }
-    return i;
-  }
-
-  void Unite(Id i, Id j) { this->Parents[this->Find(j)] = this->Find(i); }
-
-private:
-  std::vector<Id> Parents;
-};
 
 Vec3 ToPlane(const std::array<double, 2>& vertex)
 {

@@ -454,7 +454,7 @@ def Prepare(kind, task, base):
     if "set" in task:
         # Meshes of the growth are large, and of the same kind as those of the sets.
         if kind == "growth":
-            files.update(mesh="", mesh_option="")
+            files["mesh_option"] = ""
         return {**files, **task}, {"points": int(task["count"]), "volumes": None}
     if "device" in task:
         prepared = PrepareDevice(task["device"], task["elements"], base)
