@@ -467,17 +467,30 @@ bool Evaluator::HasNegativeCotangentSum(RecordIterator begin, RecordIterator end
 bool Evaluator::HasNegativeCoupling(
   const EdgeIds& edge, RecordIterator begin, RecordIterator end, Id region) const
 {
-  CouplingSum sum;
-  for (auto record = begin; record != end; ++record)
+  // Calls add(corners, edge) for each tetrahedron that counts.
+  const auto forEach = [&](const auto& add)
   {
-    const Id tetrahedron = record->Simplex / 6;
-    if (this->Mesh.Regions[tetrahedron] == region && this->Orientations[tetrahedron] > 0)
+    for (auto record = begin; record != end; ++record)
     {
-      const auto [a, b, c, d] = this->GetCorners(tetrahedron);
-      sum.Add(GetCouplings(a, b, c, d)[record->Simplex % 6]);
+      const Id tetrahedron = record->Simplex / 6;
+      if (this->Mesh.Regions[tetrahedron] == region && this->Orientations[tetrahedron] > 0)
+      {
+        add(this->GetCorners(tetrahedron), record->Simplex % 6);
+      }
     }
-  }
-  return sum.IsNegative(Distance(this->Mesh.Points[edge[0]], this->Mesh.Points[edge[1]]));
+  };
+  CouplingSum sum;
+  forEach([&sum](const std::array<Vec3, 4>& p, int i)
+    { sum.Add(GetCouplings(p[0], p[1], p[2], p[3])[i]); });
+  const auto getRounding = [&forEach]
+  {
+    double rounding = 0.0;
+    forEach(
+      [&rounding](const std::array<Vec3, 4>& p, int i) { rounding += GetCouplingRounding(p, i); });
+    return rounding;
+  };
+  return sum.IsNegative(
+    Distance(this->Mesh.Points[edge[0]], this->Mesh.Points[edge[1]]), getRounding);
 }
 
 void Evaluator::EvaluateEdge(

@@ -23,7 +23,8 @@
  * What is about spheres is decided by exact predicates, against all points of the mesh. 3.3 and the
  * couplings are sums of quotients, judged with a tolerance of 1e-12 of the lengths (squared: of the
  * areas) involved: on a rotated grid, where both are zero, rounded points alone leave more than
- * exact arithmetic could forgive.
+ * exact arithmetic could forgive. A coupling is not called negative either if rounding the
+ * coordinates can make it so, which far from the origin is more.
  *
  * Failure: InvalidInput for ids out of range, arrays of the wrong length and coordinates that are
  * not finite. All other faults are listed. Deterministic for any number of threads.

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VoronoiMeasures.h"
 
+#include "TetMesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace cdm
 {
 namespace
@@ -86,6 +92,38 @@ std::array<DoubleDouble, 6> GetCouplings(const Vec3& a, const Vec3& b, const Vec
     Dot(u, v) * facetD + Dot(wu, wv) * facetA,        // bc: abc, bcd
     Dot(u, w) * facetC - Dot(vu, wv) * facetA,        // bd: abd, bcd
     Dot(v, w) * facetB + Dot(vu, wu) * facetA };      // cd: acd, bcd
+}
+
+double GetCouplingRounding(const std::array<Vec3, 4>& corners, int edge)
+{
+  double largest = 0.0;
+  for (const Vec3& corner : corners)
+  {
+    largest = std::max({ largest, std::abs(corner.X), std::abs(corner.Y), std::abs(corner.Z) });
+  }
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const int* ends : TetrahedronEdges)
+  {
+    shortest = std::min(shortest, Distance(corners[ends[0]], corners[ends[1]]));
+  }
+  // Angles turn by as much as corners move, over the shortest edge; the circumcenter moves by as
+  // much, times the radius over that edge.
+  const double turn = 8.0 * std::numeric_limits<double>::epsilon() * largest / shortest;
+  const Vec3 center =
+    GetAccurateCircumcenter(corners[0], corners[1], corners[2], corners[3]) - corners[0];
+  const double radius = Norm(center);
+  double change = 0.0;
+  for (const int apex : TetrahedronEdges[5 - edge])
+  {
+    const Vec3 u = corners[TetrahedronEdges[edge][0]] - corners[apex];
+    const Vec3 v = corners[TetrahedronEdges[edge][1]] - corners[apex];
+    const Vec3 normal = Cross(u, v);
+    const double length = Norm(normal);
+    const double cotangent = Dot(u, v) / length;
+    const double distance = std::abs(Dot(center - (corners[apex] - corners[0]), normal)) / length;
+    change += distance * (1.0 + cotangent * cotangent) + radius * std::abs(cotangent);
+  }
+  return 0.25 * turn * change;
 }
 
 Vec3 GetAccurateCircumcenter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)

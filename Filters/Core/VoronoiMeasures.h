@@ -32,6 +32,13 @@ namespace cdm
 std::array<DoubleDouble, 6> GetCouplings(
   const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
+/**
+ * How much rounding the coordinates of the corners can change the coupling of an edge (as in
+ * TetrahedronEdges), to first order. Far from the origin that is more than any given part of the
+ * lengths, and it grows with obtuse angles.
+ */
+double GetCouplingRounding(const std::array<Vec3, 4>& corners, int edge);
+
 /** The sum of the couplings of an edge over the tetrahedra of a region. */
 class CouplingSum
 {
@@ -43,12 +50,15 @@ public:
   }
   double Get() const { return this->Sum.High; }
   /**
-   * Negative by more than 1e-12 of the lengths involved, that of the edge among them: what rounded
-   * coordinates leave of a coupling that is zero does not count.
+   * Negative by more than 1e-12 of the lengths involved, that of the edge among them, and by more
+   * than rounding: what rounded coordinates leave of a coupling that is zero does not count.
+   * @param getRounding the sum of GetCouplingRounding(); asked for in case of need
    */
-  bool IsNegative(double edgeLength) const
+  template <typename GetRounding>
+  bool IsNegative(double edgeLength, const GetRounding& getRounding) const
   {
-    return this->Sum.High < -1e-12 * (edgeLength + this->Lengths);
+    return this->Sum.High < -1e-12 * (edgeLength + this->Lengths) &&
+      this->Sum.High < -getRounding();
   }
 
 private:

@@ -12,7 +12,8 @@
  *     lengths there (3.3; negative: an entry of the finite element matrix has the wrong sign), and
  *     for each edge and region the coupling of the box method, the signed area of the Voronoi facet;
  *  5. the volume of each region.
- * Spheres are decided exactly; 3.3 and the couplings with a tolerance of 1e-12 of the lengths involved.
+ * Spheres are decided exactly; 3.3 and the couplings with a tolerance of 1e-12 of the lengths involved,
+ * couplings also of what rounding the coordinates changes.
  *
  * Inputs:
  *  - port 0: vtkUnstructuredGrid of VTK_TETRA from any source; cells of up to two dimensions are

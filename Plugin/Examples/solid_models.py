@@ -5,8 +5,9 @@
 
 KIND is hand, bust, cow or skull, the models of Fig. 7.1 to 7.9; MODEL is a file of such a surface
 that ParaView reads (.vtp, .stl, .obj, .ply), upright in y. The thesis's own models are not to be had:
-those with far more triangles are reduced first, until there are about as many tetrahedra. Writes
-KIND_edges.png, the structural edges, which form a contour plot (7.3), and
+those with far more triangles are reduced first, until there are about as many tetrahedra. Writes KIND.vtu, tetrahedra that
+are Delaunay as the thesis's are; KIND_boxes.vtu, in which all control volumes are closed, too, for more
+points; KIND_edges.png, the structural edges, which form a contour plot (7.3); and
 
     hand    hand_front.png, the advancing front at four moments (7.1); hand_mesh.png, edges and points
             as tubes and spheres (7.6)
@@ -185,13 +186,28 @@ def DrawSections(folder, mesh, colour):
     gallery.Draw(os.path.join(folder, "skull_sections.png"), parts, (0.0, -0.01, 1.0), 1.8)
 
 
+def MakeBoxes(refiner, front):
+    """The same with closed control volumes: criterion 3.2, and every bend is a structural edge."""
+    refiner.SetCriterionToSmallestSphereAndEdges()
+    refiner.SetAccuracyAngle(0.0)
+    front.Update()
+    mesh = gallery.Certify(front.GetOutputDataObject(0), front.GetOutputDataObject(1))
+    refiner.SetCriterionToDelaunay()
+    refiner.SetAccuracyAngle(ACCURACY)
+    front.Update()
+    return mesh
+
+
 def Run(kind, path, folder):
     colour, thesis, triangles = KINDS[kind]
     surface = Read(path, triangles)
-    triangulator, _, front = MakeStages(surface)
+    triangulator, refiner, front = MakeStages(surface)
     mesh = gallery.Certify(front.GetOutputDataObject(0), front.GetOutputDataObject(1))
-    wrong = gallery.Compare(kind, mesh, thesis)
+    boxes = MakeBoxes(refiner, front)
+    wrong = gallery.Compare(kind, mesh, gallery.FAULTS[:3], thesis)
+    wrong += gallery.Compare(kind + ", control volumes", boxes, gallery.FAULTS)
     gallery.Save(mesh, os.path.join(folder, kind + ".vtu"))
+    gallery.Save(boxes, os.path.join(folder, kind + "_boxes.vtu"))
     DrawContours(folder, kind, triangulator.GetOutput(), colour)
     if kind == "hand":
         DrawFront(folder, front, colour)

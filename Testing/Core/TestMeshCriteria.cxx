@@ -270,6 +270,33 @@ TEST(MeshCriteria, GridsAreCleanAndRoundingLeavesNoNegativeSums)
   EXPECT_NEAR(straight.SmallestDihedralAngle, turned.SmallestDihedralAngle, 1e-10);
 }
 
+TEST(MeshCriteria, RoundingFarFromTheOriginLeavesNoNegativeCouplings)
+{
+  // Coordinates are rounded to 1e-10 of the edges, and the couplings of the diagonals are zero.
+  const TetMesh grid = MakeHullMesh(MakeGrid(6, 1e-3));
+  TetMesh far = grid;
+  for (Vec3& point : far.Points)
+  {
+    point = Vec3{ 0.6 * point.X - 0.8 * point.Y, 0.8 * point.X + 0.6 * point.Y, point.Z } +
+      Vec3{ 700.0, -900.0, 1100.0 };
+  }
+  EXPECT_EQ(0, Evaluate(far).GetCount(MeshFault::NegativeCoupling));
+
+  // What is negative before is so there.
+  TetMesh bad = grid;
+  for (Vec3& point : bad.Points)
+  {
+    point.X *= point.Z < 1e-3 ? 1.0 : 1.0 + 1e-6;
+  }
+  const Id negative = Evaluate(bad).GetCount(MeshFault::NegativeCoupling);
+  EXPECT_GT(negative, 0);
+  for (Vec3& point : bad.Points)
+  {
+    point = point + Vec3{ 700.0, -900.0, 1100.0 };
+  }
+  EXPECT_EQ(negative, Evaluate(bad).GetCount(MeshFault::NegativeCoupling));
+}
+
 TEST(MeshCriteria, SameForAnyNumberOfThreads)
 {
   // Enough points for a tree that threads build, and regions in slabs.

@@ -2,6 +2,7 @@
 """Runs a script of the gallery, Plugin/Examples, and compares its pictures with their baselines."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -13,11 +14,11 @@ import ImageComparison
 ImageComparison.FRACTION = 20 / (900 * 700)
 
 
-def Check(script, meshes, pictures, arguments=(), certificate=": clean"):
+def Check(script, meshes, pictures, arguments=(), clean=None):
     """The script ends well, as it does if all its meshes are as they should be, and writes these.
 
     meshes: names of files; pictures: names in the script's folder and of their baselines;
-    arguments: what comes before the folder; certificate: how those of the meshes end.
+    arguments: what comes before the folder; clean: how many of the certificates are (None: all).
     """
     path = os.path.join(os.environ["CDM_SOURCE_DIR"], "Plugin", "Examples", script)
     with tempfile.TemporaryDirectory() as folder:
@@ -26,7 +27,9 @@ def Check(script, meshes, pictures, arguments=(), certificate=": clean"):
         print(run.stdout)
         if run.returncode != 0 or "ERR|" in run.stdout or "Traceback" in run.stdout:
             sys.exit("exit code %d" % run.returncode)
-        assert run.stdout.count(certificate) == len(meshes), "a certificate for each mesh"
+        certificates = re.findall("certificate: .*: (.*)", run.stdout)
+        assert len(certificates) == len(meshes), certificates
+        assert certificates.count("clean") == (len(meshes) if clean is None else clean), certificates
         written = sorted([*meshes, *(name for name, _ in pictures)])
         assert sorted(os.listdir(folder)) == written, os.listdir(folder)
         for name, baseline in pictures:

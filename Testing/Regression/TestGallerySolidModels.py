@@ -22,6 +22,5 @@ if missing:
     sys.exit(77)
 for kind, name, pictures in MODELS:
     GalleryExample.Check(
-        "solid_models.py", (kind + ".vtu",), pictures,
-        arguments=(kind, os.path.join(folder, name)),
-        certificate="0 inverted, 0 flat, 0 non-Delaunay;")
+        "solid_models.py", (kind + ".vtu", kind + "_boxes.vtu"), pictures,
+        arguments=(kind, os.path.join(folder, name)), clean=1)
