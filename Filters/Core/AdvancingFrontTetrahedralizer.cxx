@@ -737,10 +737,14 @@ void AdvancingFront::CollectPointsUsed()
   if (!this->HasSurface() && !this->IsStopped)
   {
     // The mesh of the convex hull has all points.
-    for (Id point : this->Order)
-    {
-      places[point] = 0;
-    }
+    this->ForAll(this->Order.size(),
+      [&](std::size_t begin, std::size_t end)
+      {
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          places[this->Order[i]] = 0;
+        }
+      });
   }
   else
   {
@@ -776,10 +780,14 @@ void AdvancingFront::CollectPointsUsed()
     }
   }
   this->Points.resize(count);
-  for (Id& point : this->Order)
-  {
-    point = places[point];
-  }
+  this->ForAll(this->Order.size(),
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        this->Order[i] = places[this->Order[i]];
+      }
+    });
 }
 
 /**

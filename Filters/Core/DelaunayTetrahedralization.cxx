@@ -153,8 +153,11 @@ private:
     TryAgain,
     Take
   };
-  /** What a thread has for itself: a part of the curve, and room for tetrahedra. */
-  struct Worker
+  /**
+   * What a thread has for itself: a part of the curve, and room for tetrahedra. Two of them on one
+   * line of the cache, or on a pair of lines that is fetched at once, would slow both threads down.
+   */
+  struct alignas(128) Worker
   {
     Part Own;
     std::vector<Id> Todo;
@@ -193,7 +196,7 @@ private:
   Status FindFirst(TetrahedronIds& ids) const;
   void MakeFirst(const TetrahedronIds& ids);
   void MakeSphere(std::size_t tetrahedron);
-  Status InsertRound(const std::vector<Id>& vertices, int numberOfThreads);
+  Status InsertRound(std::vector<Id> left, int numberOfThreads);
   template <bool IsShared>
   bool Work(Worker& worker, const std::function<bool(std::size_t)>& mayContinue);
   bool HandOver(Worker& from, std::size_t next, Worker& to);
@@ -871,7 +874,8 @@ void Builder::MakeFirst(const TetrahedronIds& ids)
   this->Marks.assign(5, Unknown);
 }
 
-Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads)
+/** The vertices ascend. */
+Status Builder::InsertRound(std::vector<Id> left, int numberOfThreads)
 {
   std::atomic<bool> isAborted{ false };
   const double begin = static_cast<double>(this->Output.Tetrahedra.size()) / 6.8;
@@ -882,8 +886,9 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
       this->Progress, std::min(0.99, (begin + static_cast<double>(done)) / this->Infinite));
     return this->Context.Continue(this->Progress, Activity);
   };
-  std::vector<Id> left(vertices);
-  // Two cuts of the curve for the threads, then all of it for one.
+  // Two cuts of the curve for the threads, then all of it for one. A third would hardly find more:
+  // what is left lies where the curve comes by several times, and parts of half the curve never
+  // have all of that.
   for (int cut = 0; cut < 2 && numberOfThreads > 1 && left.size() >= SmallRound; ++cut)
   {
     const std::size_t count = static_cast<std::size_t>(numberOfThreads);
@@ -892,21 +897,19 @@ Status Builder::InsertRound(const std::vector<Id>& vertices, int numberOfThreads
     Worker spare;
     MovePlaces(this->Workers[0], spare, std::numeric_limits<std::size_t>::max());
     Id last = this->Workers[0].Last;
+    // Along the curve, from where the first part begins.
+    std::rotate(left.begin(), std::lower_bound(left.begin(), left.end(), shift), left.end());
+    auto first = left.begin();
     for (std::size_t w = 0; w < count; ++w)
     {
       Worker& worker = this->Workers[w];
       worker.Own = { static_cast<Id>(w) * part + shift,
         std::min(part, this->Infinite - static_cast<Id>(w) * part), this->Infinite };
-      worker.Todo.clear();
+      const auto last = std::partition_point(
+        first, left.end(), [&worker](Id vertex) { return worker.Own.Has(vertex); });
+      worker.Todo.assign(first, last);
       worker.Postponed.clear();
-    }
-    // Along the curve, from where the first part begins.
-    std::rotate(left.begin(), std::lower_bound(left.begin(), left.end(), shift), left.end());
-    for (Id vertex : left)
-    {
-      const Id shifted = vertex - shift;
-      const Id place = shifted < 0 ? shifted + this->Infinite : shifted;
-      this->Workers[place / part].Todo.push_back(vertex);
+      first = last;
     }
     for (std::size_t w = 0; w < count; ++w)
     {
@@ -1077,13 +1080,8 @@ Status Builder::InsertOthers(int numberOfThreads)
   {
     ++rounds;
   }
-  std::vector<std::vector<Id>> vertices(static_cast<std::size_t>(rounds) + 1);
-  for (Id vertex = 0; vertex < this->Infinite; ++vertex)
+  const auto getRound = [rounds](Id vertex)
   {
-    if (this->IsInserted[vertex])
-    {
-      continue;
-    }
     std::uint64_t hash = (static_cast<std::uint64_t>(vertex) + 1) * 0x9e3779b97f4a7c15ull;
     hash = (hash ^ (hash >> 32)) * 0xd6e8feb86659fd93ull;
     hash ^= hash >> 32;
@@ -1093,20 +1091,41 @@ Status Builder::InsertOthers(int numberOfThreads)
       --round;
       hash >>= 3;
     }
-    vertices[static_cast<std::size_t>(round)].push_back(vertex);
-  }
+    return static_cast<std::size_t>(round);
+  };
+  using Rounds = std::vector<std::vector<Id>>;
+  const Rounds none(static_cast<std::size_t>(rounds) + 1);
+  const ParallelLoopOptions options{ numberOfThreads, std::size_t(1) << 16 };
+  std::vector<Rounds> blocks(
+    GetNumberOfBlocks(static_cast<std::size_t>(this->Infinite), options), none);
+  ParallelLoop(static_cast<std::size_t>(this->Infinite), options, {}, "",
+    [&](std::size_t begin, std::size_t end, std::size_t block)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        if (!this->IsInserted[i])
+        {
+          blocks[block][getRound(static_cast<Id>(i))].push_back(static_cast<Id>(i));
+        }
+      }
+    });
   this->SetUnit();
   this->Places.assign(static_cast<std::size_t>(this->Infinite) + 1, 0);
   this->Workers = std::vector<Worker>(static_cast<std::size_t>(std::max(1, numberOfThreads)));
   Status status;
-  for (std::vector<Id>& round : vertices)
+  for (std::size_t round = 0; round < none.size(); ++round)
   {
-    status = this->InsertRound(round, numberOfThreads);
+    std::vector<Id> vertices;
+    for (Rounds& block : blocks)
+    {
+      vertices.insert(vertices.end(), block[round].begin(), block[round].end());
+      block[round] = std::vector<Id>();
+    }
+    status = this->InsertRound(std::move(vertices), numberOfThreads);
     if (!status.IsOk())
     {
       return status;
     }
-    round = std::vector<Id>();
   }
   for (const auto& [begin, end] : this->Workers[0].Rooms)
   {

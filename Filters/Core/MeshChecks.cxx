@@ -244,7 +244,7 @@ void Checker::CheckPoints()
 
 void Checker::CollectRegions()
 {
-  this->RegionIds = this->Mesh.Regions;
+  this->RegionIds.assign(this->Mesh.Regions.begin(), this->Mesh.Regions.end());
   if (this->Boundary != nullptr)
   {
     for (const RegionPair& label : this->Boundary->Labels)

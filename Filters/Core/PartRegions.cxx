@@ -180,7 +180,7 @@ Status PartRegions::SetRegion(Id tetrahedron, Id region)
   return this->SetRegionOfComponent(this->ComponentOf[tetrahedron], region, NoId);
 }
 
-Status PartRegions::Finish(std::vector<Id>& regions) const
+Status PartRegions::Finish(RawVector<Id>& regions) const
 {
   regions.clear();
   for (std::size_t t = 0; t < this->ComponentOf.size(); ++t)

@@ -57,7 +57,7 @@ public:
   /** What another part tells. */
   Status SetRegion(Id tetrahedron, Id region);
   /** The region of each tetrahedron, OutsideRegion included. */
-  Status Finish(std::vector<Id>& regions) const;
+  Status Finish(RawVector<Id>& regions) const;
 
 private:
   /** A set of tetrahedra that belong together. */

@@ -28,7 +28,7 @@ struct TetMesh
 {
   std::vector<Vec3> Points;
   RawVector<TetrahedronIds> Tetrahedra;
-  std::vector<Id> Regions;
+  RawVector<Id> Regions;
   RawVector<TetrahedronIds> Neighbors;
 };
 

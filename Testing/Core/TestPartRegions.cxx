@@ -49,9 +49,9 @@ TEST(PartRegions, FillsBothSidesOfATriangle)
   EXPECT_EQ(regions.GetRegion(0), 5);
   EXPECT_EQ(regions.GetSideRegion(2 * 6), 5);
   EXPECT_EQ(regions.GetSideRegion(2 * 6 + 1), 8);
-  std::vector<Id> found;
+  RawVector<Id> found;
   ASSERT_TRUE(regions.Finish(found).IsOk());
-  EXPECT_EQ(found, (std::vector<Id>{ 5, 8 }));
+  EXPECT_EQ(found, (RawVector<Id>{ 5, 8 }));
 }
 
 TEST(PartRegions, HearsFromOtherParts)
@@ -68,15 +68,15 @@ TEST(PartRegions, HearsFromOtherParts)
   PartRegions regions(mesh, 5, triangles, sides);
   ASSERT_TRUE(regions.Start().IsOk());
   EXPECT_EQ(regions.TakeNews({ 0, 1 }), std::vector<Id>());
-  std::vector<Id> found;
+  RawVector<Id> found;
   ASSERT_TRUE(regions.Finish(found).IsOk());
-  EXPECT_EQ(found, (std::vector<Id>{ OutsideRegion, OutsideRegion })) << "what nobody knows";
+  EXPECT_EQ(found, (RawVector<Id>{ OutsideRegion, OutsideRegion })) << "what nobody knows";
   ASSERT_TRUE(regions.SetRegion(1, 3).IsOk());
   EXPECT_EQ(regions.TakeNews({ 0 }), std::vector<Id>{ 0 });
   ASSERT_TRUE(regions.SetRegion(0, 3).IsOk());
   EXPECT_EQ(regions.TakeNews({ 0, 1 }), std::vector<Id>()) << "known before";
   ASSERT_TRUE(regions.Finish(found).IsOk());
-  EXPECT_EQ(found, (std::vector<Id>{ 3, 3 }));
+  EXPECT_EQ(found, (RawVector<Id>{ 3, 3 }));
   const Status status = regions.SetRegion(0, 4);
   EXPECT_EQ(status.Code, StatusCode::InvalidInput);
   EXPECT_NE(status.Message.find("Regions 3 and 4 are not separated"), std::string::npos);
@@ -114,7 +114,7 @@ TEST(PartRegions, RefusesRegionsUpToTheHull)
   sides.erase(sides.begin());
   PartRegions regions(mesh, 5, triangles, sides);
   ASSERT_TRUE(regions.Start().IsOk());
-  std::vector<Id> found;
+  RawVector<Id> found;
   const Status status = regions.Finish(found);
   EXPECT_EQ(status.Code, StatusCode::InvalidInput);
   EXPECT_NE(status.Message.find("Region 5 is not closed"), std::string::npos) << status.Message;

@@ -401,10 +401,10 @@ TEST(SliverRemover, FlatTetrahedronOnAnInterfaceVanishesInTheOtherRegion)
   EXPECT_TRUE(after.IsValid()) << after.GetSummary();
   EXPECT_EQ(4, after.Tetrahedra);
   EXPECT_GT(after.SmallestDihedralAngle, 15.0);
-  EXPECT_EQ((std::vector<Id>{ 0, 0, 1, 1 }),
+  EXPECT_EQ((RawVector<Id>{ 0, 0, 1, 1 }),
     [&]
     {
-      std::vector<Id> regions = mesh.Regions;
+      RawVector<Id> regions = mesh.Regions;
       std::sort(regions.begin(), regions.end());
       return regions;
     }());
