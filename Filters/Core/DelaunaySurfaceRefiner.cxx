@@ -55,6 +55,11 @@ constexpr double CloseEndRatio = 0.25;
 /** Another point on an edge, closer to the match than this part of the disturbing point's distance,
  * is matched instead. */
 constexpr double CloseMatchRatio = 0.5;
+/**
+ * Lines and planes whose cosine is not above this are perpendicular: no point has a partner there.
+ * Of turned devices rounding would make partners of them here and there, and a quarter more points.
+ */
+constexpr double PerpendicularCosine = 1e-9;
 /** Among the edges around so many triangles one is looked for that a new point would disturb. */
 constexpr std::size_t LargestCavity = 1000;
 
@@ -824,7 +829,7 @@ bool SurfaceRefiner::PlacePartner(Id segment, Id disturbing, double& way, Vec3& 
   const std::vector<EdgeIds>& edges = this->Surface->GetInputEdges();
   const Id own = this->Surface->GetSegment(segment).InputEdge;
   // Of several edges at the point the one along this edge matters.
-  double best = 0.0;
+  double best = PerpendicularCosine;
   for (Id other : this->GetEdges(disturbing))
   {
     if (other == own)
@@ -856,7 +861,7 @@ bool SurfaceRefiner::PlacePartner(Id segment, Id disturbing, double& way, Vec3& 
     way = foot + shift;
     along = 0.5 * (direction + line);
   }
-  return best > 0.0;
+  return best > PerpendicularCosine;
 }
 
 Vec3 SurfaceRefiner::PlaceOnSegment(Id segment, Id disturbing)
@@ -1057,7 +1062,8 @@ bool SurfaceRefiner::RotateAboutAxis(Id t, Id disturbing, Vec3& target) const
       const Vec3 foot = begin + Dot(p - begin, direction) * direction;
       const Vec3 inward = center - (begin + Dot(center - begin, direction) * direction);
       const double distance = Distance(p, foot);
-      if (distance < nearest && distance > 0.0 && Dot(inward, p - foot) > 0.0)
+      if (distance < nearest && distance > 0.0 &&
+        Dot(inward, p - foot) > PerpendicularCosine * distance * Norm(inward))
       {
         nearest = distance;
         target = foot + (distance / Norm(inward)) * inward;
