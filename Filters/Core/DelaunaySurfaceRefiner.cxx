@@ -1302,6 +1302,13 @@ bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMir
         position = SnapToCoordinates(position, this->Points[visitor.Nearest], this->Diagonal);
       }
       place = surface.Locate(current, position);
+      const Id beyond = place.second ? NoId : surface.GetTriangle(current).Adjacent[place.first];
+      if (!place.second && beyond >= 0 && beyond / 3 == previous &&
+        surface.CanSplitSmoothEdge(3 * current + place.first, position))
+      {
+        // Rounded into the plane of either triangle it lies in the other one: on the edge between.
+        place.second = true;
+      }
       if (place.second)
       {
         break;

@@ -336,6 +336,11 @@ private:
     {
       const Angle x(this->At(apex1), this->At(e), this->At(f));
       const Angle y(this->At(apex2), this->At(e), this->At(f));
+      // Near twice that, as in needles of vertices that lie on a line, the sine says nothing.
+      if (x.Cosine < 0.0 && y.Cosine < 0.0)
+      {
+        return true;
+      }
       // Rounding must not make cocircular vertices flip to and fro.
       const double margin = 1e-12 * std::hypot(x.Sine, x.Cosine) * std::hypot(y.Sine, y.Cosine);
       return x.Sine * y.Cosine + x.Cosine * y.Sine < -margin;

@@ -2,6 +2,7 @@
 #include "PolygonTriangulation.h"
 
 #include "Predicates.h"
+#include "RandomComplexes.h"
 #include "TriangleIntersection.h"
 
 #include <gtest/gtest.h>
@@ -335,6 +336,37 @@ TEST(PolygonTriangulation, RandomSimplePolygonsOnAGrid)
     }
   }
   EXPECT_GT(tested, 2000);
+}
+
+TEST(PolygonTriangulation, VerticesOnALineButForRoundingMakeNoNeedles)
+{
+  // A layer over two lines, as thick as these are high: ten vertices lie on one line, on both sides of
+  // the layer, and turned in space none of them exactly.
+  const double outline[][2] = { { 0.0, 0.15 }, { 0.02, 0.15 }, { 0.12, 0.35 }, { 0.28, 0.35 },
+    { 0.38, 0.15 }, { 0.42, 0.15 }, { 0.52, 0.35 }, { 0.68, 0.35 }, { 0.78, 0.15 }, { 0.8, 0.15 },
+    { 0.8, 0.35 }, { 0.78, 0.35 }, { 0.68, 0.55 }, { 0.52, 0.55 }, { 0.42, 0.35 }, { 0.38, 0.35 },
+    { 0.28, 0.55 }, { 0.12, 0.55 }, { 0.02, 0.35 }, { 0.0, 0.35 } };
+  std::vector<Vec3> flat;
+  for (const auto& [x, y] : outline)
+  {
+    flat.push_back({ x, y, 0.0 });
+  }
+  std::mt19937_64 generator(1);
+  std::uniform_real_distribution<double> angle(0.0, 3.0);
+  for (int turn = 0; turn < 1000; ++turn)
+  {
+    std::vector<Vec3> points = flat;
+    Rotate(points, MakeRandomDirection(generator), angle(generator));
+    std::vector<TriangleIds> triangles;
+    ASSERT_EQ(PolygonTriangulationResult::Ok,
+      TriangulatePolygon(points, MakeIds(points.size()), triangles));
+    EXPECT_EQ(triangles.size(), points.size() - 2);
+    for (const TriangleIds& t : triangles)
+    {
+      const Vec3 normal = Cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]);
+      EXPECT_GT(Norm(normal), 1e-4) << turn;
+    }
+  }
 }
 
 TEST(PolygonTriangulation, ThousandsOfVertices)

@@ -2,12 +2,16 @@
 // All sample devices, as they are and turned, meshed for the box method: the certificate is clean.
 #include "FilterTesting.h"
 
+#include <vtkBoundaryTriangulator.h>
 #include <vtkConformingDelaunayMesher.h>
 #include <vtkDelaunayMeshCriteria.h>
+#include <vtkDelaunaySurfaceRefiner.h>
 #include <vtkFieldData.h>
 #include <vtkTechnologyStructureSource.h>
 
+#include <algorithm>
 #include <iostream>
+#include <vector>
 
 using namespace testing_filters;
 
@@ -39,6 +43,21 @@ public:
     std::cout << this->Source->GetStructureAsString() << " turned by " << angle << ": "
               << this->Criteria->GetCertificate() << "\n";
     return this->Criteria->GetOutput();
+  }
+
+  /** Of the refined surface of the device turned by an angle. */
+  vtkIdType CountSurfacePoints(double angle, int criterion)
+  {
+    this->Source->SetStructure(GetParam());
+    this->Source->SetRotationAngle(angle);
+    this->Source->SetRotationAxis(1.0, 2.0, 3.0);
+    vtkNew<vtkBoundaryTriangulator> triangulator;
+    triangulator->SetInputConnection(this->Source->GetOutputPort());
+    vtkNew<vtkDelaunaySurfaceRefiner> refiner;
+    refiner->SetInputConnection(triangulator->GetOutputPort());
+    refiner->SetCriterion(criterion);
+    refiner->Update();
+    return refiner->GetOutput()->GetNumberOfPoints();
   }
 
   void CheckCertificate()
@@ -83,6 +102,26 @@ TEST_P(DeviceMeshes, TurnedAreClean)
   {
     ASSERT_GT(this->MakeMesh(angle)->GetNumberOfCells(), 0);
     this->CheckCertificate();
+  }
+}
+
+TEST_P(DeviceMeshes, TurnedNeedNoMoreSurfacePoints)
+{
+  for (const int criterion : { 0, 1, 2 })
+  {
+    const vtkIdType straight = this->CountSurfacePoints(0.0, criterion);
+    std::vector<vtkIdType> turned;
+    for (const double angle : { 10.0, 33.0, 45.0, 66.0, 77.0 })
+    {
+      turned.push_back(this->CountSurfacePoints(angle, criterion));
+    }
+    std::sort(turned.begin(), turned.end());
+    std::cout << "criterion " << criterion << ": " << straight << " points, turned "
+              << turned.front() << " to " << turned.back() << "\n";
+    // What rounding decides moves single points, and seldom a row of them.
+    EXPECT_LE(turned[2], 1.05 * straight);
+    EXPECT_LE(turned.back(), 1.08 * straight);
+    EXPECT_GE(turned.front(), 0.92 * straight);
   }
 }
 
