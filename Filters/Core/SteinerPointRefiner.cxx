@@ -29,8 +29,6 @@ constexpr int MaximumSliverRounds = 40;
 constexpr std::size_t FewRequests = 16;
 /** Edges of the boundary for a largest volume, in edges of the regular tetrahedron of that volume. */
 constexpr double BoundaryEdgeRatio = 1.15;
-/** Degrees: flatter tetrahedra at the boundary are there by rounding. */
-constexpr double FlatAngle = 1e-2;
 /** By how much a point of theirs is moved on the boundary, in radii of their circle. */
 constexpr double NudgeRatio = 1e-9;
 
@@ -484,7 +482,7 @@ bool Refiner::NudgeFlatBoundary()
 {
   std::vector<char> isMoved(this->Surface.Points.size(), 0);
   bool isNudged = false;
-  for (const TetrahedronIds& ids : this->Round->FindSliversOfSurface(FlatAngle))
+  for (const TetrahedronIds& ids : this->Round->FindFlatTetrahedra())
   {
     if (std::any_of(ids.begin(), ids.end(), [&](Id id) { return isMoved[id]; }))
     {
@@ -608,6 +606,7 @@ Status Refiner::Run()
 
   bool areSizesDone = false;
   int sliverRounds = 0;
+  std::size_t fewestFlat = std::numeric_limits<std::size_t>::max();
   bool isDone = false;
   while (status.IsOk() && !isDone)
   {
@@ -632,11 +631,15 @@ Status Refiner::Run()
         if (this->Options.DihedralAngleTarget > 0.0)
         {
           ++sliverRounds;
+          // In turned devices new points on the boundary have as many of them as are taken away.
+          const std::size_t flat = this->Round->FindFlatTetrahedra().size();
+          const bool isFlatRequested = flat < fewestFlat / 2;
+          fewestFlat = std::min(fewestFlat, flat);
           status = this->Round->PerturbSlivers(this->Options.DihedralAngleTarget,
             isFull                                 ? SliverMeans::Moves
               : sliverRounds < MaximumSliverRounds ? SliverMeans::Requests
                                                    : SliverMeans::Points,
-            this->GetRoundContext());
+            isFlatRequested, this->GetRoundContext());
           status = status.IsOk() ? this->RefineRound(true) : status;
         }
         const bool isNudged = status.IsOk() && !isFull && this->Options.DihedralAngleTarget > 0.0 &&

@@ -15,7 +15,8 @@
  *     be split instead;
  *  4. if little is requested any more: points of slivers are moved, taken out or added. Where points
  *     of one plane facet lie on a circle but for rounding, a new one of them is moved along the
- *     facet by 1e-9 of the circle.
+ *     facet by 1e-9 of the circle; the boundary is split for the flat tetrahedra of such points only as
+ *     long as that halves their number.
  * It ends when a round requests nothing, or nothing that can be done.
  *
  * Guarantees: the mesh is Delaunay by the pulling rule and conforms to the same surface; facets on

@@ -23,6 +23,8 @@ constexpr double SizeRatio = 0.2;
 constexpr double MoveRatio = 1.1;
 /** Free points closer to others than this part of the sizing are removed. */
 constexpr double CloseRatio = 0.3;
+/** Degrees: tetrahedra of boundary points with a smaller angle are flat but for rounding. */
+constexpr double FlatAngle = 1e-6;
 /** First step of the search for a new point's place, in radii of the sphere that it destroys. */
 constexpr double FirstInsertion = 0.3;
 /** Passes over the slivers that are left. */
@@ -127,20 +129,19 @@ std::vector<InteriorPoint> VolumeRefinement::GetInterior() const
   return interior;
 }
 
-std::vector<TetrahedronIds> VolumeRefinement::FindSliversOfSurface(double angle) const
+std::vector<TetrahedronIds> VolumeRefinement::FindFlatTetrahedra() const
 {
-  std::vector<TetrahedronIds> slivers;
+  std::vector<TetrahedronIds> flat;
   for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
   {
     const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
-    if (!this->Mesh.IsDead(t) &&
-      *std::max_element(ids.begin(), ids.end()) < this->NumberOfSurfacePoints &&
-      this->GetAngle(t) < angle && !this->Layers.IsAcross(ids, this->GetMesh().Regions[t]))
+    if (!this->Mesh.IsDead(t) && this->IsFlat(t) &&
+      !this->Layers.IsAcross(ids, this->GetMesh().Regions[t]))
     {
-      slivers.push_back(ids);
+      flat.push_back(ids);
     }
   }
-  return slivers;
+  return flat;
 }
 
 bool VolumeRefinement::IsFree(Id point) const
@@ -162,6 +163,14 @@ double VolumeRefinement::GetAngle(Id tetrahedron) const
 }
 
 /** Smallest angle that the hole's cone would have; gives up below what is required. */
+/** By rounding: its four points, which are all on the surface, would have no tetrahedron otherwise. */
+bool VolumeRefinement::IsFlat(Id tetrahedron) const
+{
+  const TetrahedronIds& ids = this->GetMesh().Tetrahedra[tetrahedron];
+  return *std::max_element(ids.begin(), ids.end()) < this->NumberOfSurfacePoints &&
+    this->GetAngle(tetrahedron) < FlatAngle;
+}
+
 double VolumeRefinement::RateHole(const Vec3& position, double required) const
 {
   double smallest = 180.0;
@@ -460,7 +469,7 @@ Status VolumeRefinement::RefineByLimits(bool isShapeTested, const ExecutionConte
       this->Limits.Find(this->GetVertices(ids), isShapeTested, target, severity);
     if (fault == TetrahedronFault::Size ||
       (fault == TetrahedronFault::Shape && !this->Sharp.IsAcross(ids) &&
-        !this->Layers.IsAcross(ids, this->GetMesh().Regions[t])))
+        !this->Layers.IsAcross(ids, this->GetMesh().Regions[t]) && !this->IsFlat(t)))
     {
       tasks.push({ fault, severity, t, this->Mesh.GetStamp(t) });
     }
@@ -673,7 +682,7 @@ bool VolumeRefinement::Mend(
 }
 
 Status VolumeRefinement::PerturbSlivers(
-  double target, SliverMeans means, const ExecutionContext& context)
+  double target, SliverMeans means, bool isFlatRequested, const ExecutionContext& context)
 {
   this->Means = means;
   struct Sliver
@@ -718,6 +727,7 @@ Status VolumeRefinement::PerturbSlivers(
       const TetrahedronIds names = this->GetNames(ids);
       Id left = NoId;
       const bool isBad = sliver.Angle < target && !this->Sharp.IsAcross(ids);
+      const bool mayRequest = isFlatRequested || !this->IsFlat(sliver.Tetrahedron);
       const bool isHopeless = this->Memory.IsHopeless(names, isBad && mayInsert);
       if (!isHopeless &&
         this->Mend(
@@ -727,7 +737,8 @@ Status VolumeRefinement::PerturbSlivers(
         continue;
       }
       this->Memory.SetHopeless(names, isBad && mayInsert);
-      if (isBad && isLast && means == SliverMeans::Requests && !this->RequestEdge(ids))
+      if (isBad && isLast && means == SliverMeans::Requests && mayRequest &&
+        !this->RequestEdge(ids))
       {
         const std::array<Vec3, 4> v = this->GetVertices(ids);
         const Vec3 center = GetCircumcenter(v[0], v[1], v[2], v[3]);

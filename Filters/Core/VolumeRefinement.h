@@ -20,7 +20,9 @@
  * shortest edge at it before any shape was refined, or how close edges of the boundary come to each
  * other there (FeatureSizes.h), and at most the size of another point and the way from there; no point
  * comes closer to it than a fifth of that, but for size limits. Of tetrahedra across a thin layer
- * (ThinLayers.h) only the size counts.
+ * (ThinLayers.h) only the size counts. Nor is a tetrahedron refined for its shape whose points all
+ * belong to the boundary and lie in one plane but for rounding, as those of turned devices do: new
+ * points on the boundary would have more of the kind.
  *
  * References: J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998,
  * doi:10.1145/276884.276894 (what is split instead, and why it ends); J. Tournois, R. Srinivasan,
@@ -128,18 +130,19 @@ public:
   void RemoveClosePoints(double smallest, const SizingField& sizing);
   /** Until no tetrahedron breaks a limit, but for those that need the boundary split. */
   Status RefineByLimits(bool isShapeTested, const ExecutionContext& context);
-  /** Until nothing of what may be done makes angles below the target (degrees) larger. */
-  Status PerturbSlivers(double target, SliverMeans means, const ExecutionContext& context);
+  /**
+   * Until nothing of what may be done makes angles below the target (degrees) larger.
+   * @param isFlatRequested whether the boundary may be split for flat tetrahedra as well
+   */
+  Status PerturbSlivers(
+    double target, SliverMeans means, bool isFlatRequested, const ExecutionContext& context);
 
   /** What is to be split in the boundary. */
   const std::vector<Id>& GetRequestedTriangles() const { return this->RequestedTriangles; }
   const std::vector<EdgeIds>& GetRequestedEdges() const { return this->RequestedEdges; }
 
-  /**
-   * Tetrahedra between points of the surface only, with a smaller dihedral angle (degrees), but those
-   * across a layer.
-   */
-  std::vector<TetrahedronIds> FindSliversOfSurface(double angle) const;
+  /** Tetrahedra that are there by rounding, but those across a layer. */
+  std::vector<TetrahedronIds> FindFlatTetrahedra() const;
 
   /** The points that are in the mesh now. */
   std::vector<InteriorPoint> GetInterior() const;
@@ -171,6 +174,7 @@ private:
   bool IsFree(Id point) const;
   std::array<Vec3, 4> GetVertices(const TetrahedronIds& ids) const;
   double GetAngle(Id tetrahedron) const;
+  bool IsFlat(Id tetrahedron) const;
   double RateHole(const Vec3& position, double required) const;
   bool KeepsLimits(const Vec3& position) const;
   bool IsClear(const Vec3& position) const;
