@@ -159,7 +159,7 @@ private:
 
   /** Vertices are points in the order of a Hilbert curve, without copies: the point of each. */
   std::vector<Id> Order;
-  std::vector<Vec3> VertexPoints;
+  RawVector<Vec3> VertexPoints;
   DelaunayTetrahedralization All;
   RawVector<unsigned char> States;
   RawVector<Id> Regions;
@@ -979,7 +979,7 @@ void AdvancingFront::Finish()
   {
     this->CollectFront();
   }
-  this->VertexPoints = std::vector<Vec3>();
+  this->VertexPoints = RawVector<Vec3>();
   this->CollectTetrahedra();
 }
 

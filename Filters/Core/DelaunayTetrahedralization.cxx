@@ -87,7 +87,7 @@ inline RoughSphere MakeRoughSphere(
 class Builder
 {
 public:
-  Builder(const std::vector<Vec3>& points, const std::vector<Id>& numbers,
+  Builder(const RawVector<Vec3>& points, const std::vector<Id>& numbers,
     const ExecutionContext& context, DelaunayTetrahedralization& output)
     : Points(points.data()), Numbers(numbers.data()), Infinite(static_cast<Id>(points.size())),
       Context(context), Output(output)
@@ -1142,7 +1142,7 @@ Status Builder::InsertOthers(int numberOfThreads)
 }
 } // namespace
 
-Status BuildDelaunayTetrahedralization(const std::vector<Vec3>& points,
+Status BuildDelaunayTetrahedralization(const RawVector<Vec3>& points,
   const std::vector<Id>& numbers, const GridBlock& block, int numberOfThreads,
   const ExecutionContext& context, DelaunayTetrahedralization& output)
 {
@@ -1162,7 +1162,7 @@ Status BuildDelaunayTetrahedralization(const std::vector<Vec3>& points,
   return status;
 }
 
-Id LocateInTetrahedralization(const std::vector<Vec3>& points,
+Id LocateInTetrahedralization(const RawVector<Vec3>& points,
   const DelaunayTetrahedralization& tetrahedralization, const Vec3& position)
 {
   const Id infinite = static_cast<Id>(points.size());

@@ -65,12 +65,12 @@ struct DelaunayTetrahedralization
  * (FindGridBlock()), saves time and changes nothing else. InvalidInput if there are fewer than four points, or all
  * of them lie on a line or in a plane, and for more than 2^29 tetrahedra; Aborted leaves nothing.
  */
-Status BuildDelaunayTetrahedralization(const std::vector<Vec3>& points,
+Status BuildDelaunayTetrahedralization(const RawVector<Vec3>& points,
   const std::vector<Id>& numbers, const GridBlock& block, int numberOfThreads,
   const ExecutionContext& context, DelaunayTetrahedralization& output);
 
 /** A tetrahedron that holds the position in its closure; NoId outside of the hull. */
-Id LocateInTetrahedralization(const std::vector<Vec3>& points,
+Id LocateInTetrahedralization(const RawVector<Vec3>& points,
   const DelaunayTetrahedralization& tetrahedralization, const Vec3& position);
 } // namespace cdm
 

@@ -289,7 +289,7 @@ bool DynamicTetrahedralization::Remove(Id point)
   }
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  std::vector<Vec3> points;
+  RawVector<Vec3> points;
   points.reserve(ids.size());
   for (Id id : ids)
   {

@@ -19,7 +19,7 @@ constexpr std::size_t SmallestShare = 8;
 constexpr std::size_t LargestLattice = 4;
 
 /** False if less than one of 16 points of a sample shares a coordinate with another one. */
-bool HasLines(const std::vector<Vec3>& points)
+bool HasLines(const RawVector<Vec3>& points)
 {
   constexpr std::size_t SampleSize = 1024;
   const std::size_t step = std::max<std::size_t>(1, points.size() / SampleSize);
@@ -50,10 +50,10 @@ struct Lines
   std::vector<Id> OfPoints;
   Id Count = 0;
 
-  bool Find(const std::vector<Vec3>& points, int axis);
+  bool Find(const RawVector<Vec3>& points, int axis);
 };
 
-bool Lines::Find(const std::vector<Vec3>& points, int axis)
+bool Lines::Find(const RawVector<Vec3>& points, int axis)
 {
   const std::size_t mostValues = 64 + points.size() / 4;
   std::unordered_map<double, Id> values;
@@ -632,7 +632,7 @@ bool BlockMesher::Run(const ExecutionContext& context)
 }
 } // namespace
 
-GridBlock FindGridBlock(const std::vector<Vec3>& points)
+GridBlock FindGridBlock(const RawVector<Vec3>& points)
 {
   std::array<Lines, 3> lines;
   if (points.size() < NumberOfCorners || !HasLines(points))

@@ -48,7 +48,7 @@ struct GridBlock
 };
 
 /** Points are distinct and finite. */
-GridBlock FindGridBlock(const std::vector<Vec3>& points);
+GridBlock FindGridBlock(const RawVector<Vec3>& points);
 
 /** How many tetrahedra MeshGridBlock() makes, those at infinity included. */
 std::size_t GetNumberOfTetrahedra(const GridBlock& block);

@@ -613,7 +613,7 @@ Status PartTetrahedralization::Update(int numberOfThreads, const ExecutionContex
   std::vector<Id> numbers(points.size());
   std::iota(numbers.begin(), numbers.end(), 0);
   SortAlongHilbertCurve(positions, numbers, numberOfThreads);
-  std::vector<Vec3> vertices;
+  RawVector<Vec3> vertices;
   vertices.reserve(points.size());
   for (Id number : numbers)
   {

@@ -28,7 +28,7 @@ using PointSet = std::vector<Vec3>;
 /** Distinct points in the order of the curve, and numbers for them in any order. */
 struct SortedPoints
 {
-  PointSet Points;
+  RawVector<Vec3> Points;
   std::vector<Id> Numbers;
 
   SortedPoints(const PointSet& points, std::mt19937_64& generator)
@@ -179,10 +179,10 @@ TEST(GridBlock, LeavesOutWhatIsNoBlock)
 TEST(GridBlock, FindsNothing)
 {
   std::mt19937_64 generator(5);
-  PointSet random;
+  RawVector<Vec3> random;
   PointSet rotated;
-  PointSet line;
-  PointSet plane;
+  RawVector<Vec3> line;
+  RawVector<Vec3> plane;
   for (int i = 0; i < 1000; ++i)
   {
     random.push_back({ GetUniform(generator), GetUniform(generator), GetUniform(generator) });

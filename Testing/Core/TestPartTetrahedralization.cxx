@@ -43,7 +43,7 @@ Whole MakeWhole(const std::vector<Vec3>& points)
   std::vector<Id> order(points.size());
   std::iota(order.begin(), order.end(), 0);
   SortAlongHilbertCurve(points, order);
-  std::vector<Vec3> vertices;
+  RawVector<Vec3> vertices;
   for (Id point : order)
   {
     vertices.push_back(points[point]);
