@@ -3,12 +3,14 @@
 
 #include "IdLimits.h"
 #include "ParallelLoop.h"
+#include "ParallelSort.h"
 #include "Predicates.h"
 #include "SimplexIncidence.h"
 #include "SphereCriteria.h"
 #include "VolumeSums.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -21,6 +23,7 @@ namespace
 {
 constexpr double DegreesPerRadian = 57.29577951308232;
 constexpr std::size_t ContinueInterval = 1 << 12;
+constexpr const char* FacetActivity = "Checking facets";
 constexpr std::size_t MaximumNumberOfExamples = 10;
 
 /** Sort the points of a triangle; true if its normal keeps its direction. */
@@ -55,23 +58,6 @@ struct FacetRecord
     return a.Points != b.Points ? a.Points < b.Points : a.Source < b.Source;
   }
 };
-
-std::vector<FacetRecord> CollectFacets(const TetMesh& mesh)
-{
-  std::vector<FacetRecord> facets;
-  facets.reserve(4 * mesh.Tetrahedra.size());
-  for (Id tetrahedron = 0; tetrahedron < static_cast<Id>(mesh.Tetrahedra.size()); ++tetrahedron)
-  {
-    for (int i = 0; i < 4; ++i)
-    {
-      FacetRecord facet{ GetFacet(mesh.Tetrahedra[tetrahedron], i), 4 * tetrahedron + i, true };
-      facet.IsEven = SortPoints(facet.Points);
-      facets.push_back(facet);
-    }
-  }
-  std::sort(facets.begin(), facets.end());
-  return facets;
-}
 
 template <typename Iterator>
 Iterator FindEndOfGroup(Iterator begin, Iterator end)
@@ -135,8 +121,9 @@ Status CheckTetrahedra(const TetMesh& mesh)
 class Checker
 {
 public:
-  Checker(const TetMesh& mesh, const TriangleMesh* boundary, MeshCheckReport& report)
-    : Mesh(mesh), Boundary(boundary), Report(report)
+  Checker(
+    const TetMesh& mesh, const TriangleMesh* boundary, int numberOfThreads, MeshCheckReport& report)
+    : Mesh(mesh), Boundary(boundary), NumberOfThreads(numberOfThreads), Report(report)
   {
   }
 
@@ -153,7 +140,7 @@ private:
     Id Origin = NoId;
   };
 
-  void CheckPoints();
+  bool CheckPoints(const ExecutionContext& context);
   void CollectRegions();
   bool CheckTetrahedra(const ExecutionContext& context);
   bool CheckFacets(const ExecutionContext& context);
@@ -162,6 +149,7 @@ private:
   void FinishVolumes();
 
   Id FindMeshPoint(Id boundaryPoint) const;
+  bool CollectFacets(const ExecutionContext& context, RawVector<FacetRecord>& facets) const;
   std::vector<FacetRecord> CollectBoundary();
   void CheckNeighbors(const FacetRecord* begin, const FacetRecord* end);
   void CheckBoundaryTriangle(const FacetRecord& triangle, const RegionPair& regions);
@@ -175,6 +163,7 @@ private:
 
   const TetMesh& Mesh;
   const TriangleMesh* Boundary;
+  int NumberOfThreads;
   MeshCheckReport& Report;
   /** Exact orientation of each tetrahedron. */
   std::vector<signed char> Orientations;
@@ -193,14 +182,14 @@ Status Checker::Run(const ExecutionContext& context)
   this->Report.Tetrahedra = static_cast<Id>(this->Mesh.Tetrahedra.size());
   this->Report.Points = static_cast<Id>(this->Mesh.Points.size());
   this->Report.HasBoundary = this->Boundary != nullptr;
-  this->CheckPoints();
   this->CollectRegions();
-  if (!this->CheckTetrahedra(context.Part(0.0, 0.2)) || !this->CheckFacets(context.Part(0.2, 0.5)))
+  if (!this->CheckPoints(context.Part(0.0, 0.05)) ||
+    !this->CheckTetrahedra(context.Part(0.05, 0.2)) || !this->CheckFacets(context.Part(0.2, 0.5)))
   {
     return Status::Aborted();
   }
   this->FinishVolumes();
-  const SphereCriteria criteria(this->Mesh.Points);
+  const SphereCriteria criteria(this->Mesh.Points, this->NumberOfThreads);
   if (!this->CheckSpheres(criteria, context.Part(0.5, 0.9)) ||
     !this->CheckBoundarySpheres(criteria, context.Part(0.9, 1.0)))
   {
@@ -209,7 +198,7 @@ Status Checker::Run(const ExecutionContext& context)
   return {};
 }
 
-void Checker::CheckPoints()
+bool Checker::CheckPoints(const ExecutionContext& context)
 {
   const std::vector<Vec3>& points = this->Mesh.Points;
   this->IsUsed.assign(points.size(), 0);
@@ -225,13 +214,16 @@ void Checker::CheckPoints()
 
   this->SortedPoints.resize(points.size());
   std::iota(this->SortedPoints.begin(), this->SortedPoints.end(), 0);
-  std::sort(this->SortedPoints.begin(), this->SortedPoints.end(),
-    [&](Id a, Id b)
-    {
-      return points[a] != points[b]          ? points[a] < points[b]
-        : this->IsUsed[a] != this->IsUsed[b] ? this->IsUsed[a] > this->IsUsed[b]
-                                             : a < b;
-    });
+  const auto isLess = [&](Id a, Id b)
+  {
+    return points[a] != points[b]          ? points[a] < points[b]
+      : this->IsUsed[a] != this->IsUsed[b] ? this->IsUsed[a] > this->IsUsed[b]
+                                           : a < b;
+  };
+  if (!ParallelSort(this->SortedPoints, this->NumberOfThreads, context, "Checking points", isLess))
+  {
+    return false;
+  }
   for (std::size_t i = 1; i < this->SortedPoints.size(); ++i)
   {
     const Id point = this->SortedPoints[i];
@@ -240,6 +232,7 @@ void Checker::CheckPoints()
       ++this->Report.CoincidentPoints;
     }
   }
+  return true;
 }
 
 void Checker::CollectRegions()
@@ -285,54 +278,70 @@ void Checker::AddExample(Id tetrahedron)
 bool Checker::CheckTetrahedra(const ExecutionContext& context)
 {
   const std::size_t count = this->Mesh.Tetrahedra.size();
-  this->Orientations.resize(count);
-  double smallest = this->Report.SmallestDihedralAngle;
-  double largest = this->Report.LargestDihedralAngle;
-  for (std::size_t i = 0; i < count; ++i)
+  const ParallelLoopOptions options{ this->NumberOfThreads, ContinueInterval };
+  struct Angles
   {
-    if (i % ContinueInterval == 0 &&
-      !context.Continue(static_cast<double>(i) / count, "Checking tetrahedra"))
+    double Smallest = 180.0;
+    double Largest = 0.0;
+  };
+  std::vector<Angles> blocks(GetNumberOfBlocks(count, options));
+  this->Orientations.resize(count);
+  std::vector<long double> volumes(count);
+  const auto check = [&](std::size_t first, std::size_t last, std::size_t block)
+  {
+    for (std::size_t i = first; i < last; ++i)
     {
-      return false;
-    }
-    const Id tetrahedron = static_cast<Id>(i);
-    const std::array<Vec3, 4> p{ this->GetPoint(tetrahedron, 0), this->GetPoint(tetrahedron, 1),
-      this->GetPoint(tetrahedron, 2), this->GetPoint(tetrahedron, 3) };
-    const int orientation = Orientation(p[0], p[1], p[2], p[3]);
-    this->Orientations[i] = static_cast<signed char>(orientation);
-    if (orientation <= 0)
-    {
-      ++(orientation < 0 ? this->Report.InvertedTetrahedra : this->Report.FlatTetrahedra);
-      this->AddExample(tetrahedron);
-    }
-    const long double determinant = GetSixVolumes(p[0], p[1], p[2], p[3]);
-    Region& region = *this->FindRegion(this->Mesh.Regions[i]);
-    ++region.Tetrahedra;
-    region.Volume.Add(determinant / 6.0L);
+      const Id tetrahedron = static_cast<Id>(i);
+      const std::array<Vec3, 4> p{ this->GetPoint(tetrahedron, 0), this->GetPoint(tetrahedron, 1),
+        this->GetPoint(tetrahedron, 2), this->GetPoint(tetrahedron, 3) };
+      this->Orientations[i] = static_cast<signed char>(Orientation(p[0], p[1], p[2], p[3]));
+      const long double determinant = GetSixVolumes(p[0], p[1], p[2], p[3]);
+      volumes[i] = determinant / 6.0L;
 
-    std::array<Vec3, 4> normals;
-    for (int facet = 0; facet < 4; ++facet)
-    {
-      const int* ids = FacetVertices[facet];
-      normals[facet] = Cross(p[ids[1]] - p[ids[0]], p[ids[2]] - p[ids[0]]);
-    }
-    for (int j = 0; j < 4; ++j)
-    {
-      for (int k = j + 1; k < 4; ++k)
+      std::array<Vec3, 4> normals;
+      for (int facet = 0; facet < 4; ++facet)
       {
-        // Facets j and k meet in the edge of the other two vertices; n x m is the edge times the
-        // determinant.
-        const int first = j == 0 ? (k == 1 ? 2 : 1) : 0;
-        const double edge = Distance(p[first], p[6 - j - k - first]);
-        const double angle = std::atan2(
-          edge * static_cast<double>(std::abs(determinant)), -Dot(normals[j], normals[k]));
-        smallest = std::min(smallest, angle * DegreesPerRadian);
-        largest = std::max(largest, angle * DegreesPerRadian);
+        const int* ids = FacetVertices[facet];
+        normals[facet] = Cross(p[ids[1]] - p[ids[0]], p[ids[2]] - p[ids[0]]);
+      }
+      for (int j = 0; j < 4; ++j)
+      {
+        for (int k = j + 1; k < 4; ++k)
+        {
+          // Facets j and k meet in the edge of the other two vertices; n x m is the edge times the
+          // determinant.
+          const int other = j == 0 ? (k == 1 ? 2 : 1) : 0;
+          const double edge = Distance(p[other], p[6 - j - k - other]);
+          const double angle = DegreesPerRadian *
+            std::atan2(
+              edge * static_cast<double>(std::abs(determinant)), -Dot(normals[j], normals[k]));
+          blocks[block].Smallest = std::min(blocks[block].Smallest, angle);
+          blocks[block].Largest = std::max(blocks[block].Largest, angle);
+        }
       }
     }
+  };
+  if (!ParallelLoop(count, options, context, "Checking tetrahedra", check))
+  {
+    return false;
   }
-  this->Report.SmallestDihedralAngle = smallest;
-  this->Report.LargestDihedralAngle = largest;
+  for (const Angles& angles : blocks)
+  {
+    this->Report.SmallestDihedralAngle =
+      std::min(this->Report.SmallestDihedralAngle, angles.Smallest);
+    this->Report.LargestDihedralAngle = std::max(this->Report.LargestDihedralAngle, angles.Largest);
+  }
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    if (this->Orientations[i] <= 0)
+    {
+      ++(this->Orientations[i] < 0 ? this->Report.InvertedTetrahedra : this->Report.FlatTetrahedra);
+      this->AddExample(static_cast<Id>(i));
+    }
+    Region& region = *this->FindRegion(this->Mesh.Regions[i]);
+    ++region.Tetrahedra;
+    region.Volume.Add(volumes[i]);
+  }
   return true;
 }
 
@@ -349,6 +358,26 @@ Id Checker::FindMeshPoint(Id boundaryPoint) const
   const auto found = std::lower_bound(this->SortedPoints.begin(), this->SortedPoints.end(),
     position, [&](Id point, const Vec3& value) { return points[point] < value; });
   return found != this->SortedPoints.end() && points[*found] == position ? *found : NoId;
+}
+
+/** Sorted. */
+bool Checker::CollectFacets(const ExecutionContext& context, RawVector<FacetRecord>& facets) const
+{
+  facets.resize(4 * this->Mesh.Tetrahedra.size());
+  const auto collect = [&](std::size_t begin, std::size_t end, std::size_t)
+  {
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      FacetRecord facet{ GetFacet(this->Mesh.Tetrahedra[i / 4], static_cast<int>(i % 4)),
+        static_cast<Id>(i), true };
+      facet.IsEven = SortPoints(facet.Points);
+      facets[i] = facet;
+    }
+  };
+  return ParallelLoop(facets.size(), { this->NumberOfThreads, ContinueInterval },
+           context.Part(0.0, 0.2), FacetActivity, collect) &&
+    ParallelSort(facets, this->NumberOfThreads, context.Part(0.2, 1.0), FacetActivity,
+      [](const FacetRecord& a, const FacetRecord& b) { return a < b; });
 }
 
 std::vector<FacetRecord> Checker::CollectBoundary()
@@ -429,7 +458,12 @@ void Checker::CheckBoundaryTriangle(const FacetRecord& triangle, const RegionPai
 
 bool Checker::CheckFacets(const ExecutionContext& context)
 {
-  const std::vector<FacetRecord> facets = CollectFacets(this->Mesh);
+  RawVector<FacetRecord> facets;
+  if (!this->CollectFacets(context.Part(0.0, 0.7), facets))
+  {
+    return false;
+  }
+  const ExecutionContext rest = context.Part(0.7, 1.0);
   std::vector<FacetRecord> triangles;
   if (this->Boundary != nullptr)
   {
@@ -458,7 +492,7 @@ bool Checker::CheckFacets(const ExecutionContext& context)
     if (done >= nextContinue)
     {
       nextContinue = done + ContinueInterval;
-      if (!context.Continue(static_cast<double>(done) / facets.size(), "Checking facets"))
+      if (!rest.Continue(static_cast<double>(done) / facets.size(), FacetActivity))
       {
         return false;
       }
@@ -532,24 +566,28 @@ void Checker::FinishVolumes()
 bool Checker::CheckSpheres(const SphereCriteria& criteria, const ExecutionContext& context)
 {
   const std::size_t count = this->Mesh.Tetrahedra.size();
+  std::vector<char> isDelaunay(count, 1);
+  const auto check = [&](std::size_t begin, std::size_t end, std::size_t)
+  {
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      // An inverted tetrahedron has a circumsphere too.
+      TetrahedronIds ids = this->Mesh.Tetrahedra[i];
+      if (this->Orientations[i] < 0)
+      {
+        std::swap(ids[0], ids[1]);
+      }
+      isDelaunay[i] = this->Orientations[i] == 0 || criteria.IsDelaunay(ids);
+    }
+  };
+  if (!ParallelLoop(count, { this->NumberOfThreads, ContinueInterval }, context,
+        "Checking circumspheres", check))
+  {
+    return false;
+  }
   for (std::size_t i = 0; i < count; ++i)
   {
-    if (i % ContinueInterval == 0 &&
-      !context.Continue(static_cast<double>(i) / count, "Checking circumspheres"))
-    {
-      return false;
-    }
-    if (this->Orientations[i] == 0)
-    {
-      continue;
-    }
-    // An inverted tetrahedron has a circumsphere too.
-    TetrahedronIds ids = this->Mesh.Tetrahedra[i];
-    if (this->Orientations[i] < 0)
-    {
-      std::swap(ids[0], ids[1]);
-    }
-    if (!criteria.IsDelaunay(ids))
+    if (!isDelaunay[i])
     {
       ++this->Report.NonDelaunayTetrahedra;
       this->AddExample(static_cast<Id>(i));
@@ -561,38 +599,35 @@ bool Checker::CheckSpheres(const SphereCriteria& criteria, const ExecutionContex
 bool Checker::CheckBoundarySpheres(const SphereCriteria& criteria, const ExecutionContext& context)
 {
   std::vector<EdgeIds> edges;
-  for (std::size_t i = 0; i < this->BorderFacets.size(); ++i)
+  for (const TriangleIds& ids : this->BorderFacets)
   {
-    if (i % ContinueInterval == 0 &&
-      !context.Continue(0.5 * i / this->BorderFacets.size(), "Checking boundary triangles"))
-    {
-      return false;
-    }
-    const TriangleIds& ids = this->BorderFacets[i];
     edges.push_back({ ids[0], ids[1] });
     edges.push_back({ ids[1], ids[2] });
     edges.push_back({ ids[0], ids[2] });
-    // A degenerate triangle has no sphere; it shows as flat tetrahedra.
-    if (!criteria.HasEmptySmallestSphere(ids))
-    {
-      ++this->Report.SmallestSphereViolations;
-    }
   }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  for (std::size_t i = 0; i < edges.size(); ++i)
+  const auto countFilled =
+    [&](const auto& simplices, const ExecutionContext& part, const char* activity, Id& result)
   {
-    if (i % ContinueInterval == 0 &&
-      !context.Continue(0.5 + 0.5 * i / edges.size(), "Checking boundary edges"))
-    {
-      return false;
-    }
-    if (!criteria.HasEmptySmallestSphere(edges[i]))
-    {
-      ++this->Report.EdgeSphereViolations;
-    }
-  }
-  return true;
+    std::atomic<Id> filled{ 0 };
+    const bool isDone =
+      ParallelLoop(simplices.size(), { this->NumberOfThreads, ContinueInterval }, part, activity,
+        [&](std::size_t begin, std::size_t end, std::size_t)
+        {
+          for (std::size_t i = begin; i < end; ++i)
+          {
+            filled += criteria.HasEmptySmallestSphere(simplices[i]) ? 0 : 1;
+          }
+        });
+    result = filled;
+    return isDone;
+  };
+  // A degenerate triangle has no sphere; it shows as flat tetrahedra.
+  return countFilled(this->BorderFacets, context.Part(0.0, 0.5), "Checking boundary triangles",
+           this->Report.SmallestSphereViolations) &&
+    countFilled(
+      edges, context.Part(0.5, 1.0), "Checking boundary edges", this->Report.EdgeSphereViolations);
 }
 
 /** "3 name" with the name's plural where needed. */
@@ -729,7 +764,7 @@ Status CheckMeshInput(const TetMesh& mesh, const TriangleMesh* boundary)
 }
 
 Status CheckTetMesh(const TetMesh& mesh, const TriangleMesh* boundary,
-  const ExecutionContext& context, MeshCheckReport& report)
+  const ExecutionContext& context, MeshCheckReport& report, int numberOfThreads)
 {
   report = {};
   const Status status = CheckMeshInput(mesh, boundary);
@@ -738,7 +773,7 @@ Status CheckTetMesh(const TetMesh& mesh, const TriangleMesh* boundary,
     return Status::InvalidInput(
       "The mesh needs four neighbours for each tetrahedron: BuildNeighbors() makes them.");
   }
-  return status.IsOk() ? Checker(mesh, boundary, report).Run(context) : status;
+  return status.IsOk() ? Checker(mesh, boundary, numberOfThreads, report).Run(context) : status;
 }
 
 Status BuildNeighbors(TetMesh& mesh, int numberOfThreads)

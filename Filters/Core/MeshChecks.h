@@ -99,9 +99,12 @@ struct MeshCheckReport
  */
 Status CheckMeshInput(const TetMesh& mesh, const TriangleMesh* boundary);
 
-/** boundary may be null: then boundary and volumes are not compared. */
+/**
+ * boundary may be null: then boundary and volumes are not compared. Threads: at least 1; the report
+ * does not depend on it.
+ */
 Status CheckTetMesh(const TetMesh& mesh, const TriangleMesh* boundary,
-  const ExecutionContext& context, MeshCheckReport& report);
+  const ExecutionContext& context, MeshCheckReport& report, int numberOfThreads = 1);
 
 /**
  * The invariants of TetMesh.h, one tetrahedron by itself: InvalidInput names those that are inverted,

@@ -255,15 +255,16 @@ cdm::Status Finish(const Run& run, vtkUnstructuredGrid* grid, vtkPolyData* surfa
     return status;
   }
   const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(run.Filter).Part(0.95, 1.0);
+  const int threads = vtkCoreBridge::GetNumberOfThreads();
   if (remover->GetNumberOfPeeledTetrahedra() > 0)
   {
     cdm::MeshCheckReport before;
-    status = cdm::CheckTetMesh(mesh, &boundary, context.Part(0.0, 0.5), before);
+    status = cdm::CheckTetMesh(mesh, &boundary, context.Part(0.0, 0.5), before, threads);
     const double allowed = GetPeeledVolumeRatio(boundary, before, remover->GetFlatnessRatio());
     boundary = UpdateBoundary(mesh, boundary);
     if (status.IsOk())
     {
-      status = cdm::CheckTetMesh(mesh, &boundary, context.Part(0.5, 1.0), report);
+      status = cdm::CheckTetMesh(mesh, &boundary, context.Part(0.5, 1.0), report, threads);
     }
     // The new facets are the mesh's own: only those before tell whether more is missing.
     if (before.LargestVolumeError > allowed)
@@ -277,7 +278,7 @@ cdm::Status Finish(const Run& run, vtkUnstructuredGrid* grid, vtkPolyData* surfa
   }
   else
   {
-    status = cdm::CheckTetMesh(mesh, &boundary, context, report);
+    status = cdm::CheckTetMesh(mesh, &boundary, context, report, threads);
     boundaryOutput->ShallowCopy(surface);
   }
   boundaryOutput->GetCellData()->RemoveArray(vtkCoreBridge::InputCellName);

@@ -519,6 +519,49 @@ void CompareWithAllPoints(const std::vector<Vec3>& points, const TetrahedronIds&
 }
 } // namespace
 
+TEST(MeshChecks, SameForAnyNumberOfThreads)
+{
+  TetMesh mesh = testing_core::MakeHullMesh(testing_core::MakeRandomPoints(20000, 7));
+  ASSERT_TRUE(BuildNeighbors(mesh).IsOk());
+  for (std::size_t i = 0; i < mesh.Tetrahedra.size(); ++i)
+  {
+    mesh.Regions[i] = static_cast<Id>(3.0 * mesh.Points[mesh.Tetrahedra[i][0]].X);
+  }
+  // Faults of each kind, far apart.
+  for (std::size_t i = 100; i < mesh.Tetrahedra.size(); i += 10000)
+  {
+    std::swap(mesh.Tetrahedra[i][0], mesh.Tetrahedra[i][1]);
+    mesh.Neighbors[i + 50][2] = NoId;
+    mesh.Points[i / 10] = mesh.Points[i / 10 + 1];
+  }
+  TriangleMesh boundary;
+  boundary.Points = mesh.Points;
+  boundary.Triangles = { { 0, 1, 2 } };
+  boundary.Labels = { { 0, 1 } };
+  MeshCheckReport one;
+  ASSERT_TRUE(CheckTetMesh(mesh, &boundary, {}, one).IsOk());
+  EXPECT_GT(one.InvertedTetrahedra, 0);
+  EXPECT_GT(one.CoincidentPoints, 0);
+  EXPECT_GT(one.NonDelaunayTetrahedra, 0);
+  for (const int threads : { 2, 3, 8 })
+  {
+    MeshCheckReport other;
+    ASSERT_TRUE(CheckTetMesh(mesh, &boundary, {}, other, threads).IsOk());
+    EXPECT_EQ(one.GetSummary(), other.GetSummary());
+    EXPECT_EQ(one.Examples, other.Examples);
+    EXPECT_EQ(one.WrongNeighbors, other.WrongNeighbors);
+    EXPECT_EQ(one.CoincidentPoints, other.CoincidentPoints);
+    EXPECT_EQ(one.SmallestSphereViolations, other.SmallestSphereViolations);
+    EXPECT_EQ(one.EdgeSphereViolations, other.EdgeSphereViolations);
+    EXPECT_EQ(one.SmallestDihedralAngle, other.SmallestDihedralAngle);
+    ASSERT_EQ(one.Regions.size(), other.Regions.size());
+    for (std::size_t r = 0; r < one.Regions.size(); ++r)
+    {
+      EXPECT_EQ(one.Regions[r].Volume, other.Regions[r].Volume);
+    }
+  }
+}
+
 TEST(EmptySphereSearch, FindsWhatTheExactPredicatesFind)
 {
   std::mt19937 random(7);
