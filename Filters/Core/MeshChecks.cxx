@@ -824,31 +824,43 @@ Status BuildNeighbors(TetMesh& mesh, int numberOfThreads)
   return {};
 }
 
-Status CheckMeshInvariants(const TetMesh& mesh)
+Status CheckMeshInvariants(const TetMesh& mesh, int numberOfThreads)
 {
-  if (mesh.Regions.size() != mesh.Tetrahedra.size() ||
-    mesh.Neighbors.size() != mesh.Tetrahedra.size())
+  const std::size_t count = mesh.Tetrahedra.size();
+  if (mesh.Regions.size() != count || mesh.Neighbors.size() != count)
   {
     return Status::InvalidInput("The mesh needs one region and four neighbors for each "
                                 "tetrahedron.");
   }
-  std::vector<Id> wrong;
-  for (Id tetrahedron = 0; tetrahedron < static_cast<Id>(mesh.Tetrahedra.size()); ++tetrahedron)
+  const auto isRight = [&mesh](Id tetrahedron)
   {
     const TetrahedronIds& ids = mesh.Tetrahedra[tetrahedron];
-    const bool isInRange = std::all_of(ids.begin(), ids.end(),
-      [&](Id point)
-      {
-        return point >= 0 && point < static_cast<Id>(mesh.Points.size()) &&
-          IsFinite(mesh.Points[point]);
-      });
-    if (!isInRange ||
-      Orientation(
-        mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]], mesh.Points[ids[3]]) <= 0 ||
-      !HasRightNeighbors(mesh, tetrahedron))
+    const std::vector<Vec3>& points = mesh.Points;
+    return std::all_of(ids.begin(), ids.end(),
+             [&](Id point) {
+               return point >= 0 && point < static_cast<Id>(points.size()) &&
+                 IsFinite(points[point]);
+             }) &&
+      Orientation(points[ids[0]], points[ids[1]], points[ids[2]], points[ids[3]]) > 0 &&
+      HasRightNeighbors(mesh, tetrahedron);
+  };
+  const ParallelLoopOptions options{ numberOfThreads };
+  std::vector<std::vector<Id>> blocks(GetNumberOfBlocks(count, options));
+  ParallelLoop(count, options, {}, "",
+    [&](std::size_t begin, std::size_t end, std::size_t block)
     {
-      wrong.push_back(tetrahedron);
-    }
+      for (std::size_t t = begin; t < end; ++t)
+      {
+        if (!isRight(static_cast<Id>(t)))
+        {
+          blocks[block].push_back(static_cast<Id>(t));
+        }
+      }
+    });
+  std::vector<Id> wrong;
+  for (const std::vector<Id>& block : blocks)
+  {
+    wrong.insert(wrong.end(), block.begin(), block.end());
   }
   return wrong.empty() ? Status{}
                        : Status::InvalidInput(std::to_string(wrong.size()) +

@@ -110,7 +110,7 @@ Status CheckTetMesh(const TetMesh& mesh, const TriangleMesh* boundary,
  * The invariants of TetMesh.h, one tetrahedron by itself: InvalidInput names those that are inverted,
  * flat, or have wrong points or neighbors. What stages ask for that change a mesh.
  */
-Status CheckMeshInvariants(const TetMesh& mesh);
+Status CheckMeshInvariants(const TetMesh& mesh, int numberOfThreads = 1);
 
 /**
  * Neighbors of tetrahedra from their vertices alone; for meshes that come from outside. Threads: 0:

@@ -4,6 +4,7 @@
 #include "Measures.h"
 #include "MeshBoundary.h"
 #include "MeshChecks.h"
+#include "ParallelLoop.h"
 #include "PlaceSearch.h"
 #include "Predicates.h"
 #include "SphereCriteria.h"
@@ -957,12 +958,16 @@ bool Remover::PeelAndFlip(const ExecutionContext& context)
 Status Remover::Run(const ExecutionContext& context)
 {
   const std::size_t count = this->Mesh.Tetrahedra.size();
-  this->Angles.reserve(count);
+  this->Angles.resize(count);
   this->Stamps.assign(count, 0);
-  for (const TetrahedronIds& ids : this->Mesh.Tetrahedra)
-  {
-    this->Angles.push_back(this->MeasureAngle(ids));
-  }
+  ParallelLoop(count, { this->Options.NumberOfThreads }, {}, "",
+    [this](std::size_t begin, std::size_t end, std::size_t)
+    {
+      for (std::size_t t = begin; t < end; ++t)
+      {
+        this->Angles[t] = this->MeasureAngle(this->Mesh.Tetrahedra[t]);
+      }
+    });
   this->Report.SmallestDihedralAngleBefore = this->MeasureSmallestAngle();
   const bool mayMove = !this->Options.IsFree.empty() && !this->Options.QualityBeforeDelaunay;
   const double share = mayMove ? 0.2 : 1.0;
@@ -980,7 +985,7 @@ Status RemoveSlivers(TetMesh& mesh, const SliverRemoverOptions& options,
   const ExecutionContext& context, SliverRemoverReport& report)
 {
   report = {};
-  const Status status = CheckMeshInvariants(mesh);
+  const Status status = CheckMeshInvariants(mesh, options.NumberOfThreads);
   if (status.IsOk() && !options.IsFree.empty() && options.IsFree.size() != mesh.Points.size())
   {
     return Status::InvalidInput(

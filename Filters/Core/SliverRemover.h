@@ -56,6 +56,8 @@ struct SliverRemoverOptions
   std::vector<char> IsFree;
   /** Flips and smoothing need not keep the mesh Delaunay. */
   bool QualityBeforeDelaunay = false;
+  /** Threads to look at the mesh with, at least 1; the result does not depend on it. */
+  int NumberOfThreads = 1;
 };
 
 struct SliverRemoverReport

@@ -110,7 +110,7 @@ Id Refiner::GetMaximumNewPoints(
 Status Refiner::CheckInput() const
 {
   const TetMesh& mesh = *this->Input.Mesh;
-  Status status = CheckMeshInvariants(mesh);
+  Status status = CheckMeshInvariants(mesh, this->Options.NumberOfThreads);
   if (!status.IsOk())
   {
     return status;

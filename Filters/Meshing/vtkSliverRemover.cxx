@@ -110,6 +110,7 @@ int vtkSliverRemover::RequestData(
         options.DihedralAngleTarget = this->DihedralAngleTarget;
         options.FlatnessRatio = this->FlatnessRatio;
         options.QualityBeforeDelaunay = this->QualityBeforeDelaunay;
+        options.NumberOfThreads = vtkCoreBridge::GetNumberOfThreads();
         step = vtkCoreBridge::ToFlags(input, vtkCoreBridge::FreePointName, options.IsFree);
         if (!step.IsOk())
         {
@@ -134,8 +135,12 @@ int vtkSliverRemover::RequestData(
   }
 
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector, 0);
-  vtkCoreBridge::CopyTuples(input->GetCellData(), FindSurvivors(before, mesh.Tetrahedra),
-    output->GetCellData(), { vtkCoreBridge::RegionIdName });
+  vtkCellData* const cellData = input->GetCellData();
+  if (cellData->GetNumberOfArrays() > (cellData->HasArray(vtkCoreBridge::RegionIdName) ? 1 : 0))
+  {
+    vtkCoreBridge::CopyTuples(cellData, FindSurvivors(before, mesh.Tetrahedra),
+      output->GetCellData(), { vtkCoreBridge::RegionIdName });
+  }
   vtkCoreBridge::FromTetMesh(mesh, output);
   if (report.MovedPoints == 0)
   {
