@@ -414,7 +414,7 @@ void AdvancingFront::FindFacetsOfSurface()
   }
 
   this->SideFacets.assign(2 * this->Surface.Triangles.size(), NoId);
-  for (std::size_t t = 0; t < this->All.Tetrahedra.size(); ++t)
+  const auto find = [&](std::size_t t)
   {
     const TetrahedronIds& tetrahedron = this->All.Tetrahedra[t];
     if (tetrahedron[0] == NoId ||
@@ -422,7 +422,7 @@ void AdvancingFront::FindFacetsOfSurface()
           isOnSurface[tetrahedron[3]] <
         3)
     {
-      continue;
+      return;
     }
     for (int i = 0; i < 4; ++i)
     {
@@ -449,7 +449,16 @@ void AdvancingFront::FindFacetsOfSurface()
         }
       }
     }
-  }
+  };
+  // A side of a triangle is a facet of one tetrahedron: threads never write to the same place.
+  this->ForAll(this->All.Tetrahedra.size(),
+    [&find](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t t = begin; t < end; ++t)
+      {
+        find(t);
+      }
+    });
 }
 
 /** True if one of the two tetrahedra at the triangle is a cell of four points. */

@@ -8,6 +8,7 @@
 #include "MatchingPoints.h"
 #include "Measures.h"
 #include "ParallelLoop.h"
+#include "ParallelSort.h"
 #include "PointSearches.h"
 #include "Predicates.h"
 #include "RefinableSurface.h"
@@ -307,7 +308,7 @@ void SurfaceRefiner::DropCloseMeshPoints()
   const std::vector<Vec3>& meshPoints = *this->Input.MeshPoints;
   const double clearance = this->Options.MeshPointClearanceRatio * this->Diagonal;
   // Copies of points and points that are no numbers are of no use either.
-  std::vector<char> isDropped(meshPoints.size(), 0);
+  std::vector<char> isDropped(meshPoints.size(), 1);
   std::vector<Id> order;
   for (std::size_t i = 0; i < meshPoints.size(); ++i)
   {
@@ -315,25 +316,31 @@ void SurfaceRefiner::DropCloseMeshPoints()
     {
       order.push_back(static_cast<Id>(i));
     }
-    isDropped[i] = !IsFinite(meshPoints[i]);
   }
-  std::sort(order.begin(), order.end(),
+  ParallelSort(order, this->Options.NumberOfThreads, {}, "",
     [&meshPoints](Id i, Id j)
     { return meshPoints[i] != meshPoints[j] ? meshPoints[i] < meshPoints[j] : i < j; });
-  PointOctree octree;
-  for (std::size_t i = 0; i < order.size(); ++i)
+  order.erase(std::unique(order.begin(), order.end(),
+                [&meshPoints](Id i, Id j) { return meshPoints[i] == meshPoints[j]; }),
+    order.end());
+  std::vector<Vec3> positions;
+  positions.reserve(order.size());
+  for (const Id i : order)
   {
-    isDropped[order[i]] = i > 0 && meshPoints[order[i]] == meshPoints[order[i - 1]];
-    if (!isDropped[order[i]])
-    {
-      octree.Insert(order[i], meshPoints[order[i]]);
-    }
+    positions.push_back(meshPoints[i]);
   }
+  PointOctree octree;
+  octree.Insert(positions);
+  std::vector<char> isClose(order.size(), 0);
   for (const TriangleIds& ids : this->Input.Surface->Triangles)
   {
     NearTriangleVisitor visitor(
-      this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]], clearance, isDropped);
+      this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]], clearance, isClose);
     octree.Visit(visitor);
+  }
+  for (std::size_t i = 0; i < order.size(); ++i)
+  {
+    isDropped[order[i]] = isClose[i];
   }
   for (std::size_t i = 0; i < meshPoints.size(); ++i)
   {
