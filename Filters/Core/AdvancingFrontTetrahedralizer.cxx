@@ -119,6 +119,19 @@ private:
     ParallelLoop(size, { numberOfThreads, part }, {}, "",
       [&work](std::size_t begin, std::size_t end, std::size_t) { work(begin, end); });
   }
+  /** work(i) for the numbers below size, on all threads. */
+  template <typename Work>
+  void ForEach(std::size_t size, const Work& work) const
+  {
+    this->ForAll(size,
+      [&work](std::size_t begin, std::size_t end)
+      {
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          work(i);
+        }
+      });
+  }
   /** Whether a condition holds for all numbers below size. */
   template <typename Condition>
   bool HoldForAll(std::size_t size, const Condition& condition) const
@@ -235,14 +248,8 @@ Status AdvancingFront::CollectPoints()
   std::iota(this->Order.begin(), this->Order.end(), 0);
   SortAlongHilbertCurve(this->Points, this->Order, std::max(1, this->Options.NumberOfThreads));
   this->VertexPoints.resize(this->Order.size());
-  this->ForAll(this->Order.size(),
-    [this](std::size_t begin, std::size_t end)
-    {
-      for (std::size_t vertex = begin; vertex < end; ++vertex)
-      {
-        this->VertexPoints[vertex] = this->Points[this->Order[vertex]];
-      }
-    });
+  this->ForEach(this->Order.size(),
+    [this](std::size_t i) { this->VertexPoints[i] = this->Points[this->Order[i]]; });
   const bool areDistinct = this->HoldForAll(this->Order.size(),
     [this](std::size_t i) { return i == 0 || this->VertexPoints[i] != this->VertexPoints[i - 1]; });
   if (areDistinct)
@@ -369,17 +376,13 @@ Status AdvancingFront::TetrahedralizePoints()
   }
   const Id infinite = static_cast<Id>(this->Order.size());
   this->States.resize(this->All.Tetrahedra.size());
-  this->ForAll(this->States.size(),
-    [this, infinite](std::size_t begin, std::size_t end)
+  this->ForEach(this->States.size(),
+    [this, infinite](std::size_t t)
     {
-      for (std::size_t t = begin; t < end; ++t)
-      {
-        const TetrahedronIds& ids = this->All.Tetrahedra[t];
-        const bool isBeyondHull = (ids[0] != NoId) &
-          ((ids[0] == infinite) | (ids[1] == infinite) | (ids[2] == infinite) |
-            (ids[3] == infinite));
-        this->States[t] = isBeyondHull ? BeyondHull : Unreached;
-      }
+      const TetrahedronIds& ids = this->All.Tetrahedra[t];
+      const bool isBeyondHull = (ids[0] != NoId) &
+        ((ids[0] == infinite) | (ids[1] == infinite) | (ids[2] == infinite) | (ids[3] == infinite));
+      this->States[t] = isBeyondHull ? BeyondHull : Unreached;
     });
   return status;
 }
@@ -451,14 +454,7 @@ void AdvancingFront::FindFacetsOfSurface()
     }
   };
   // A side of a triangle is a facet of one tetrahedron: threads never write to the same place.
-  this->ForAll(this->All.Tetrahedra.size(),
-    [&find](std::size_t begin, std::size_t end)
-    {
-      for (std::size_t t = begin; t < end; ++t)
-      {
-        find(t);
-      }
-    });
+  this->ForEach(this->All.Tetrahedra.size(), find);
 }
 
 /** True if one of the two tetrahedra at the triangle is a cell of four points. */
@@ -746,14 +742,7 @@ void AdvancingFront::CollectPointsUsed()
   if (!this->HasSurface() && !this->IsStopped)
   {
     // The mesh of the convex hull has all points.
-    this->ForAll(this->Order.size(),
-      [&](std::size_t begin, std::size_t end)
-      {
-        for (std::size_t i = begin; i < end; ++i)
-        {
-          places[this->Order[i]] = 0;
-        }
-      });
+    this->ForEach(this->Order.size(), [&](std::size_t i) { places[this->Order[i]] = 0; });
   }
   else
   {
@@ -789,14 +778,8 @@ void AdvancingFront::CollectPointsUsed()
     }
   }
   this->Points.resize(count);
-  this->ForAll(this->Order.size(),
-    [&](std::size_t begin, std::size_t end)
-    {
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        this->Order[i] = places[this->Order[i]];
-      }
-    });
+  this->ForEach(
+    this->Order.size(), [&](std::size_t i) { this->Order[i] = places[this->Order[i]]; });
 }
 
 /**

@@ -142,33 +142,18 @@ void Calculator::AddCouplings(const EdgeIds& edge, RecordIterator begin, RecordI
   std::sort(regions.begin(), regions.end());
   for (const Id region : regions)
   {
-    // Calls add(tetrahedron, edge) for each one of the region.
-    const auto forEach = [&](const auto& add)
-    {
-      for (auto record = begin; record != end; ++record)
-      {
-        if (this->Mesh.Regions[record->Simplex / 6] == region)
-        {
-          add(record->Simplex / 6, record->Simplex % 6);
-        }
-      }
-    };
     CouplingSum sum;
-    forEach([&](Id tetrahedron, int i) { sum.Add(this->Shares[tetrahedron].Get(i)); });
-    const auto getRounding = [&]
+    for (auto record = begin; record != end; ++record)
     {
-      double rounding = 0.0;
-      forEach(
-        [&](Id tetrahedron, int i)
-        {
-          const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
-          const std::vector<Vec3>& p = this->Mesh.Points;
-          rounding += GetCouplingRounding({ p[ids[0]], p[ids[1]], p[ids[2]], p[ids[3]] }, i);
-        });
-      return rounding;
-    };
+      const Id tetrahedron = record->Simplex / 6;
+      if (this->Mesh.Regions[tetrahedron] == region)
+      {
+        sum.Add(this->Shares[tetrahedron].Get(record->Simplex % 6));
+      }
+    }
     couplings.push_back({ edge, region, length * sum.Get(), length });
-    negative += sum.IsNegative(length, getRounding);
+    negative +=
+      sum.IsNegative(length, [&] { return GetCouplingRounding(this->Mesh, begin, end, region); });
   }
 }
 

@@ -905,11 +905,11 @@ Status Builder::InsertRound(std::vector<Id> left, int numberOfThreads)
       Worker& worker = this->Workers[w];
       worker.Own = { static_cast<Id>(w) * part + shift,
         std::min(part, this->Infinite - static_cast<Id>(w) * part), this->Infinite };
-      const auto last = std::partition_point(
+      const auto end = std::partition_point(
         first, left.end(), [&worker](Id vertex) { return worker.Own.Has(vertex); });
-      worker.Todo.assign(first, last);
+      worker.Todo.assign(first, end);
       worker.Postponed.clear();
-      first = last;
+      first = end;
     }
     for (std::size_t w = 0; w < count; ++w)
     {

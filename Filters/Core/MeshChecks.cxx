@@ -13,6 +13,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -376,8 +377,8 @@ bool Checker::CollectFacets(const ExecutionContext& context, RawVector<FacetReco
   };
   return ParallelLoop(facets.size(), { this->NumberOfThreads, ContinueInterval },
            context.Part(0.0, 0.2), FacetActivity, collect) &&
-    ParallelSort(facets, this->NumberOfThreads, context.Part(0.2, 1.0), FacetActivity,
-      [](const FacetRecord& a, const FacetRecord& b) { return a < b; });
+    ParallelSort(
+      facets, this->NumberOfThreads, context.Part(0.2, 1.0), FacetActivity, std::less<>());
 }
 
 std::vector<FacetRecord> Checker::CollectBoundary()

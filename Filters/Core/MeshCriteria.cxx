@@ -467,30 +467,18 @@ bool Evaluator::HasNegativeCotangentSum(RecordIterator begin, RecordIterator end
 bool Evaluator::HasNegativeCoupling(
   const EdgeIds& edge, RecordIterator begin, RecordIterator end, Id region) const
 {
-  // Calls add(corners, edge) for each tetrahedron that counts.
-  const auto forEach = [&](const auto& add)
-  {
-    for (auto record = begin; record != end; ++record)
-    {
-      const Id tetrahedron = record->Simplex / 6;
-      if (this->Mesh.Regions[tetrahedron] == region && this->Orientations[tetrahedron] > 0)
-      {
-        add(this->GetCorners(tetrahedron), record->Simplex % 6);
-      }
-    }
-  };
   CouplingSum sum;
-  forEach([&sum](const std::array<Vec3, 4>& p, int i)
-    { sum.Add(GetCouplings(p[0], p[1], p[2], p[3])[i]); });
-  const auto getRounding = [&forEach]
+  for (auto record = begin; record != end; ++record)
   {
-    double rounding = 0.0;
-    forEach(
-      [&rounding](const std::array<Vec3, 4>& p, int i) { rounding += GetCouplingRounding(p, i); });
-    return rounding;
-  };
-  return sum.IsNegative(
-    Distance(this->Mesh.Points[edge[0]], this->Mesh.Points[edge[1]]), getRounding);
+    const Id tetrahedron = record->Simplex / 6;
+    if (this->Mesh.Regions[tetrahedron] == region && this->Orientations[tetrahedron] > 0)
+    {
+      const auto [a, b, c, d] = this->GetCorners(tetrahedron);
+      sum.Add(GetCouplings(a, b, c, d)[record->Simplex % 6]);
+    }
+  }
+  return sum.IsNegative(Distance(this->Mesh.Points[edge[0]], this->Mesh.Points[edge[1]]),
+    [&] { return GetCouplingRounding(this->Mesh, begin, end, region); });
 }
 
 void Evaluator::EvaluateEdge(

@@ -162,7 +162,6 @@ double VolumeRefinement::GetAngle(Id tetrahedron) const
   return GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]);
 }
 
-/** Smallest angle that the hole's cone would have; gives up below what is required. */
 /** By rounding: its four points, which are all on the surface, would have no tetrahedron otherwise. */
 bool VolumeRefinement::IsFlat(Id tetrahedron) const
 {
@@ -171,6 +170,7 @@ bool VolumeRefinement::IsFlat(Id tetrahedron) const
     this->GetAngle(tetrahedron) < FlatAngle;
 }
 
+/** Smallest angle that the hole's cone would have; gives up below what is required. */
 double VolumeRefinement::RateHole(const Vec3& position, double required) const
 {
   double smallest = 180.0;

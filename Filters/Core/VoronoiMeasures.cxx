@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VoronoiMeasures.h"
 
-#include "TetMesh.h"
+#include "Predicates.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,6 +62,39 @@ struct Frame
   DoubleDouble3 NormalA;
   DoubleDouble SixVolumes;
 };
+
+/** How much rounding can change the coupling of an edge, as in TetrahedronEdges. */
+double GetRounding(const std::array<Vec3, 4>& corners, int edge)
+{
+  double largest = 0.0;
+  for (const Vec3& corner : corners)
+  {
+    largest = std::max({ largest, std::abs(corner.X), std::abs(corner.Y), std::abs(corner.Z) });
+  }
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const int* ends : TetrahedronEdges)
+  {
+    shortest = std::min(shortest, Distance(corners[ends[0]], corners[ends[1]]));
+  }
+  // Angles turn by as much as corners move, over the shortest edge; the circumcenter moves by as
+  // much, times the radius over that edge.
+  const double turn = 8.0 * std::numeric_limits<double>::epsilon() * largest / shortest;
+  const Vec3 center =
+    GetAccurateCircumcenter(corners[0], corners[1], corners[2], corners[3]) - corners[0];
+  const double radius = Norm(center);
+  double change = 0.0;
+  for (const int apex : TetrahedronEdges[5 - edge])
+  {
+    const Vec3 u = corners[TetrahedronEdges[edge][0]] - corners[apex];
+    const Vec3 v = corners[TetrahedronEdges[edge][1]] - corners[apex];
+    const Vec3 normal = Cross(u, v);
+    const double length = Norm(normal);
+    const double cotangent = Dot(u, v) / length;
+    const double distance = std::abs(Dot(center - (corners[apex] - corners[0]), normal)) / length;
+    change += distance * (1.0 + cotangent * cotangent) + radius * std::abs(cotangent);
+  }
+  return 0.25 * turn * change;
+}
 } // namespace
 
 std::array<DoubleDouble, 6> GetCouplings(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
@@ -94,38 +127,6 @@ std::array<DoubleDouble, 6> GetCouplings(const Vec3& a, const Vec3& b, const Vec
     Dot(v, w) * facetB + Dot(vu, wu) * facetA };      // cd: acd, bcd
 }
 
-double GetCouplingRounding(const std::array<Vec3, 4>& corners, int edge)
-{
-  double largest = 0.0;
-  for (const Vec3& corner : corners)
-  {
-    largest = std::max({ largest, std::abs(corner.X), std::abs(corner.Y), std::abs(corner.Z) });
-  }
-  double shortest = std::numeric_limits<double>::infinity();
-  for (const int* ends : TetrahedronEdges)
-  {
-    shortest = std::min(shortest, Distance(corners[ends[0]], corners[ends[1]]));
-  }
-  // Angles turn by as much as corners move, over the shortest edge; the circumcenter moves by as
-  // much, times the radius over that edge.
-  const double turn = 8.0 * std::numeric_limits<double>::epsilon() * largest / shortest;
-  const Vec3 center =
-    GetAccurateCircumcenter(corners[0], corners[1], corners[2], corners[3]) - corners[0];
-  const double radius = Norm(center);
-  double change = 0.0;
-  for (const int apex : TetrahedronEdges[5 - edge])
-  {
-    const Vec3 u = corners[TetrahedronEdges[edge][0]] - corners[apex];
-    const Vec3 v = corners[TetrahedronEdges[edge][1]] - corners[apex];
-    const Vec3 normal = Cross(u, v);
-    const double length = Norm(normal);
-    const double cotangent = Dot(u, v) / length;
-    const double distance = std::abs(Dot(center - (corners[apex] - corners[0]), normal)) / length;
-    change += distance * (1.0 + cotangent * cotangent) + radius * std::abs(cotangent);
-  }
-  return 0.25 * turn * change;
-}
-
 Vec3 GetAccurateCircumcenter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
   const Frame frame(a, b, c, d);
@@ -137,6 +138,26 @@ Vec3 GetAccurateCircumcenter(const Vec3& a, const Vec3& b, const Vec3& c, const 
     result[axis] = (center.X[axis] / twelveVolumes + DoubleDouble{ a[axis], 0.0 }).High;
   }
   return result;
+}
+
+double GetCouplingRounding(const TetMesh& mesh,
+  std::vector<SimplexIncidence::Record>::const_iterator begin,
+  std::vector<SimplexIncidence::Record>::const_iterator end, Id region)
+{
+  double rounding = 0.0;
+  for (auto record = begin; record != end; ++record)
+  {
+    const Id tetrahedron = record->Simplex / 6;
+    const TetrahedronIds& ids = mesh.Tetrahedra[tetrahedron];
+    const std::array<Vec3, 4> corners{ mesh.Points[ids[0]], mesh.Points[ids[1]],
+      mesh.Points[ids[2]], mesh.Points[ids[3]] };
+    if (mesh.Regions[tetrahedron] == region &&
+      Orientation(corners[0], corners[1], corners[2], corners[3]) > 0)
+    {
+      rounding += GetRounding(corners, record->Simplex % 6);
+    }
+  }
+  return rounding;
 }
 
 std::array<DoubleDouble, 3> GetVertexAreas(const Vec3& a, const Vec3& b, const Vec3& c)

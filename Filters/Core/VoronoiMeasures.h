@@ -18,10 +18,13 @@
 #define cdmVoronoiMeasures_h
 
 #include "DoubleDouble.h"
+#include "SimplexIncidence.h"
+#include "TetMesh.h"
 #include "Vec3.h"
 
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace cdm
 {
@@ -33,11 +36,13 @@ std::array<DoubleDouble, 6> GetCouplings(
   const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /**
- * How much rounding the coordinates of the corners can change the coupling of an edge (as in
- * TetrahedronEdges), to first order. Far from the origin that is more than any given part of the
- * lengths, and it grows with obtuse angles.
+ * How much rounding the coordinates can change the coupling of an edge in a region, to first order:
+ * the sum over the records of the edge. Far from the origin that is more than any given part of the
+ * lengths, and it grows with obtuse angles. Inverted and flat tetrahedra have no part in it.
  */
-double GetCouplingRounding(const std::array<Vec3, 4>& corners, int edge);
+double GetCouplingRounding(const TetMesh& mesh,
+  std::vector<SimplexIncidence::Record>::const_iterator begin,
+  std::vector<SimplexIncidence::Record>::const_iterator end, Id region);
 
 /** The sum of the couplings of an edge over the tetrahedra of a region. */
 class CouplingSum
@@ -52,7 +57,7 @@ public:
   /**
    * Negative by more than 1e-12 of the lengths involved, that of the edge among them, and by more
    * than rounding: what rounded coordinates leave of a coupling that is zero does not count.
-   * @param getRounding the sum of GetCouplingRounding(); asked for in case of need
+   * @param getRounding GetCouplingRounding(); asked for in case of need
    */
   template <typename GetRounding>
   bool IsNegative(double edgeLength, const GetRounding& getRounding) const

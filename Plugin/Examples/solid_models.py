@@ -187,15 +187,11 @@ def DrawSections(folder, mesh, colour):
 
 
 def MakeBoxes(refiner, front):
-    """The same with closed control volumes: criterion 3.2, and every bend is a structural edge."""
+    """The same again with closed control volumes: criterion 3.2, and every bend is a structural edge."""
     refiner.SetCriterionToSmallestSphereAndEdges()
     refiner.SetAccuracyAngle(0.0)
     front.Update()
-    mesh = gallery.Certify(front.GetOutputDataObject(0), front.GetOutputDataObject(1))
-    refiner.SetCriterionToDelaunay()
-    refiner.SetAccuracyAngle(ACCURACY)
-    front.Update()
-    return mesh
+    return gallery.Certify(front.GetOutputDataObject(0), front.GetOutputDataObject(1))
 
 
 def Run(kind, path, folder):
@@ -203,11 +199,8 @@ def Run(kind, path, folder):
     surface = Read(path, triangles)
     triangulator, refiner, front = MakeStages(surface)
     mesh = gallery.Certify(front.GetOutputDataObject(0), front.GetOutputDataObject(1))
-    boxes = MakeBoxes(refiner, front)
     wrong = gallery.Compare(kind, mesh, gallery.FAULTS[:3], thesis)
-    wrong += gallery.Compare(kind + ", control volumes", boxes, gallery.FAULTS)
     gallery.Save(mesh, os.path.join(folder, kind + ".vtu"))
-    gallery.Save(boxes, os.path.join(folder, kind + "_boxes.vtu"))
     DrawContours(folder, kind, triangulator.GetOutput(), colour)
     if kind == "hand":
         DrawFront(folder, front, colour)
@@ -216,6 +209,9 @@ def Run(kind, path, folder):
         DrawSections(folder, mesh, colour)
     else:
         DrawShrunk(folder, kind, mesh, colour)
+    boxes = MakeBoxes(refiner, front)
+    wrong += gallery.Compare(kind + ", control volumes", boxes, gallery.FAULTS)
+    gallery.Save(boxes, os.path.join(folder, kind + "_boxes.vtu"))
     return wrong
 
 

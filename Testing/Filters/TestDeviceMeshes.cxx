@@ -27,9 +27,7 @@ public:
   /** The mesh of the device turned by an angle, with the arrays of the certificate. */
   vtkUnstructuredGrid* MakeMesh(double angle)
   {
-    this->Source->SetStructure(GetParam());
-    this->Source->SetRotationAngle(angle);
-    this->Source->SetRotationAxis(1.0, 2.0, 3.0);
+    this->Turn(angle);
     this->Mesher->SetInputConnection(this->Source->GetOutputPort());
     this->Mesher->SetCriterionToSmallestSphereAndEdges();
     this->Mesher->SetMaximumEdgeLength(0.2);
@@ -48,9 +46,7 @@ public:
   /** Of the refined surface of the device turned by an angle. */
   vtkIdType CountSurfacePoints(double angle, int criterion)
   {
-    this->Source->SetStructure(GetParam());
-    this->Source->SetRotationAngle(angle);
-    this->Source->SetRotationAxis(1.0, 2.0, 3.0);
+    this->Turn(angle);
     vtkNew<vtkBoundaryTriangulator> triangulator;
     triangulator->SetInputConnection(this->Source->GetOutputPort());
     vtkNew<vtkDelaunaySurfaceRefiner> refiner;
@@ -75,6 +71,13 @@ public:
   }
 
 private:
+  void Turn(double angle)
+  {
+    this->Source->SetStructure(GetParam());
+    this->Source->SetRotationAngle(angle);
+    this->Source->SetRotationAxis(1.0, 2.0, 3.0);
+  }
+
   vtkNew<vtkTechnologyStructureSource> Source;
   vtkNew<vtkConformingDelaunayMesher> Mesher;
   vtkNew<vtkDelaunayMeshCriteria> Criteria;
