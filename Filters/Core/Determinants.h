@@ -7,6 +7,8 @@
  * binary floating-point type; the products of the permanents are bounded by those of the largest
  * differences, which costs a third of the permanents themselves.
  *
+ * Powers of points have the sign of the distance from the sphere: negative inside.
+ *
  * References: J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust
  * geometric predicates", 1997, doi:10.1007/PL00009321 ("A" stages of orient3d and insphere).
  */
@@ -109,6 +111,52 @@ inline Determinant<Real> GetInSphereDeterminant(
   // 24 products, each off by less than seventeen roundings.
   constexpr Real Unit = 24 * 17 * (std::numeric_limits<Real>::epsilon() / 2);
   return { value, Unit * x * y * z * std::max(GetLargest(pp, qq, rr), ss) };
+}
+
+/** Power of p of the smallest sphere through a and b. */
+template <typename Real>
+inline Determinant<Real> GetDiametralPower(const Vec3& a, const Vec3& b, const Vec3& p)
+{
+  const Real x = (Real(a.X) - p.X) * (Real(b.X) - p.X);
+  const Real y = (Real(a.Y) - p.Y) * (Real(b.Y) - p.Y);
+  const Real z = (Real(a.Z) - p.Z) * (Real(b.Z) - p.Z);
+  // Three products, each off by less than three roundings, and two sums.
+  constexpr Real Unit = 8 * (std::numeric_limits<Real>::epsilon() / 2);
+  return { x + y + z, Unit * (std::abs(x) + std::abs(y) + std::abs(z)) };
+}
+
+/**
+ * Power of p of the smallest sphere through a, b and c, times the square of twice their area. With a
+ * as origin and n = u x v: |n|^2 |p|^2 - p (n x (|v|^2 u - |u|^2 v)).
+ */
+template <typename Real>
+inline Determinant<Real> GetEquatorialPower(
+  const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p)
+{
+  const Real ux = Real(b.X) - a.X;
+  const Real uy = Real(b.Y) - a.Y;
+  const Real uz = Real(b.Z) - a.Z;
+  const Real vx = Real(c.X) - a.X;
+  const Real vy = Real(c.Y) - a.Y;
+  const Real vz = Real(c.Z) - a.Z;
+  const Real px = Real(p.X) - a.X;
+  const Real py = Real(p.Y) - a.Y;
+  const Real pz = Real(p.Z) - a.Z;
+  const Real uu = ux * ux + uy * uy + uz * uz;
+  const Real vv = vx * vx + vy * vy + vz * vz;
+  const Real pp = px * px + py * py + pz * pz;
+  const Real nx = uy * vz - uz * vy;
+  const Real ny = uz * vx - ux * vz;
+  const Real nz = ux * vy - uy * vx;
+  const Real tx = vv * ux - uu * vx;
+  const Real ty = vv * uy - uu * vy;
+  const Real tz = vv * uz - uu * vz;
+  const Real value = (nx * nx + ny * ny + nz * nz) * pp -
+    (px * (ny * tz - nz * ty) + py * (nz * tx - nx * tz) + pz * (nx * ty - ny * tx));
+  // Each of the two terms is off by less than 30 roundings of the products of lengths that bound it.
+  constexpr Real Unit = 64 * (std::numeric_limits<Real>::epsilon() / 2);
+  const Real bound = Unit * uu * vv * (pp + std::sqrt(pp) * (std::sqrt(uu) + std::sqrt(vv)));
+  return { value, bound };
 }
 } // namespace cdm
 

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <tuple>
 
 #ifdef __SIZEOF_INT128__
 #define CDM_HAS_WIDE_INTEGERS
@@ -25,9 +26,6 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 // (Shewchuk 1997, "A" stage of orient2d).
 constexpr double Epsilon = std::numeric_limits<double>::epsilon() / 2.0;
 constexpr double Orientation2Bound = (3.0 + 16.0 * Epsilon) * Epsilon;
-// Three differences, three products, two sums: each term is off by less than four roundings, the
-// sums by two more.
-constexpr double DotBound = 8.0 * Epsilon;
 
 Kernel::Point_3 ToPoint3(const Vec3& p)
 {
@@ -225,14 +223,54 @@ public:
                             : this->GetLongInSphere();
   }
 
+  /** Sign of the scalar product of the first two differences. */
+  int GetDotSign() const
+  {
+    const std::int64_t* const u = this->Values[0];
+    const std::int64_t* const v = this->Values[1];
+    return GetSign(Int128(u[0]) * v[0] + Int128(u[1]) * v[1] + Int128(u[2]) * v[2]);
+  }
+
+  /**
+   * Position of the third difference relative to the smallest sphere through the origin and the first
+   * two; false if neither the numbers are small nor the three in a plane.
+   */
+  bool GetInEquatorialSphere(int& sign)
+  {
+    if (this->Bits <= 19)
+    {
+      sign = -GetSign(this->GetEquatorialPower());
+      return true;
+    }
+    if (this->GetOrientation() != 0)
+    {
+      return false;
+    }
+    // In the plane all spheres through the triangle are the same: one through a point beside it.
+    int axis = 0;
+    int side = 0;
+    for (int i = 0; i < 3 && side == 0; ++i)
+    {
+      axis = i;
+      side = GetSign(this->GetMinor<Int128>(0, 1, (i + 1) % 3, (i + 2) % 3));
+    }
+    for (int i = 0; i < 3; ++i)
+    {
+      this->Values[3][i] = this->Values[2][i];
+      this->Values[2][i] = i == axis ? 1 : 0;
+    }
+    sign = this->GetInSphere() * side;
+    return true;
+  }
+
 private:
   static constexpr int MaximumBits = 61;
 
   template <typename Integer>
-  Integer GetMinor(int i, int j) const
+  Integer GetMinor(int i, int j, int x = 0, int y = 1) const
   {
-    return Integer(this->Values[i][0]) * this->Values[j][1] -
-      Integer(this->Values[j][0]) * this->Values[i][1];
+    return Integer(this->Values[i][x]) * this->Values[j][y] -
+      Integer(this->Values[j][x]) * this->Values[i][y];
   }
   template <typename Integer>
   Integer GetDeterminant(int i, int j, int k) const
@@ -254,6 +292,25 @@ private:
       this->GetDeterminant<Integer>(0, 2, 3) * this->GetSquare<Integer>(1) +
       this->GetDeterminant<Integer>(0, 1, 3) * this->GetSquare<Integer>(2) -
       this->GetDeterminant<Integer>(0, 1, 2) * this->GetSquare<Integer>(3));
+  }
+
+  /** As GetEquatorialPower() in floating point. */
+  Int128 GetEquatorialPower() const
+  {
+    const Int128 n[3] = { this->GetMinor<Int128>(0, 1, 1, 2), this->GetMinor<Int128>(0, 1, 2, 0),
+      this->GetMinor<Int128>(0, 1, 0, 1) };
+    const Int128 uu = this->GetSquare<Int128>(0);
+    const Int128 vv = this->GetSquare<Int128>(1);
+    Int128 power = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) * this->GetSquare<Int128>(2);
+    for (int i = 0; i < 3; ++i)
+    {
+      const int j = (i + 1) % 3;
+      const int k = (i + 2) % 3;
+      const Int128 cross = n[j] * (vv * this->Values[0][k] - uu * this->Values[1][k]) -
+        n[k] * (vv * this->Values[0][j] - uu * this->Values[1][j]);
+      power -= cross * this->Values[2][i];
+    }
+    return power;
   }
 
   int GetLongInSphere() const
@@ -327,16 +384,39 @@ bool AreCornersOfBox(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d,
   return true;
 }
 
-/** Sign of value if its error bound allows to tell it. */
-bool IsCertain(double value, double bound, int& sign)
+/**
+ * What the filter of InEquatorialSphere() cannot tell: most often points in the plane of the triangle,
+ * on its circumcircle. Their tests by multiple precision numbers were half of the time of refining
+ * surfaces made of rectangles.
+ */
+int ExactInEquatorialSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p)
 {
-  if (bound > SmallestCertainBound && (value > bound || -value > bound))
+  // The smallest sphere through a triangle with a right angle is that of its longest edge.
+  for (const auto& [corner, begin, end] :
+    { std::tie(a, b, c), std::tie(b, c, a), std::tie(c, a, b) })
   {
-    sign = value > 0.0 ? 1 : -1;
-    return true;
+    if (InDiametralSphere(begin, end, corner) == 0)
+    {
+      return InDiametralSphere(begin, end, p);
+    }
   }
-  return false;
+  const auto power = GetEquatorialPower<long double>(a, b, c, p);
+  if (power.IsCertain())
+  {
+    return -power.GetSign();
+  }
+#ifdef CDM_HAS_WIDE_INTEGERS
+  IntegerDifferences difference;
+  int sign = 0;
+  if (difference.Set({ &a, &b, &c, &p }) && difference.GetInEquatorialSphere(sign))
+  {
+    return sign;
+  }
+#endif
+  return static_cast<int>(
+    CGAL::side_of_bounded_sphere(ToPoint3(a), ToPoint3(b), ToPoint3(c), ToPoint3(p)));
 }
+
 } // namespace
 
 int Orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
@@ -394,42 +474,30 @@ int ExactInSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, co
 
 int InDiametralSphere(const Vec3& a, const Vec3& b, const Vec3& p)
 {
-  const Vec3 u = a - p;
-  const Vec3 v = b - p;
-  const double x = u.X * v.X;
-  const double y = u.Y * v.Y;
-  const double z = u.Z * v.Z;
-  int sign = 0;
-  if (IsCertain(-(x + y + z), DotBound * (std::abs(x) + std::abs(y) + std::abs(z)), sign))
+  const auto power = GetDiametralPower<double>(a, b, p);
+  if (power.IsCertain())
   {
-    return sign;
+    return -power.GetSign();
   }
+  if ((a.X == p.X || b.X == p.X) && (a.Y == p.Y || b.Y == p.Y) && (a.Z == p.Z || b.Z == p.Z))
+  {
+    // A right angle between edges along the axes.
+    return 0;
+  }
+#ifdef CDM_HAS_WIDE_INTEGERS
+  IntegerDifferences difference;
+  if (difference.Set({ &p, &a, &b }))
+  {
+    return -difference.GetDotSign();
+  }
+#endif
   return static_cast<int>(CGAL::side_of_bounded_sphere(ToPoint3(a), ToPoint3(b), ToPoint3(p)));
 }
 
 int InEquatorialSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p)
 {
-  // With a as origin, n = u x v: |n|^2 |x|^2 - x (n x (|v|^2 u - |u|^2 v)) is the power of x times
-  // |n|^2. Each of the two terms is off by less than 30 roundings of the products of lengths that
-  // bound it.
-  const Vec3 u = b - a;
-  const Vec3 v = c - a;
-  const Vec3 x = p - a;
-  const double uu = SquaredNorm(u);
-  const double vv = SquaredNorm(v);
-  const double xx = SquaredNorm(x);
-  const Vec3 n = Cross(u, v);
-  const Vec3 t = vv * u - uu * v;
-  const double power = SquaredNorm(n) * xx - Dot(x, Cross(n, t));
-  const double bound =
-    64.0 * Epsilon * uu * vv * (xx + std::sqrt(xx) * (std::sqrt(uu) + std::sqrt(vv)));
-  int sign = 0;
-  if (IsCertain(-power, bound, sign))
-  {
-    return sign;
-  }
-  return static_cast<int>(
-    CGAL::side_of_bounded_sphere(ToPoint3(a), ToPoint3(b), ToPoint3(c), ToPoint3(p)));
+  const auto power = GetEquatorialPower<double>(a, b, c, p);
+  return power.IsCertain() ? -power.GetSign() : ExactInEquatorialSphere(a, b, c, p);
 }
 
 bool AreCollinear(const Vec3& a, const Vec3& b, const Vec3& c)
@@ -443,10 +511,11 @@ int ProjectedOrientation(int axis, const Vec3& a, const Vec3& b, const Vec3& c)
   const int v = (axis + 2) % 3;
   const double left = (b[u] - a[u]) * (c[v] - a[v]);
   const double right = (b[v] - a[v]) * (c[u] - a[u]);
-  int sign = 0;
-  if (IsCertain(left - right, Orientation2Bound * (std::abs(left) + std::abs(right)), sign))
+  const Determinant<double> area{ left - right,
+    Orientation2Bound * (std::abs(left) + std::abs(right)) };
+  if (area.IsCertain())
   {
-    return sign;
+    return area.GetSign();
   }
   return static_cast<int>(CGAL::orientation(Project(axis, a), Project(axis, b), Project(axis, c)));
 }

@@ -49,6 +49,27 @@ int GetInSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, cons
   return sgn(sum);
 }
 
+int GetInDiametralSphere(const Vec3& a, const Vec3& b, const Vec3& p)
+{
+  return -sgn(GetDot(GetDifference(a, p), GetDifference(b, p)));
+}
+
+/** By the circumcenter, a rational point. */
+int GetInEquatorialSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p)
+{
+  const Vector u = GetDifference(b, a);
+  const Vector v = GetDifference(c, a);
+  const Vector x = GetDifference(p, a);
+  const Rational uu = GetDot(u, u);
+  const Rational vv = GetDot(v, v);
+  const Rational uv = GetDot(u, v);
+  const Rational unit = 2 * (uu * vv - uv * uv);
+  const Rational s = vv * (uu - uv) / unit;
+  const Rational t = uu * (vv - uv) / unit;
+  const Vector center{ s * u[0] + t * v[0], s * u[1] + t * v[1], s * u[2] + t * v[2] };
+  return sgn(2 * GetDot(x, center) - GetDot(x, x));
+}
+
 /** Sets of five points, most of which are degenerate or nearly so, of all sizes of numbers. */
 class NearlyDegeneratePoints
 {
@@ -119,6 +140,8 @@ TEST(Predicates, AreExact)
   SCOPED_TRACE("seed " + std::to_string(seed));
   NearlyDegeneratePoints sets(seed);
   int zeros = 0;
+  int equatorialZeros = 0;
+  int diametralZeros = 0;
   for (int i = 0; i < 50000; ++i)
   {
     const auto [a, b, c, d, e] = sets.Get();
@@ -129,8 +152,19 @@ TEST(Predicates, AreExact)
     ASSERT_EQ(InSphere(a, b, c, d, e), position) << i;
     ASSERT_EQ(ExactInSphere(a, b, c, d, e), position) << i;
     zeros += position == 0 ? 1 : 0;
+    const int diametral = GetInDiametralSphere(a, b, c);
+    ASSERT_EQ(InDiametralSphere(a, b, c), diametral) << i;
+    diametralZeros += diametral == 0 ? 1 : 0;
+    if (!AreCollinear(a, b, c))
+    {
+      const int equatorial = GetInEquatorialSphere(a, b, c, d);
+      ASSERT_EQ(InEquatorialSphere(a, b, c, d), equatorial) << i;
+      equatorialZeros += equatorial == 0 ? 1 : 0;
+    }
   }
   EXPECT_GT(zeros, 5000);
+  EXPECT_GT(diametralZeros, 1000);
+  EXPECT_GT(equatorialZeros, 1000);
 }
 
 TEST(Predicates, HaveTheSignsTheyAreDocumentedWith)
@@ -158,6 +192,11 @@ TEST(Predicates, CopeWithTheLimitsOfDoubles)
     EXPECT_EQ(Orientation(a, c, b, d), -1) << scale;
     EXPECT_EQ(InSphere(a, b, c, d, { scale, scale, scale }), 0) << scale;
     EXPECT_EQ(InSphere(a, b, c, d, { scale, scale, 2.0 * scale }), -1) << scale;
+    EXPECT_EQ(InDiametralSphere(b, c, a), 0) << scale;
+    EXPECT_EQ(InDiametralSphere(a, b, c), -1) << scale;
+    EXPECT_EQ(InEquatorialSphere(a, b, c, { scale, scale, 0.0 }), 0) << scale;
+    EXPECT_EQ(InEquatorialSphere(b, c, d, a), 1) << scale;
+    EXPECT_EQ(InEquatorialSphere(b, c, d, { scale, scale, scale }), -1) << scale;
   }
 }
 } // namespace
