@@ -135,6 +135,7 @@ private:
   double Deepest = Infinity;
   SurfaceDelaunayTest::Result& Found;
 };
+
 /**
  * Whether the sphere through a triangle and a point in front of it, of smallest lambda, holds a
  * point behind the triangle, inside or on it.
@@ -145,37 +146,43 @@ public:
   /** The sphere lies within a ball, of infinite radius if that is not certain. */
   OtherSideVisitor(const std::vector<Vec3>& points, const TriangleIds& triangle, Id front,
     const Vec3& center, double radius)
-    : A(points[triangle[0]]), B(points[triangle[1]]), C(points[triangle[2]]), D(points[front]),
-      Center(center), Radius(radius), Form(this->A, this->B, this->C, this->D)
+    : Triangle(triangle), A(points[triangle[0]]), B(points[triangle[1]]), C(points[triangle[2]]),
+      D(points[front]), Front(front), Center(center), SquaredRadius(radius * radius)
   {
     const Vec3 u = this->B - this->A;
     const Vec3 v = this->C - this->A;
     this->Normal = Cross(u, v);
     // Far more than rounding leaves of a distance from the plane, in units of the normal.
     this->Tolerance = 1e-13 * Norm(u) * Norm(v);
+    if (!this->IsBall())
+    {
+      this->Form.emplace(this->A, this->B, this->C, this->D);
+    }
   }
 
   double Order(const Box& box) const
   {
-    const bool mayHold = this->Radius < Infinity
-      ? box.GetSquaredDistance(this->Center) <= this->Radius * this->Radius
-      : this->Form.MayTouch(box.Low, box.High);
+    const bool mayHold = this->IsBall()
+      ? box.GetSquaredDistance(this->Center) <= this->SquaredRadius
+      : this->Form->MayTouch(box.Low, box.High);
     return !this->IsFound && mayHold && !this->IsInFront(box) ? 0.0 : Infinity;
   }
 
   Box GetReach() const
   {
-    return this->Radius < Infinity ? Box::MakeAround(this->Center, this->Radius)
-                                   : Box::MakeInfinite();
+    return this->IsBall() ? Box::MakeAround(this->Center, std::sqrt(this->SquaredRadius))
+                          : Box::MakeInfinite();
   }
 
-  void Visit(Id, const Vec3& q)
+  void Visit(Id id, const Vec3& q)
   {
-    if (this->IsFound)
+    if (this->IsFound || (this->IsBall() && SquaredNorm(q - this->Center) > this->SquaredRadius) ||
+      id == this->Triangle[0] || id == this->Triangle[1] || id == this->Triangle[2] ||
+      id == this->Front)
     {
       return;
     }
-    const int side = this->Form.GetSide(q);
+    const int side = this->IsBall() ? 0 : this->Form->GetSide(q);
     this->IsFound = side >= 0 && Orientation(this->A, this->B, this->C, q) < 0 &&
       (side > 0 || InSphere(this->A, this->B, this->C, this->D, q) >= 0);
   }
@@ -183,6 +190,8 @@ public:
   bool IsFound = false;
 
 private:
+  bool IsBall() const { return this->SquaredRadius < Infinity; }
+
   /** False if any point of the box may lie behind the triangle. */
   bool IsInFront(const Box& box) const
   {
@@ -197,15 +206,18 @@ private:
     return height > this->Tolerance * size;
   }
 
+  TriangleIds Triangle;
   Vec3 A;
   Vec3 B;
   Vec3 C;
   Vec3 D;
+  Id Front;
   Vec3 Center;
-  double Radius;
+  double SquaredRadius;
   Vec3 Normal;
   double Tolerance;
-  SphereForm Form;
+  /** The sphere in twice the working precision, where there is no ball. */
+  std::optional<SphereForm> Form;
 };
 } // namespace
 
