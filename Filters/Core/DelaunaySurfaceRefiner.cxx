@@ -4,16 +4,17 @@
 #include "BallIndex.h"
 #include "DuplicateTriangles.h"
 #include "IdLimits.h"
-#include "IdLists.h"
 #include "MatchingPoints.h"
 #include "Measures.h"
+#include "MeshPointClearance.h"
 #include "ParallelLoop.h"
-#include "ParallelSort.h"
+#include "PartnerPoints.h"
 #include "PointSearches.h"
 #include "Predicates.h"
 #include "RefinableSurface.h"
 #include "SpatialSort.h"
 #include "SurfaceDelaunayTest.h"
+#include "SurfaceIncidences.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,34 +43,10 @@ constexpr int LargestNumberOfAttempts = 20;
 /** Flips on curved facets may go in circles: so many are allowed for each triangle and new point. */
 constexpr std::int64_t FlipsPerTriangle = 50;
 
-/** New points keep this distance, as a ratio of the edge, from the ends of an edge they split. */
-constexpr double SmallestPiece = 0.05;
-/** A disturbing point this close to the plane of a triangle, in units of its circumradius, is
- * mirrored into the plane: thin layers get matching points instead of small triangles. */
-constexpr double ThinLayerRatio = 0.75;
-/** A disturbing point this close to an edge, in units of its length, is matched exactly. */
-constexpr double ThinGapRatio = 0.1;
-/** Disturbing points closer than this need no match near an end of the edge, in that unit, ... */
-constexpr double NeedleGapRatio = 1e-3;
-/** ... where the match lies within this part of the point's distance from the end. */
-constexpr double CloseEndRatio = 0.25;
-/** Another point on an edge, closer to the match than this part of the disturbing point's distance,
- * is matched instead. */
-constexpr double CloseMatchRatio = 0.5;
-/**
- * Lines and planes whose cosine is not above this are perpendicular: no point has a partner there.
- * Of turned devices rounding would make partners of them here and there, and a quarter more points.
- */
-constexpr double PerpendicularCosine = 1e-9;
+/** The square of a distance below this may be zero. */
+constexpr double SamePoint = 1e-150;
 /** Among the edges around so many triangles one is looked for that a new point would disturb. */
 constexpr std::size_t LargestCavity = 1000;
-
-/** Two facets in one number, in any order. */
-std::uint64_t GetFacetPair(Id a, Id b)
-{
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 |
-    static_cast<std::uint64_t>(std::max(a, b));
-}
 
 class SurfaceRefiner
 {
@@ -91,13 +68,9 @@ public:
 
 private:
   Status Prepare();
-  void DropCloseMeshPoints();
+  Status CheckSurface();
+  void AddMeshPoints();
   void CollectIncidences();
-  void CollectAxes();
-  void CollectFacetGeometry();
-  IdLists::Range GetFacets(Id point) const;
-  IdLists::Range GetEdges(Id point) const;
-  bool IsAcuteCorner(Id point);
   void Saturate();
   Status SplitRequested();
   Status Refine();
@@ -118,15 +91,8 @@ private:
   bool ResolveByEdge(Id t);
   bool ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMirrored);
   Id FindEncroachedSegment(Id t, const Vec3& position);
-  Vec3 MatchAcross(Id t, Id disturbing, const Vec3& position, double radius) const;
-  bool MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) const;
-  bool RotateAboutAxis(Id t, Id disturbing, Vec3& target) const;
-  bool RotateAboutCorner(Id t, Id disturbing, Vec3& target) const;
-  bool ProjectOntoFacet(Id t, Id disturbing, Vec3& target) const;
   bool SplitSegment(Id segment, Id disturbing);
   bool SplitLongestEdge(Id t);
-  Vec3 PlaceOnSegment(Id segment, Id disturbing);
-  bool PlacePartner(Id segment, Id disturbing, double& way, Vec3& along) const;
 
   bool CanFlip(Id use) const;
   bool ShouldFlip(Id use) const;
@@ -134,11 +100,12 @@ private:
   Id AddPoint(const Vec3& position, const PointParents& parents, Id facet, Id inputEdge);
   void Enqueue(Id t);
   void EnqueueEdge(Id segment);
-  double GetNearestDistance(const Vec3& position, Id except = NoId) const
+  /** Whether there is a point at the position or nearer than that. */
+  bool HasPointNear(const Vec3& position, double distance, Id except = NoId) const
   {
-    NearestPointVisitor visitor(position, except);
-    this->Octree.Visit(visitor);
-    return std::sqrt(visitor.SquaredDistance);
+    NearestPointVisitor visitor(position, except, std::max(distance, SamePoint));
+    this->Octree.Visit(visitor, visitor.GetReach());
+    return visitor.Nearest != NoId;
   }
   bool IsFull() const
   {
@@ -164,31 +131,14 @@ private:
   SurfaceDelaunayTest::Result Found;
   std::unique_ptr<RefinableSurface> Surface;
 
-  /** What follows is collected when the first triangle has to be refined. */
-  bool HasIncidences = false;
-  /** Facets at each point of the input, ascending. */
-  IdLists PointFacets;
-  /** Input edges at each point of the input. */
-  IdLists PointEdges;
-  /** Facets at each input edge, ascending. */
-  IdLists EdgeFacets;
-  /** For each new point the facet that it lies in, or the input edge that it lies on. */
-  std::vector<Id> NewPointFacets;
-  std::vector<Id> NewPointEdges;
-  /** Input edges that two facets share: the facets in one number, the smaller first, and the edge. */
-  std::vector<std::pair<std::uint64_t, Id>> Axes;
-  /** Unit normal of each plane facet; zero for a curved one, which has no one plane. */
-  std::vector<Vec3> FacetNormals;
+  /** Both are made when the first triangle has to be refined. */
+  std::unique_ptr<SurfaceIncidences> Incidences;
+  std::unique_ptr<PartnerPoints> Partners;
   /**
    * Empty, or marks triangles of the input in curved facets: points there come too close, or flips
    * have made two sheets the same.
    */
   std::vector<char> IsCrumpled;
-  /** Points of each facet at which structural edges end, ascending. */
-  IdLists FacetCorners;
-  /** Input points at which two structural edges meet at less than 90 degrees; -1: not known yet. */
-  std::vector<signed char> AcuteCorners;
-
   BallIndex Proofs;
   /** Triangles to be looked at, a heap by their order. */
   std::vector<std::pair<double, Id>> Queue;
@@ -209,7 +159,7 @@ private:
   std::int64_t FlipBudget = 0;
 };
 
-Status SurfaceRefiner::Prepare()
+Status SurfaceRefiner::CheckSurface()
 {
   const TriangleMesh& surface = *this->Input.Surface;
   if (surface.Triangles.empty())
@@ -222,23 +172,23 @@ Status SurfaceRefiner::Prepare()
   {
     return range;
   }
-  this->Points = surface.Points;
-  this->NumberOfSurfacePoints = static_cast<Id>(surface.Points.size());
-  for (Id i = 0; i < this->NumberOfSurfacePoints; ++i)
+  const std::vector<Vec3>& points = surface.Points;
+  for (std::size_t i = 0; i < points.size(); ++i)
   {
-    if (!IsFinite(this->Points[i]))
+    if (!IsFinite(points[i]))
     {
       return Status::InvalidInput(
-        "A point has a coordinate that is not a finite number; remove or repair it.", {}, { i });
+        "A point has a coordinate that is not a finite number; remove or repair it.", {},
+        { static_cast<Id>(i) });
     }
   }
-  std::vector<Id> order(this->Points.size());
+  std::vector<Id> order(points.size());
   std::iota(order.begin(), order.end(), 0);
-  SortAlongHilbertCurve(this->Points, order);
+  SortAlongHilbertCurve(points, order);
   std::vector<Id> coincident;
   for (std::size_t i = 1; i < order.size(); ++i)
   {
-    if (this->Points[order[i]] == this->Points[order[i - 1]])
+    if (points[order[i]] == points[order[i - 1]])
     {
       coincident.push_back(order[i - 1]);
       coincident.push_back(order[i]);
@@ -256,9 +206,9 @@ Status SurfaceRefiner::Prepare()
   for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
   {
     const TriangleIds& ids = surface.Triangles[t];
-    const Vec3& a = this->Points[ids[0]];
-    const Vec3& b = this->Points[ids[1]];
-    const Vec3& c = this->Points[ids[2]];
+    const Vec3& a = points[ids[0]];
+    const Vec3& b = points[ids[1]];
+    const Vec3& c = points[ids[2]];
     // Far above the error of the cross product, and of products below the range of doubles.
     const double certain = 1e-24 * SquaredNorm(b - a) * SquaredNorm(c - a);
     if (!(certain > 1e-280 && SquaredNorm(Cross(b - a, c - a)) > certain) && AreCollinear(a, b, c))
@@ -272,18 +222,48 @@ Status SurfaceRefiner::Prepare()
       "Triangles without area; clean the surface with vtkBoundaryTriangulator first.",
       std::move(degenerate));
   }
+  return Status();
+}
 
+/** The surface's points are in place: mesh points that keep clear of it follow. */
+void SurfaceRefiner::AddMeshPoints()
+{
+  if (this->Input.MeshPoints == nullptr || this->Input.MeshPoints->empty())
+  {
+    return;
+  }
+  const std::vector<Vec3>& meshPoints = *this->Input.MeshPoints;
+  this->Output.KeptMeshPoints = FindClearMeshPoints(*this->Input.Surface, meshPoints,
+    this->Options.MeshPointClearanceRatio * this->Diagonal, this->Options.NumberOfThreads);
+  for (const Id i : this->Output.KeptMeshPoints)
+  {
+    this->Points.push_back(meshPoints[i]);
+  }
+  this->Output.Report.DroppedMeshPoints =
+    static_cast<Id>(meshPoints.size() - this->Output.KeptMeshPoints.size());
+}
+
+Status SurfaceRefiner::Prepare()
+{
+  Status status = this->CheckSurface();
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  const TriangleMesh& surface = *this->Input.Surface;
+  this->Points = surface.Points;
+  this->NumberOfSurfacePoints = static_cast<Id>(surface.Points.size());
   this->Diagonal = GetBoundingBoxDiagonal(this->Points);
   this->Flatness = this->Options.StructuralEdges.FlatnessRatio * this->Diagonal;
   this->MinimumEdge = this->Options.MinimumEdgeRatio * this->Diagonal;
   StructuralEdgesOutput edges;
-  const Status status = ExtractStructuralEdges(
+  status = ExtractStructuralEdges(
     surface, this->Options.StructuralEdges, this->Context.Part(0.0, 0.05), edges);
   if (!status.IsOk())
   {
     return status;
   }
-  this->DropCloseMeshPoints();
+  this->AddMeshPoints();
   this->NumberOfGivenPoints = static_cast<Id>(this->Points.size());
   // Without a limit of the user's, one that only a runaway refinement reaches: sheets a hair apart.
   const bool isSizeWanted = this->Input.Sizing || this->Options.MaximumEdgeLength > 0.0 ||
@@ -299,233 +279,19 @@ Status SurfaceRefiner::Prepare()
   return Status();
 }
 
-void SurfaceRefiner::DropCloseMeshPoints()
-{
-  if (this->Input.MeshPoints == nullptr || this->Input.MeshPoints->empty())
-  {
-    return;
-  }
-  const std::vector<Vec3>& meshPoints = *this->Input.MeshPoints;
-  const double clearance = this->Options.MeshPointClearanceRatio * this->Diagonal;
-  // Copies of points and points that are no numbers are of no use either.
-  std::vector<char> isDropped(meshPoints.size(), 1);
-  std::vector<Id> order;
-  for (std::size_t i = 0; i < meshPoints.size(); ++i)
-  {
-    if (IsFinite(meshPoints[i]))
-    {
-      order.push_back(static_cast<Id>(i));
-    }
-  }
-  ParallelSort(order, this->Options.NumberOfThreads, {}, "",
-    [&meshPoints](Id i, Id j)
-    { return meshPoints[i] != meshPoints[j] ? meshPoints[i] < meshPoints[j] : i < j; });
-  order.erase(std::unique(order.begin(), order.end(),
-                [&meshPoints](Id i, Id j) { return meshPoints[i] == meshPoints[j]; }),
-    order.end());
-  std::vector<Vec3> positions;
-  positions.reserve(order.size());
-  for (const Id i : order)
-  {
-    positions.push_back(meshPoints[i]);
-  }
-  PointOctree octree;
-  octree.Insert(positions);
-  std::vector<char> isClose(order.size(), 0);
-  for (const TriangleIds& ids : this->Input.Surface->Triangles)
-  {
-    NearTriangleVisitor visitor(
-      this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]], clearance, isClose);
-    octree.Visit(visitor);
-  }
-  for (std::size_t i = 0; i < order.size(); ++i)
-  {
-    isDropped[order[i]] = isClose[i];
-  }
-  for (std::size_t i = 0; i < meshPoints.size(); ++i)
-  {
-    if (isDropped[i])
-    {
-      ++this->Output.Report.DroppedMeshPoints;
-    }
-    else
-    {
-      this->Output.KeptMeshPoints.push_back(static_cast<Id>(i));
-      this->Points.push_back(meshPoints[i]);
-    }
-  }
-}
-
 void SurfaceRefiner::CollectIncidences()
 {
-  if (this->HasIncidences)
+  if (this->Incidences)
   {
     return;
   }
-  this->HasIncidences = true;
-  std::vector<std::pair<Id, Id>> pairs;
-  pairs.reserve(3 * this->Surface->GetNumberOfTriangles());
-  for (Id t = 0; t < this->Surface->GetNumberOfTriangles(); ++t)
-  {
-    const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
-    for (Id point : triangle.Points)
-    {
-      pairs.emplace_back(point, triangle.Facet);
-    }
-  }
-  std::stable_sort(
-    pairs.begin(), pairs.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
-  this->PointFacets.Build(this->NumberOfSurfacePoints, pairs);
-
-  pairs.clear();
-  std::vector<std::pair<Id, Id>> edgeFacets;
-  for (Id s = 0; s < this->Surface->GetNumberOfSegments(); ++s)
-  {
-    const EdgeIds& edge = this->Surface->GetSegment(s).Points;
-    pairs.emplace_back(edge[0], s);
-    pairs.emplace_back(edge[1], s);
-    for (Id facet : this->Surface->GetFacets(s))
-    {
-      edgeFacets.emplace_back(s, facet);
-    }
-  }
-  this->PointEdges.Build(this->NumberOfSurfacePoints, pairs);
-  this->EdgeFacets.Build(this->Surface->GetNumberOfSegments(), edgeFacets);
-  this->AcuteCorners.assign(this->NumberOfSurfacePoints, -1);
-  this->CollectAxes();
-  this->CollectFacetGeometry();
-}
-
-/** Facets that a point lies on, ascending; none for a mesh point. */
-IdLists::Range SurfaceRefiner::GetFacets(Id point) const
-{
-  if (point < this->NumberOfSurfacePoints)
-  {
-    return this->PointFacets[point];
-  }
-  if (point < this->NumberOfGivenPoints)
-  {
-    return {};
-  }
-  const Id* const facet = &this->NewPointFacets[point - this->NumberOfGivenPoints];
-  return *facet != NoId ? IdLists::Range{ facet, facet + 1 }
-                        : this->EdgeFacets[this->NewPointEdges[point - this->NumberOfGivenPoints]];
-}
-
-/** Input edges that a point lies on. */
-IdLists::Range SurfaceRefiner::GetEdges(Id point) const
-{
-  if (point < this->NumberOfSurfacePoints)
-  {
-    return this->PointEdges[point];
-  }
-  if (point < this->NumberOfGivenPoints)
-  {
-    return {};
-  }
-  const Id* const edge = &this->NewPointEdges[point - this->NumberOfGivenPoints];
-  return { edge, edge + (*edge != NoId ? 1 : 0) };
-}
-
-void SurfaceRefiner::CollectAxes()
-{
-  for (Id edge = 0; edge < static_cast<Id>(this->Surface->GetInputEdges().size()); ++edge)
-  {
-    const IdLists::Range facets = this->EdgeFacets[edge];
-    for (const Id* i = facets.begin(); i != facets.end(); ++i)
-    {
-      for (const Id* j = i + 1; j != facets.end(); ++j)
-      {
-        this->Axes.emplace_back(GetFacetPair(*i, *j), edge);
-      }
-    }
-  }
-  std::sort(this->Axes.begin(), this->Axes.end());
-}
-
-bool SurfaceRefiner::IsAcuteCorner(Id point)
-{
-  if (point >= this->NumberOfSurfacePoints)
-  {
-    return false;
-  }
-  signed char& isAcute = this->AcuteCorners[point];
-  if (isAcute < 0)
-  {
-    isAcute = 0;
-    const IdLists::Range incident = this->PointEdges[point];
-    const auto getArm = [this, point](Id edge)
-    {
-      const EdgeIds& ends = this->Surface->GetInputEdges()[edge];
-      return this->Points[ends[0] == point ? ends[1] : ends[0]] - this->Points[point];
-    };
-    for (const Id* i = incident.begin(); i != incident.end() && isAcute == 0; ++i)
-    {
-      const Vec3 u = getArm(*i);
-      for (const Id* j = i + 1; j != incident.end() && isAcute == 0; ++j)
-      {
-        const Vec3 v = getArm(*j);
-        isAcute = Dot(u, v) > 1e-9 * Norm(u) * Norm(v) ? 1 : 0;
-      }
-    }
-  }
-  return isAcute != 0;
-}
-
-void SurfaceRefiner::CollectFacetGeometry()
-{
-  // The normal of the largest triangle of each facet is the most accurate one.
-  const Id count = this->Surface->GetNumberOfTriangles();
-  const auto getNormal = [this](Id t)
-  {
-    const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-    const Vec3& a = this->Points[ids[0]];
-    return Cross(this->Points[ids[1]] - a, this->Points[ids[2]] - a);
-  };
-  std::vector<std::pair<double, Id>> largest;
-  for (Id t = 0; t < count; ++t)
-  {
-    const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
-    const double size = Norm(getNormal(t));
-    largest.resize(
-      std::max(largest.size(), static_cast<std::size_t>(triangle.Facet) + 1), { 0.0, NoId });
-    largest[triangle.Facet] = std::max(largest[triangle.Facet], std::make_pair(size, t));
-  }
-  this->FacetNormals.resize(largest.size());
-  for (std::size_t facet = 0; facet < largest.size(); ++facet)
-  {
-    if (largest[facet].second != NoId)
-    {
-      this->FacetNormals[facet] = (1.0 / largest[facet].first) * getNormal(largest[facet].second);
-    }
-  }
-  for (Id t = 0; t<count&& this->Options.StructuralEdges.AccuracyAngle> 0.0; ++t)
-  {
-    const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
-    const Id model = largest[triangle.Facet].second;
-    for (Id p : triangle.Points)
-    {
-      const Vec3 arm = this->Points[p] - this->Points[this->Surface->GetTriangle(model).Points[0]];
-      if (std::abs(Dot(arm, this->FacetNormals[triangle.Facet])) > this->Flatness)
-      {
-        this->FacetNormals[triangle.Facet] = Vec3();
-        break;
-      }
-    }
-  }
-
-  std::vector<std::pair<Id, Id>> corners;
-  for (Id p = 0; p < this->NumberOfSurfacePoints; ++p)
-  {
-    if (!this->PointEdges[p].empty())
-    {
-      for (Id facet : this->PointFacets[p])
-      {
-        corners.emplace_back(facet, p);
-      }
-    }
-  }
-  this->FacetCorners.Build(static_cast<Id>(this->FacetNormals.size()), corners);
+  // Without an angle all facets are plane.
+  const double flatness =
+    this->Options.StructuralEdges.AccuracyAngle > 0.0 ? this->Flatness : Infinity;
+  this->Incidences = std::make_unique<SurfaceIncidences>(
+    *this->Surface, this->Points, this->NumberOfSurfacePoints, flatness);
+  this->Partners = std::make_unique<PartnerPoints>(
+    *this->Surface, *this->Incidences, this->Points, this->Octree, this->Diagonal);
 }
 
 void SurfaceRefiner::Enqueue(Id t)
@@ -819,126 +585,6 @@ bool SurfaceRefiner::ResolveByFlip(Id t)
   return false;
 }
 
-/**
- * The partner of a point on another edge: the point of this edge's line that is as far from the
- * common perpendicular of the two lines. If the edges meet, that is type R about their corner; if
- * they are parallel it is type P. Being partners is mutual, so that two edges never climb up a
- * ladder between them, and a point is outside of the diametral spheres of all pieces that end at
- * its partner.
- */
-bool SurfaceRefiner::PlacePartner(Id segment, Id disturbing, double& way, Vec3& along) const
-{
-  const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
-  const Vec3& a = this->Points[ends[0]];
-  const Vec3& p = this->Points[disturbing];
-  const Vec3 edge = this->Points[ends[1]] - a;
-  const Vec3 direction = (1.0 / Norm(edge)) * edge;
-  const std::vector<EdgeIds>& edges = this->Surface->GetInputEdges();
-  const Id own = this->Surface->GetSegment(segment).InputEdge;
-  // Of several edges at the point the one along this edge matters.
-  double best = PerpendicularCosine;
-  for (Id other : this->GetEdges(disturbing))
-  {
-    if (other == own)
-    {
-      continue;
-    }
-    const Vec3& begin = this->Points[edges[other][0]];
-    Vec3 line = this->Points[edges[other][1]] - begin;
-    line = (1.0 / Norm(line)) * line;
-    double cosine = Dot(line, direction);
-    if (cosine < 0.0)
-    {
-      line = -1.0 * line;
-      cosine = -cosine;
-    }
-    if (cosine <= best)
-    {
-      continue;
-    }
-    best = cosine;
-    const Vec3 across = Cross(direction, line);
-    const double squaredSine = SquaredNorm(across);
-    const double foot = Dot(p - a, direction);
-    // Distance of p from the common perpendicular along its line, times 1 - cosine: a shift of the
-    // foot that stays small and accurate where the lines are almost parallel.
-    const double distance =
-      squaredSine > 0.0 ? Dot(Cross(p - a, direction), across) / squaredSine : 0.0;
-    const double shift = squaredSine > 1e-24 ? -distance * squaredSine / (1.0 + cosine) : 0.0;
-    way = foot + shift;
-    along = 0.5 * (direction + line);
-  }
-  return best > PerpendicularCosine;
-}
-
-Vec3 SurfaceRefiner::PlaceOnSegment(Id segment, Id disturbing)
-{
-  const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
-  const Vec3& a = this->Points[ends[0]];
-  const Vec3& b = this->Points[ends[1]];
-  const double length = Distance(a, b);
-  const Vec3 direction = (1.0 / length) * (b - a);
-  for (int attempt = 0; disturbing != NoId; ++attempt)
-  {
-    const Vec3& p = this->Points[disturbing];
-    const double foot = Dot(p - a, direction);
-    const double height = Distance(p, a + foot * direction);
-    const bool isThin = height < ThinGapRatio * length;
-    double way = foot;
-    Vec3 along = direction;
-    const bool isPartner = this->PlacePartner(segment, disturbing, way, along);
-    // Close to an end of the piece, that end is the partner as good as there is: p stays outside of
-    // pieces that are shorter than its squared height over its distance along.
-    const double rest = std::abs(std::min(way, length - way));
-    const bool isClose = height < NeedleGapRatio * length && rest < CloseEndRatio * height;
-    if (isClose)
-    {
-      const double shorter = std::max(
-        height, rest > 0.0 ? std::min(0.5 * length, 0.5 * height * (height / rest)) : 0.5 * length);
-      way = way < 0.5 * length ? shorter : length - shorter;
-    }
-    const double margin = isThin ? 0.0
-      : isPartner                ? SmallestPiece * length
-                                 : std::min(height, 0.5 * length);
-    if (way > margin && way < length - margin)
-    {
-      const Vec3 position = a + way * direction;
-      if (isClose)
-      {
-        return position;
-      }
-      // A point that is much nearer is the one to match exactly.
-      NearestPointVisitor visitor(position, NoId);
-      this->Octree.Visit(visitor);
-      if (attempt == 0 && visitor.Nearest != disturbing && visitor.Nearest != ends[0] &&
-        visitor.Nearest != ends[1] && !this->GetEdges(visitor.Nearest).empty() &&
-        std::sqrt(visitor.SquaredDistance) < CloseMatchRatio * height)
-      {
-        disturbing = visitor.Nearest;
-        continue;
-      }
-      return MatchExactly(SnapToCoordinates(position, p, this->Diagonal), p, length, 10,
-        [&along](long double x, long double y, long double z)
-        { return std::abs(x * along.X + y * along.Y + z * along.Z); });
-    }
-    if (!isPartner && foot > 0.0 && foot < length)
-    {
-      // Type P, not nearer to the ends than the disturbing point is to the edge.
-      return a + std::min(std::max(foot, margin), length - margin) * direction;
-    }
-    break;
-  }
-  // From an acute corner only powers of two are used, so that all edges there end up alike.
-  const bool isAcuteA = this->IsAcuteCorner(ends[0]);
-  const bool isAcuteB = this->IsAcuteCorner(ends[1]);
-  if (isAcuteA != isAcuteB)
-  {
-    const double way = std::ldexp(1.0, std::ilogb(length * (2.0 / 3.0)));
-    return isAcuteA ? a + way * direction : b - way * direction;
-  }
-  return 0.5 * (a + b);
-}
-
 Id SurfaceRefiner::AddPoint(
   const Vec3& position, const PointParents& parents, Id facet, Id inputEdge)
 {
@@ -946,8 +592,7 @@ Id SurfaceRefiner::AddPoint(
   this->Points.push_back(position);
   this->FlipBudget += FlipsPerTriangle;
   this->Octree.Insert(point, position);
-  this->NewPointFacets.push_back(facet);
-  this->NewPointEdges.push_back(inputEdge);
+  this->Incidences->AddPoint(facet, inputEdge);
   this->Output.NewPoints.push_back(parents);
   this->Proofs.Find(position, this->Reached);
   for (Id t : this->Reached)
@@ -973,11 +618,11 @@ bool SurfaceRefiner::SplitSegment(Id segment, Id disturbing)
   const Vec3 a = this->Points[ends[0]];
   const Vec3 b = this->Points[ends[1]];
   const double length = Distance(a, b);
-  Vec3 position = this->PlaceOnSegment(segment, disturbing);
+  Vec3 position = this->Partners->PlaceOnSegment(segment, disturbing);
   for (int attempt = 0; attempt < 2; ++attempt)
   {
     if (std::min(Distance(position, a), Distance(position, b)) >= this->MinimumEdge &&
-      this->GetNearestDistance(position) > 0.0 && this->Surface->CanSplitSegment(segment, position))
+      !this->HasPointNear(position, 0.0) && this->Surface->CanSplitSegment(segment, position))
     {
       const double weight = Distance(position, a) / length;
       const PointParents parents{ { ends[0], ends[1], NoId }, { 1.0 - weight, weight, 0.0 } };
@@ -1046,162 +691,6 @@ bool SurfaceRefiner::ResolveByEdge(Id t)
     }
   }
   return bestSegment != NoId && this->SplitSegment(bestSegment, bestPoint);
-}
-
-bool SurfaceRefiner::RotateAboutAxis(Id t, Id disturbing, Vec3& target) const
-{
-  const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
-  const Vec3& p = this->Points[disturbing];
-  const Vec3 center = GetCircumcenter(this->Points[triangle.Points[0]],
-    this->Points[triangle.Points[1]], this->Points[triangle.Points[2]]);
-  double nearest = Infinity;
-  for (Id facet : this->GetFacets(disturbing))
-  {
-    const std::uint64_t pair = GetFacetPair(facet, triangle.Facet);
-    for (auto place = std::lower_bound(
-           this->Axes.begin(), this->Axes.end(), std::pair<std::uint64_t, Id>(pair, 0));
-         place != this->Axes.end() && place->first == pair; ++place)
-    {
-      const EdgeIds& axis = this->Surface->GetInputEdges()[place->second];
-      const Vec3& begin = this->Points[axis[0]];
-      const Vec3 direction =
-        (1.0 / Distance(begin, this->Points[axis[1]])) * (this->Points[axis[1]] - begin);
-      const Vec3 foot = begin + Dot(p - begin, direction) * direction;
-      const Vec3 inward = center - (begin + Dot(center - begin, direction) * direction);
-      const double distance = Distance(p, foot);
-      if (distance < nearest && distance > 0.0 &&
-        Dot(inward, p - foot) > PerpendicularCosine * distance * Norm(inward))
-      {
-        nearest = distance;
-        target = foot + (distance / Norm(inward)) * inward;
-      }
-    }
-  }
-  return nearest < Infinity;
-}
-
-bool SurfaceRefiner::RotateAboutCorner(Id t, Id disturbing, Vec3& target) const
-{
-  const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
-  const IdLists::Range corners = this->FacetCorners[triangle.Facet];
-  const Vec3& p = this->Points[disturbing];
-  double nearest = Infinity;
-  Id corner = NoId;
-  for (Id facet : this->GetFacets(disturbing))
-  {
-    const IdLists::Range others = this->FacetCorners[facet];
-    const bool isSmaller = others.size() < corners.size();
-    for (Id candidate : isSmaller ? others : corners)
-    {
-      const double distance = Distance(p, this->Points[candidate]);
-      if (candidate != disturbing && distance < nearest &&
-        std::binary_search(
-          (isSmaller ? corners : others).begin(), (isSmaller ? corners : others).end(), candidate))
-      {
-        nearest = distance;
-        corner = candidate;
-      }
-    }
-  }
-  if (corner == NoId)
-  {
-    return false;
-  }
-  const Vec3& a = this->Points[triangle.Points[0]];
-  const Vec3& b = this->Points[triangle.Points[1]];
-  const Vec3& c = this->Points[triangle.Points[2]];
-  const Vec3 normal = Cross(b - a, c - a);
-  const Vec3 arm = p - this->Points[corner];
-  const Vec3 inPlane = arm - (Dot(arm, normal) / SquaredNorm(normal)) * normal;
-  target = this->Points[corner] + (nearest / Norm(inPlane)) * inPlane;
-  // Steep or far beyond the triangle, the turned point would do nothing for it.
-  return SquaredNorm(inPlane) > 0.25 * SquaredNorm(arm) && InEquatorialSphere(a, b, c, target) > 0;
-}
-
-/**
- * Type P for facets: along the normal. If the point's own facet is not parallel, the foot is moved
- * until both are equally far from the line where the two planes meet, somewhere outside: that is
- * type R again, and mutual.
- */
-bool SurfaceRefiner::ProjectOntoFacet(Id t, Id disturbing, Vec3& target) const
-{
-  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-  const Vec3& a = this->Points[ids[0]];
-  const Vec3 normal = Cross(this->Points[ids[1]] - a, this->Points[ids[2]] - a);
-  const double radius = Distance(a, GetCircumcenter(a, this->Points[ids[1]], this->Points[ids[2]]));
-  const Vec3& p = this->Points[disturbing];
-  Vec3 unit = (1.0 / Norm(normal)) * normal;
-  unit = Dot(unit, p - a) < 0.0 ? -1.0 * unit : unit;
-  const double height = Dot(unit, p - a);
-  if (height > ThinLayerRatio * radius)
-  {
-    return false;
-  }
-  target = p - height * unit;
-  double best = 0.0;
-  Vec3 other;
-  for (Id facet : this->GetFacets(disturbing))
-  {
-    const Vec3& candidate = this->FacetNormals[facet];
-    const double cosine = Dot(candidate, unit);
-    if (std::abs(cosine) > best)
-    {
-      best = std::abs(cosine);
-      other = cosine < 0.0 ? -1.0 * candidate : candidate;
-    }
-  }
-  if (best > 0.5)
-  {
-    // tan(angle / 2) = sin / (1 + cos); the sine is the length of the tilt.
-    const Vec3 tilt = other - best * unit;
-    target = target - (height / (1.0 + best)) * tilt;
-  }
-  return true;
-}
-
-bool SurfaceRefiner::MirrorDisturbingPoint(Id t, Id disturbing, Vec3& target) const
-{
-  // A point of the same facet, which is curved then, would be matched by ones ever closer to it.
-  const IdLists::Range facets = this->GetFacets(disturbing);
-  if (std::find(facets.begin(), facets.end(), this->Surface->GetTriangle(t).Facet) != facets.end())
-  {
-    return false;
-  }
-  // However close to other points: only points that match exactly leave each other alone.
-  return this->RotateAboutAxis(t, disturbing, target) ||
-    this->RotateAboutCorner(t, disturbing, target) || this->ProjectOntoFacet(t, disturbing, target);
-}
-
-/** Moves a point in a plane facet by rounding errors, to match one of another facet exactly. */
-Vec3 SurfaceRefiner::MatchAcross(Id t, Id disturbing, const Vec3& position, double radius) const
-{
-  const Vec3& p = this->Points[disturbing];
-  const Vec3& own = this->FacetNormals[this->Surface->GetTriangle(t).Facet];
-  Vec3 across;
-  double best = 0.5;
-  for (Id facet : this->GetFacets(disturbing))
-  {
-    const double cosine = Dot(this->FacetNormals[facet], own);
-    if (std::abs(cosine) > best)
-    {
-      best = std::abs(cosine);
-      across = own + (cosine < 0.0 ? -1.0 : 1.0) * this->FacetNormals[facet];
-    }
-  }
-  if (best <= 0.5 || Distance(position, p) > NeedleGapRatio * radius)
-  {
-    return position;
-  }
-  const long double square = SquaredNorm(across);
-  return MatchExactly(position, p, radius, 10,
-    [&across, square](long double x, long double y, long double z)
-    {
-      const long double along = (x * across.X + y * across.Y + z * across.Z) / square;
-      x -= along * across.X;
-      y -= along * across.Y;
-      z -= along * across.Z;
-      return std::sqrt(x * x + y * y + z * z);
-    });
 }
 
 /**
@@ -1299,13 +788,14 @@ bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMir
       if (isMirrored)
       {
         position = SnapToCoordinates(position, this->Points[disturbing], this->Diagonal);
-        position = this->MatchAcross(current, disturbing, position, radius);
+        position = this->Partners->MatchAcross(current, disturbing, position, radius);
       }
       else
       {
         // It may have been made before on the other side of a layer.
-        NearestPointVisitor visitor(position, NoId);
-        this->Octree.Visit(visitor);
+        NearestPointVisitor visitor(
+          position, NoId, std::max(2.0 * Distance(position, p), SamePoint));
+        this->Octree.Visit(visitor, visitor.GetReach());
         position = SnapToCoordinates(position, this->Points[visitor.Nearest], this->Diagonal);
       }
       place = surface.Locate(current, position);
@@ -1340,7 +830,7 @@ bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMir
   }
 
   // A point that does not disturb the triangle would not remove it (on curved facets).
-  if (this->GetNearestDistance(position) < std::max(this->MinimumEdge, 1e-300) ||
+  if (this->HasPointNear(position, this->MinimumEdge) ||
     InEquatorialSphere(a, this->Points[start[1]], this->Points[start[2]], position) <= 0)
   {
     return false;
@@ -1403,7 +893,7 @@ bool SurfaceRefiner::SplitLongestEdge(Id t)
   for (double weight : { std::min(std::max(foot, 0.25), 0.75), 0.5 })
   {
     const Vec3 position = a + weight * edge;
-    if (0.25 * length >= this->MinimumEdge && this->GetNearestDistance(position) > 0.0 &&
+    if (0.25 * length >= this->MinimumEdge && !this->HasPointNear(position, 0.0) &&
       this->Surface->CanSplitSmoothEdge(use, position))
     {
       const PointParents parents{ { ends[0], ends[1], NoId }, { 1.0 - weight, weight, 0.0 } };
@@ -1474,8 +964,7 @@ void SurfaceRefiner::NoteCrumpling(Id t, Id newPoint)
 {
   const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
   if (newPoint >= static_cast<Id>(this->Points.size()) ||
-    this->FacetNormals[triangle.Facet] != Vec3() ||
-    this->NewPointFacets[newPoint - this->NumberOfGivenPoints] == NoId)
+    !this->Incidences->IsCurved(triangle.Facet) || !this->Incidences->GetEdges(newPoint).empty())
   {
     return;
   }
@@ -1485,7 +974,7 @@ void SurfaceRefiner::NoteCrumpling(Id t, Id newPoint)
   {
     shortest = std::min(shortest, Distance(this->Points[ids[i]], this->Points[ids[(i + 1) % 3]]));
   }
-  if (this->GetNearestDistance(this->Points[newPoint], newPoint) < CrumplingRatio * shortest)
+  if (this->HasPointNear(this->Points[newPoint], CrumplingRatio * shortest, newPoint))
   {
     this->IsCrumpled.resize(this->Input.Surface->Triangles.size(), 0);
     this->IsCrumpled[triangle.Source] = 1;
@@ -1508,11 +997,11 @@ bool SurfaceRefiner::FindCrumpled(std::vector<char>& isExact) const
       mark(static_cast<Id>(source));
     }
   }
-  std::vector<char> isUnresolved(this->FacetNormals.size(), 0);
+  std::vector<char> isUnresolved(this->Incidences ? this->Incidences->GetNumberOfFacets() : 0, 0);
   for (Id t : this->Output.UnresolvedTriangles)
   {
     const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
-    if (!isUnresolved.empty() && this->FacetNormals[triangle.Facet] == Vec3())
+    if (!isUnresolved.empty() && this->Incidences->IsCurved(triangle.Facet))
     {
       mark(triangle.Source);
       isUnresolved[triangle.Facet] = 1;
@@ -1584,7 +1073,7 @@ void SurfaceRefiner::Process(Id t)
                                             : NoId;
   const Id newPoint = static_cast<Id>(this->Points.size());
   Vec3 target;
-  const bool isMirrored = disturbing != NoId && this->MirrorDisturbingPoint(t, disturbing, target);
+  const bool isMirrored = disturbing != NoId && this->Partners->PlaceInFacet(t, disturbing, target);
   if ((isMirrored && this->ResolveInFacet(t, disturbing, target, true)) ||
     this->ResolveInFacet(t, disturbing, getCircumcenter(t), false) || this->SplitLongestEdge(t))
   {

@@ -20,17 +20,23 @@
 
 namespace cdm
 {
-/** Distance from a position to the nearest point other than one. */
+/** The nearest point to a position other than one, if it is nearer than a distance. */
 class NearestPointVisitor
 {
 public:
-  NearestPointVisitor(const Vec3& position, Id except) : Position(position), Except(except) {}
+  NearestPointVisitor(
+    const Vec3& position, Id except, double farthest = std::numeric_limits<double>::infinity())
+    : SquaredDistance(farthest * farthest), Position(position), Except(except), Farthest(farthest)
+  {
+  }
 
   double Order(const Box& box) const
   {
     const double distance = box.GetSquaredDistance(this->Position);
     return distance < this->SquaredDistance ? distance : std::numeric_limits<double>::infinity();
   }
+
+  Box GetReach() const { return Box::MakeAround(this->Position, this->Farthest); }
 
   void Visit(Id id, const Vec3& p)
   {
@@ -43,54 +49,12 @@ public:
   }
 
   Id Nearest = NoId;
-  double SquaredDistance = std::numeric_limits<double>::infinity();
+  double SquaredDistance;
 
 private:
   Vec3 Position;
   Id Except;
-};
-
-/** Points within a distance of a triangle. */
-class NearTriangleVisitor
-{
-public:
-  NearTriangleVisitor(
-    const Vec3& a, const Vec3& b, const Vec3& c, double distance, std::vector<char>& isNear)
-    : Corners{ a, b, c }, Distance(distance), IsNear(isNear)
-  {
-    this->Bounds.Add(a);
-    this->Bounds.Add(b);
-    this->Bounds.Add(c);
-  }
-
-  double Order(const Box& box) const
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      if (box.Low[axis] > this->Bounds.High[axis] + this->Distance ||
-        box.High[axis] < this->Bounds.Low[axis] - this->Distance)
-      {
-        return std::numeric_limits<double>::infinity();
-      }
-    }
-    return 0.0;
-  }
-
-  void Visit(Id id, const Vec3& p)
-  {
-    if (!this->IsNear[id] &&
-      GetDistanceToTriangle(p, this->Corners[0], this->Corners[1], this->Corners[2]) <=
-        this->Distance)
-    {
-      this->IsNear[id] = 1;
-    }
-  }
-
-private:
-  Vec3 Corners[3];
-  Box Bounds;
-  double Distance;
-  std::vector<char>& IsNear;
+  double Farthest;
 };
 
 /** Points strictly inside the diametral sphere of an edge, other than its ends. */
