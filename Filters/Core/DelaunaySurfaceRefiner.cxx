@@ -14,7 +14,9 @@
 #include "RefinableSurface.h"
 #include "SpatialSort.h"
 #include "SurfaceDelaunayTest.h"
+#include "SurfaceFlips.h"
 #include "SurfaceIncidences.h"
+#include "TriangleLimits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +33,6 @@ namespace cdm
 namespace
 {
 constexpr double Infinity = std::numeric_limits<double>::infinity();
-constexpr double Pi = 3.14159265358979323846;
 constexpr std::size_t ReportInterval = 256;
 
 /** In curved facets, points closer than that to others, in shortest edges of the input there. */
@@ -40,11 +41,10 @@ constexpr double CrumplingRatio = 1.0 / 8.0;
 /** After so many attempts all edges of curved facets are structural. */
 constexpr int LargestNumberOfAttempts = 20;
 
-/** Flips on curved facets may go in circles: so many are allowed for each triangle and new point. */
-constexpr std::int64_t FlipsPerTriangle = 50;
-
 /** The square of a distance below this may be zero. */
 constexpr double SamePoint = 1e-150;
+/** So many triangles a walk may take. */
+constexpr int LongestWalk = 10000;
 /** Among the edges around so many triangles one is looked for that a new point would disturb. */
 constexpr std::size_t LargestCavity = 1000;
 
@@ -68,6 +68,15 @@ public:
 
 private:
   Status Prepare();
+  /** Where a walk has ended: at a position in or on an edge of a triangle, or at a segment. */
+  struct Landing
+  {
+    Id Triangle = NoId;
+    Id Edge = NoId;
+    Vec3 Position;
+    Id Segment = NoId;
+  };
+
   Status CheckSurface();
   void AddMeshPoints();
   void CollectIncidences();
@@ -89,13 +98,13 @@ private:
   // Each returns true if it has changed the surface.
   bool ResolveByFlip(Id t);
   bool ResolveByEdge(Id t);
-  bool ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMirrored);
+  bool ResolveInFacet(Id t, Id disturbing, const Vec3& target, bool isMirrored);
+  Vec3 PutIntoPlane(Id t, const Vec3& position, const Vec3& normal) const;
+  bool Walk(Id t, Id mirrored, const Vec3& target, Landing& landing) const;
   Id FindEncroachedSegment(Id t, const Vec3& position);
   bool SplitSegment(Id segment, Id disturbing);
   bool SplitLongestEdge(Id t);
 
-  bool CanFlip(Id use) const;
-  bool ShouldFlip(Id use) const;
   void Legalize(std::vector<Id>& uses);
   Id AddPoint(const Vec3& position, const PointParents& parents, Id facet, Id inputEdge);
   void Enqueue(Id t);
@@ -130,6 +139,8 @@ private:
   SurfaceDelaunayTest Test;
   SurfaceDelaunayTest::Result Found;
   std::unique_ptr<RefinableSurface> Surface;
+  std::unique_ptr<SurfaceFlips> Flips;
+  TriangleLimits Limits;
 
   /** Both are made when the first triangle has to be refined. */
   std::unique_ptr<SurfaceIncidences> Incidences;
@@ -156,7 +167,6 @@ private:
   BallIndex EmptyEdges;
   /** Segments that are disturbed and cannot be split. */
   std::vector<char> IsDisturbed;
-  std::int64_t FlipBudget = 0;
 };
 
 Status SurfaceRefiner::CheckSurface()
@@ -265,17 +275,20 @@ Status SurfaceRefiner::Prepare()
   }
   this->AddMeshPoints();
   this->NumberOfGivenPoints = static_cast<Id>(this->Points.size());
+  this->Limits = { this->Options.MaximumEdgeLength, this->Options.MaximumArea,
+    this->Options.MinimumAngle, this->Input.Sizing };
   // Without a limit of the user's, one that only a runaway refinement reaches: sheets a hair apart.
-  const bool isSizeWanted = this->Input.Sizing || this->Options.MaximumEdgeLength > 0.0 ||
-    this->Options.MaximumArea > 0.0 || this->Options.MinimumAngle > 0.0;
   this->MaximumNewPoints = this->Options.MaximumNewPoints > 0
     ? this->Options.MaximumNewPoints
-    : static_cast<Id>(std::min<std::size_t>(
-        std::max<std::size_t>(isSizeWanted ? 1000000 : 20000, 50 * surface.Triangles.size()) +
-          this->Output.KeptMeshPoints.size(),
-        LargestId / 8));
+    : static_cast<Id>(
+        std::min<std::size_t>(std::max<std::size_t>(this->Limits.HasAny() ? 1000000 : 20000,
+                                50 * surface.Triangles.size()) +
+            this->Output.KeptMeshPoints.size(),
+          LargestId / 8));
   this->Octree.Insert(this->Points);
   this->Surface = std::make_unique<RefinableSurface>(surface, edges.Edges, this->Points);
+  this->Flips = std::make_unique<SurfaceFlips>(
+    *this->Surface, this->Points, this->Flatness, this->Options.StructuralEdges.AccuracyAngle);
   return Status();
 }
 
@@ -318,77 +331,13 @@ void SurfaceRefiner::Enqueue(Id t)
   }
 }
 
-bool SurfaceRefiner::CanFlip(Id use) const
-{
-  const RefinableSurface& surface = *this->Surface;
-  const Id other = surface.GetTriangle(use / 3).Adjacent[use % 3];
-  if (other < 0 || !surface.IsConvex(use))
-  {
-    return false;
-  }
-  const TriangleIds& ids = surface.GetTriangle(use / 3).Points;
-  const Vec3& a = this->Points[ids[use % 3]];
-  const Vec3& b = this->Points[ids[(use % 3 + 1) % 3]];
-  const Vec3& c = this->Points[surface.GetApex(use)];
-  const Vec3& d = this->Points[surface.GetApex(other)];
-  // The surface moves by at most the distance of the two diagonals.
-  const Vec3 across = Cross(b - a, d - c);
-  const double norm = Norm(across);
-  if (norm > 0.0 && std::abs(Dot(across, c - a)) <= this->Flatness * norm)
-  {
-    return true;
-  }
-  const double angle = this->Options.StructuralEdges.AccuracyAngle;
-  return angle > 0.0 && IsSmoothEdge(a, b, c, d, angle, 0.0) &&
-    IsSmoothEdge(d, c, a, b, angle, 0.0);
-}
-
-bool SurfaceRefiner::ShouldFlip(Id use) const
-{
-  // Flip what is locally bad into what is locally good: it cannot flip back at once.
-  const RefinableSurface& surface = *this->Surface;
-  const Id other = surface.GetTriangle(use / 3).Adjacent[use % 3];
-  if (other < 0)
-  {
-    return false;
-  }
-  const TriangleIds& ids = surface.GetTriangle(use / 3).Points;
-  const Vec3& a = this->Points[ids[use % 3]];
-  const Vec3& b = this->Points[ids[(use % 3 + 1) % 3]];
-  const Vec3& c = this->Points[surface.GetApex(use)];
-  const Vec3& d = this->Points[surface.GetApex(other)];
-  const bool isBad = InEquatorialSphere(a, b, c, d) > 0 || InEquatorialSphere(b, a, d, c) > 0;
-  return isBad && this->CanFlip(use) && InEquatorialSphere(a, d, c, b) <= 0 &&
-    InEquatorialSphere(d, b, c, a) <= 0;
-}
-
 void SurfaceRefiner::Legalize(std::vector<Id>& uses)
 {
   for (Id use : uses)
   {
     this->Enqueue(use / 3);
   }
-  while (!uses.empty())
-  {
-    const Id use = uses.back();
-    uses.pop_back();
-    if (this->FlipBudget <= 0 || !this->ShouldFlip(use))
-    {
-      continue;
-    }
-    const Id t = use / 3;
-    const Id u = this->Surface->GetTriangle(t).Adjacent[use % 3] / 3;
-    this->Surface->Flip(use);
-    ++this->Output.Report.Flips;
-    --this->FlipBudget;
-    this->Enqueue(t);
-    this->Enqueue(u);
-    // The four outer edges of the quadrilateral.
-    uses.push_back(3 * t);
-    uses.push_back(3 * t + 2);
-    uses.push_back(3 * u);
-    uses.push_back(3 * u + 1);
-  }
+  this->Flips->Saturate(uses, [this](Id t) { this->Enqueue(t); });
 }
 
 void SurfaceRefiner::Saturate()
@@ -539,7 +488,7 @@ bool SurfaceRefiner::ResolveByFlip(Id t)
   std::vector<Id> uses{ 3 * t, 3 * t + 1, 3 * t + 2 };
   for (Id use : uses)
   {
-    if (this->FlipBudget > 0 && this->ShouldFlip(use))
+    if (this->Flips->ShouldFlip(use))
     {
       this->Legalize(uses);
       return true;
@@ -550,7 +499,7 @@ bool SurfaceRefiner::ResolveByFlip(Id t)
   for (Id use : uses)
   {
     const Id other = this->Surface->GetTriangle(t).Adjacent[use % 3];
-    if (other < 0 || this->FlipBudget <= 0 || !this->CanFlip(use))
+    if (!this->Flips->CanFlip(use))
     {
       continue;
     }
@@ -574,9 +523,7 @@ bool SurfaceRefiner::ResolveByFlip(Id t)
     if (first.IsDelaunay && second.IsDelaunay && isAllowed && first.Cocircular.empty() &&
       second.Cocircular.empty())
     {
-      this->Surface->Flip(use);
-      ++this->Output.Report.Flips;
-      --this->FlipBudget;
+      this->Flips->Flip(use);
       this->Enqueue(t);
       this->Enqueue(other / 3);
       return true;
@@ -590,7 +537,7 @@ Id SurfaceRefiner::AddPoint(
 {
   const Id point = static_cast<Id>(this->Points.size());
   this->Points.push_back(position);
-  this->FlipBudget += FlipsPerTriangle;
+  this->Flips->AddPoint();
   this->Octree.Insert(point, position);
   this->Incidences->AddPoint(facet, inputEdge);
   this->Output.NewPoints.push_back(parents);
@@ -735,26 +682,45 @@ Id SurfaceRefiner::FindEncroachedSegment(Id t, const Vec3& position)
   return found;
 }
 
-bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMirrored)
+/** Moves a position along a normal into the plane of a triangle. */
+Vec3 SurfaceRefiner::PutIntoPlane(Id t, const Vec3& position, const Vec3& normal) const
+{
+  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+  const Vec3& p = this->Points[ids[0]];
+  const Vec3 n = Cross(this->Points[ids[1]] - p, this->Points[ids[2]] - p);
+  const double slope = Dot(n, normal);
+  Vec3 result = slope != 0.0 ? position + (Dot(n, p - position) / slope) * normal : position;
+  // A plane across an axis is met exactly, and so are the coordinates of a matching point.
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double coordinate = p[axis];
+    if (this->Points[ids[1]][axis] == coordinate && this->Points[ids[2]][axis] == coordinate)
+    {
+      result[axis] = coordinate;
+    }
+  }
+  return result;
+}
+
+/**
+ * Walks over a facet (thesis 6.3, "Locate Triangle"), always over the edge that faces the target most,
+ * to the triangle above or below it, or to the segment that is in the way. False if that leads
+ * nowhere, as it may on curved facets.
+ * @param mirrored the point that the target is to match, or NoId
+ */
+bool SurfaceRefiner::Walk(Id t, Id mirrored, const Vec3& target, Landing& landing) const
 {
   const RefinableSurface& surface = *this->Surface;
   const TriangleIds& start = surface.GetTriangle(t).Points;
   const Vec3& a = this->Points[start[0]];
-  const Vec3 normal = Cross(this->Points[start[1]] - a, this->Points[start[2]] - a);
-  const double radius =
-    Norm(GetCircumcenterOffset(a, this->Points[start[1]], this->Points[start[2]]));
-
-  // Walk (thesis 6.3, "Locate Triangle"): over the edge that faces the target most.
+  const Vec3& b = this->Points[start[1]];
+  const Vec3& c = this->Points[start[2]];
+  const Vec3 normal = Cross(b - a, c - a);
+  const double radius = Norm(GetCircumcenterOffset(a, b, c));
   Id current = t;
   Id previous = NoId;
-  std::pair<Id, bool> place(NoId, true);
-  Vec3 position = target;
-  for (int step = 0;; ++step)
+  for (int step = 0; step <= LongestWalk; ++step)
   {
-    if (step > 10000)
-    {
-      return false;
-    }
     const TriangleIds& ids = surface.GetTriangle(current).Points;
     Id worst = NoId;
     double worstSide = 0.0;
@@ -772,72 +738,78 @@ bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMir
     }
     if (worst == NoId)
     {
-      const Vec3& p = this->Points[ids[0]];
-      const Vec3 n = Cross(this->Points[ids[1]] - p, this->Points[ids[2]] - p);
-      const double slope = Dot(n, normal);
-      position = slope != 0.0 ? target + (Dot(n, p - target) / slope) * normal : target;
-      // A plane across an axis is met exactly, and so are the coordinates of a matching point.
-      for (int axis = 0; axis < 3; ++axis)
+      Vec3 position = this->PutIntoPlane(current, target, normal);
+      if (mirrored != NoId)
       {
-        const double coordinate = p[axis];
-        if (this->Points[ids[1]][axis] == coordinate && this->Points[ids[2]][axis] == coordinate)
-        {
-          position[axis] = coordinate;
-        }
-      }
-      if (isMirrored)
-      {
-        position = SnapToCoordinates(position, this->Points[disturbing], this->Diagonal);
-        position = this->Partners->MatchAcross(current, disturbing, position, radius);
+        position = SnapToCoordinates(position, this->Points[mirrored], this->Diagonal);
+        position = this->Partners->MatchAcross(current, mirrored, position, radius);
       }
       else
       {
         // It may have been made before on the other side of a layer.
         NearestPointVisitor visitor(
-          position, NoId, std::max(2.0 * Distance(position, p), SamePoint));
+          position, NoId, std::max(2.0 * Distance(position, this->Points[ids[0]]), SamePoint));
         this->Octree.Visit(visitor, visitor.GetReach());
         position = SnapToCoordinates(position, this->Points[visitor.Nearest], this->Diagonal);
       }
-      place = surface.Locate(current, position);
-      const Id beyond = place.second ? NoId : surface.GetTriangle(current).Adjacent[place.first];
-      if (!place.second && beyond >= 0 && beyond / 3 == previous &&
-        surface.CanSplitSmoothEdge(3 * current + place.first, position))
+      const auto [edge, isInside] = surface.Locate(current, position);
+      const Id beyond = isInside ? NoId : surface.GetTriangle(current).Adjacent[edge];
+      // Rounded into the plane of either triangle it may lie in the other one: on the edge between.
+      if (isInside ||
+        (beyond >= 0 && beyond / 3 == previous &&
+          surface.CanSplitSmoothEdge(3 * current + edge, position)))
       {
-        // Rounded into the plane of either triangle it lies in the other one: on the edge between.
-        place.second = true;
+        landing = { current, edge, position, NoId };
+        return true;
       }
-      if (place.second)
-      {
-        break;
-      }
-      worst = place.first;
+      worst = edge;
     }
     const Id adjacent = surface.GetTriangle(current).Adjacent[worst];
     if (adjacent < 0)
     {
-      const Id segment = -1 - adjacent;
-      const EdgeIds& ends = surface.GetSegment(segment).Points;
-      const auto isDisturbedBy = [&](const Vec3& p)
-      { return InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], p) >= 0; };
-      const bool isDisturbed = disturbing != NoId && isDisturbedBy(this->Points[disturbing]);
-      // On a curved facet the walk may lead to an edge that has nothing to do with the triangle.
-      return (isDisturbed || isDisturbedBy(target) || isDisturbedBy(a) ||
-               isDisturbedBy(this->Points[start[1]]) || isDisturbedBy(this->Points[start[2]])) &&
-        this->SplitSegment(segment, isDisturbed ? disturbing : NoId);
+      landing.Segment = -1 - adjacent;
+      return true;
     }
     previous = current;
     current = adjacent / 3;
   }
+  return false;
+}
 
-  // A point that does not disturb the triangle would not remove it (on curved facets).
-  if (this->HasPointNear(position, this->MinimumEdge) ||
-    InEquatorialSphere(a, this->Points[start[1]], this->Points[start[2]], position) <= 0)
+bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, const Vec3& target, bool isMirrored)
+{
+  const RefinableSurface& surface = *this->Surface;
+  const TriangleIds start = surface.GetTriangle(t).Points;
+  Landing landing;
+  if (!this->Walk(t, isMirrored ? disturbing : NoId, target, landing))
   {
     return false;
   }
-  if (place.first != NoId && surface.GetSegmentAt(current, place.first) != NoId)
+  if (landing.Segment != NoId)
   {
-    return this->SplitSegment(surface.GetSegmentAt(current, place.first), disturbing);
+    const EdgeIds& ends = surface.GetSegment(landing.Segment).Points;
+    const auto isDisturbedBy = [&](const Vec3& p)
+    { return InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], p) >= 0; };
+    const bool isDisturbed = disturbing != NoId && isDisturbedBy(this->Points[disturbing]);
+    // On a curved facet the walk may lead to an edge that has nothing to do with the triangle.
+    return (isDisturbed || isDisturbedBy(target) ||
+             std::any_of(
+               start.begin(), start.end(), [&](Id p) { return isDisturbedBy(this->Points[p]); })) &&
+      this->SplitSegment(landing.Segment, isDisturbed ? disturbing : NoId);
+  }
+
+  // A point that does not disturb the triangle would not remove it (on curved facets).
+  const Vec3& position = landing.Position;
+  if (this->HasPointNear(position, this->MinimumEdge) ||
+    InEquatorialSphere(
+      this->Points[start[0]], this->Points[start[1]], this->Points[start[2]], position) <= 0)
+  {
+    return false;
+  }
+  const Id current = landing.Triangle;
+  if (landing.Edge != NoId && surface.GetSegmentAt(current, landing.Edge) != NoId)
+  {
+    return this->SplitSegment(surface.GetSegmentAt(current, landing.Edge), disturbing);
   }
 
   // A point that would disturb an edge of the facet must not be made: split the edge instead.
@@ -854,13 +826,13 @@ bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, Vec3 target, bool isMir
   const Id point = this->AddPoint(position, parents, surface.GetTriangle(current).Facet, NoId);
   ++this->Output.Report.FacetPoints;
   std::vector<Id> uses;
-  if (place.first == NoId)
+  if (landing.Edge == NoId)
   {
     this->Surface->SplitTriangle(current, point, uses);
   }
   else
   {
-    this->Surface->SplitSmoothEdge(3 * current + place.first, point, uses);
+    this->Surface->SplitSmoothEdge(3 * current + landing.Edge, point, uses);
   }
   this->Legalize(uses);
   return true;
@@ -908,52 +880,18 @@ bool SurfaceRefiner::SplitLongestEdge(Id t)
   return false;
 }
 
+/** Segment: a structural edge to split first, or NoId. */
 bool SurfaceRefiner::FindTooCoarse(Id t, Id& segment) const
 {
-  segment = NoId;
   const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-  const Vec3 corners[3] = { this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]] };
-  double limit = this->Options.MaximumEdgeLength > 0.0 ? this->Options.MaximumEdgeLength : Infinity;
-  if (this->Input.Sizing)
-  {
-    const LocalSpacing spacing =
-      this->Input.Sizing((1.0 / 3.0) * (corners[0] + corners[1] + corners[2]));
-    limit = std::min(limit, spacing.GetLargest());
-  }
-  int longest = 0;
-  double lengths[3];
-  for (int i = 0; i < 3; ++i)
-  {
-    lengths[i] = Distance(corners[i], corners[(i + 1) % 3]);
-    longest = lengths[i] > lengths[longest] ? i : longest;
-  }
-  const double area = 0.5 * Norm(Cross(corners[1] - corners[0], corners[2] - corners[0]));
-  const bool isLarge = lengths[longest] > limit ||
-    (this->Options.MaximumArea > 0.0 && area > this->Options.MaximumArea);
-  if (isLarge)
-  {
-    // The longest structural edge first: facets are refined from a fine enough outline.
-    double length = limit;
-    for (int i = 0; i < 3; ++i)
-    {
-      const Id candidate = this->Surface->GetSegmentAt(t, i);
-      if (candidate != NoId && (lengths[i] > length || (i == longest && segment == NoId)))
-      {
-        segment = candidate;
-        length = lengths[i];
-      }
-    }
-    return true;
-  }
-  if (this->Options.MinimumAngle > 0.0)
-  {
-    const int shortest = static_cast<int>(std::min_element(lengths, lengths + 3) - lengths);
-    const double sine = 2.0 * area / (lengths[(shortest + 1) % 3] * lengths[(shortest + 2) % 3]);
-    const bool isGivenAngle = this->Surface->GetSegmentAt(t, (shortest + 1) % 3) != NoId &&
-      this->Surface->GetSegmentAt(t, (shortest + 2) % 3) != NoId;
-    return !isGivenAngle && sine < std::sin(this->Options.MinimumAngle * Pi / 180.0);
-  }
-  return false;
+  const Id segments[3] = { this->Surface->GetSegmentAt(t, 0), this->Surface->GetSegmentAt(t, 1),
+    this->Surface->GetSegmentAt(t, 2) };
+  Id edge;
+  const bool isTooCoarse =
+    this->Limits.IsTooCoarse({ this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]] },
+      { segments[0] != NoId, segments[1] != NoId, segments[2] != NoId }, edge);
+  segment = edge != NoId ? segments[edge] : NoId;
+  return isTooCoarse;
 }
 
 /**
@@ -1171,6 +1109,7 @@ Status SurfaceRefiner::Refine()
 
 Status SurfaceRefiner::Finish()
 {
+  this->Output.Report.Flips = this->Flips->GetNumberOfFlips();
   // Mesh points lie between the given and the new points of the surface: take them out.
   const Id shift = this->NumberOfGivenPoints - this->NumberOfSurfacePoints;
   const auto renumber = [this, shift](Id id)
@@ -1252,7 +1191,6 @@ Status SurfaceRefiner::Run()
   {
     return status;
   }
-  this->FlipBudget = 100000 + FlipsPerTriangle * this->Surface->GetNumberOfTriangles();
   this->Saturate();
   status = this->Refine();
   // One by one, so that points which match those are made before the next one.
