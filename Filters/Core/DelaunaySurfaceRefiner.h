@@ -17,6 +17,7 @@
  *     the partner of the disturbing point (types P and R); or mirror the disturbing point into the
  *     triangle's facet, about the edge or corner where the facets meet or along the normal; or
  *     insert the projected circumcenter found by the walk (Fig. 6.10); or split the longest edge.
+ *     Points in facets come last, when no edge is left to split.
  *     The rules and why they end: README.md beside this file;
  *  4. test again the triangles whose proving sphere holds the new point;
  *  5. with an accuracy angle, facets are curved, and points that mend one triangle may disturb its
