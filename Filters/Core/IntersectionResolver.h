@@ -7,10 +7,10 @@
  *  1. find the triangles that intersect, exactly (TriangleIntersection.h); after the first round
  *     only those that have changed are looked at;
  *  2. compute the points where an edge pierces a triangle and where edges of coplanar triangles
- *     cross (IntersectionPoints.h, CuttingRound.h): parameters from exact determinants, then rounded
- *     to double. A point within a tolerance of another one is that point; within it of an edge it
- *     divides the edge, in all triangles that have it: so pieces stay connected, and a closed
- *     surface stays closed;
+ *     cross (IntersectionPoints.h, CuttingRound.h): parameters from exact determinants, then
+ *     rounded to double. A point within a tolerance of another one is that point; within it of an
+ *     edge it divides the edge, in all triangles that have it: so pieces stay connected, and a
+ *     closed surface stays closed;
  *  3. the segments between these points are chains common to both triangles; where two chains
  *     cross in a triangle both get the crossing;
  *  4. triangulate each triangle anew with its points and chains (ConstrainedTriangulation.h);
