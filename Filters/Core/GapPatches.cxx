@@ -22,16 +22,6 @@ struct RingStep
   Id From;
 };
 
-Box GetBox(const std::vector<Vec3>& points, const TriangleIds& t)
-{
-  Box box;
-  for (const Id id : t)
-  {
-    box.Add(points[id]);
-  }
-  return box;
-}
-
 /** Ascending. */
 std::vector<OpenEdge> FindOpenEdges(
   const std::vector<TriangleIds>& triangles, std::size_t numberOfPoints)

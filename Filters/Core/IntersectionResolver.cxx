@@ -188,10 +188,7 @@ private:
     std::vector<Box> boxes(n);
     for (Id t = 0; t < n; ++t)
     {
-      for (const Id id : this->Triangles[t])
-      {
-        boxes[t].Add(this->Points[id]);
-      }
+      boxes[t] = GetBox(this->Points, this->Triangles[t]);
       boxes[t].Low = boxes[t].Low - margin;
       boxes[t].High = boxes[t].High + margin;
     }

@@ -5,6 +5,7 @@
 #include "ParallelLoop.h"
 #include "Predicates.h"
 #include "PulledSphere.h"
+#include "SortedIds.h"
 #include "TetMesh.h"
 
 #include <algorithm>
@@ -408,8 +409,7 @@ inline void VertexInsertion::ConnectBySorting(Workspace& space)
     const Id ends[4] = { facet.B, facet.C, facet.A, facet.B };
     for (int i = 0; i < 3; ++i)
     {
-      edges.push_back({ { std::min(ends[i], ends[i + 1]), std::max(ends[i], ends[i + 1]) },
-        4 * facet.Outer + i });
+      edges.push_back({ MakeEdge(ends[i], ends[i + 1]), 4 * facet.Outer + i });
     }
   }
   std::sort(edges.begin(), edges.end());
