@@ -3,13 +3,16 @@
  * @file VertexInsertion.h
  * @brief Inserts vertices into a Delaunay tetrahedralization, on several threads at once.
  *
- * Method: walk to a tetrahedron that holds the vertex; remove the tetrahedra whose sphere holds it,
- * and the facets of the hull that it sees; fill the hole with the cone from the vertex. - Spheres
- * are tested in single precision (RoughSphere.h), then in double precision (Determinants.h), then
- * exactly. Where small differences of all coordinates are exact in double precision, as on a
- * lattice, that is known beforehand. Points on a sphere are told apart by PulledSphere.h. - A
- * thread touches only tetrahedra with all vertices in its part of the curve (CurvePart.h), so that
- * none waits for another, and takes places for new ones from a store of its own.
+ * Method:
+ *  1. walk to a tetrahedron that holds the vertex;
+ *  2. remove the tetrahedra whose sphere holds it, and the facets of the hull that it sees. Spheres
+ *     are tested in single precision (RoughSphere.h), then in double precision (Determinants.h),
+ *     then exactly; where small differences of all coordinates are exact in double precision, as on
+ *     a lattice, that is known beforehand. Points on a sphere are told apart by PulledSphere.h;
+ *  3. fill the hole with the cone from the vertex.
+ *
+ * Threads: each touches only tetrahedra with all vertices in its part of the curve (CurvePart.h),
+ * so that none waits for another, and takes places for new ones from its own (FreePlaces.h).
  *
  * Inputs: vertices are distinct, finite points; the vertex at infinity, their number, lies beyond
  * all facets of the hull. Parts of threads that work at the same time are disjoint.
