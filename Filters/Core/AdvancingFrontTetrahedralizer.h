@@ -8,11 +8,12 @@
  *     smallest lambda (Crit. 6.2): one incremental construction is two to nine times as fast as the
  *     searches of the thesis, facet by facet, and does not depend on how the points are distributed;
  *  2. test that each triangle of the surface is strongly Delaunay; turn the diagonals inside of
- *     cocircular facets to the pulling rule;
+ *     cocircular facets to the pulling rule (SurfaceFacets.h);
  *  3. take the tetrahedron at a side of a triangle of each enclosed region, or at a given seed, and
  *     put it into the front;
  *  4. facets of the front meet their like (Lemma 6.1), or a triangle of the surface, where the front
- *     stops, or get the tetrahedron beyond; go on until the front is empty (Lemma 6.2).
+ *     stops, or get the tetrahedron beyond; go on until the front is empty (Lemma 6.2);
+ *  5. number what is meshed by its vertices (CanonicalNumbering.h).
  *
  * Regions: with labels a side of a triangle belongs to its label, and sides labelled
  * OutsideRegion are not meshed. Without labels every enclosed segment gets an id from 0 on, and the

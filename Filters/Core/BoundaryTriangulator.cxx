@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BoundaryTriangulator.h"
 
-#include "BoxTree.h"
+#include "CoincidentPoints.h"
 #include "DuplicateTriangles.h"
+#include "EdgeUses.h"
+#include "GapPatches.h"
+#include "PolygonOutlines.h"
 #include "PolygonTriangulation.h"
-#include "Predicates.h"
+#include "SortedIds.h"
 #include "SurfaceOrientation.h"
+#include "TJunctions.h"
 #include "TriangleIntersection.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <locale>
 #include <numeric>
 #include <sstream>
 #include <string>
-#include <unordered_map>
 #include <utility>
 
 namespace cdm
@@ -29,104 +30,6 @@ namespace
 constexpr double PlanarityRatio = 1e-6;
 // The abort function is asked once in so many steps of a loop.
 constexpr Id StepsBetweenChecks = 1024;
-
-/** Polygons in flat arrays; Cells: the input polygon of each. */
-struct Outlines
-{
-  std::vector<Id> Offsets{ 0 };
-  std::vector<Id> Vertices;
-  std::vector<Id> Cells;
-
-  Id GetSize() const { return static_cast<Id>(this->Cells.size()); }
-  void Get(Id index, std::vector<Id>& outline) const
-  {
-    outline.assign(this->Vertices.begin() + this->Offsets[index],
-      this->Vertices.begin() + this->Offsets[index + 1]);
-  }
-  void Add(Id cell, const std::vector<Id>& outline)
-  {
-    this->Vertices.insert(this->Vertices.end(), outline.begin(), outline.end());
-    this->Offsets.push_back(static_cast<Id>(this->Vertices.size()));
-    this->Cells.push_back(cell);
-  }
-};
-
-EdgeIds MakeEdge(Id a, Id b)
-{
-  return a < b ? EdgeIds{ a, b } : EdgeIds{ b, a };
-}
-
-/** An edge of a triangle; the triangle runs from Points[0] to Points[1] if it is Forward. */
-struct EdgeUse
-{
-  EdgeIds Points;
-  Id Triangle;
-  bool Forward;
-};
-
-std::vector<EdgeUse> CollectEdges(const std::vector<TriangleIds>& triangles)
-{
-  std::vector<EdgeUse> edges;
-  edges.reserve(3 * triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-  {
-    for (int i = 0; i < 3; ++i)
-    {
-      const Id a = triangles[t][i];
-      const Id b = triangles[t][(i + 1) % 3];
-      edges.push_back({ MakeEdge(a, b), static_cast<Id>(t), a < b });
-    }
-  }
-  std::sort(edges.begin(), edges.end(),
-    [](const EdgeUse& a, const EdgeUse& b)
-    { return a.Points != b.Points ? a.Points < b.Points : a.Triangle < b.Triangle; });
-  return edges;
-}
-
-Box GetBox(const std::vector<Vec3>& points, const TriangleIds& t)
-{
-  Box box;
-  for (const Id id : t)
-  {
-    box.Add(points[id]);
-  }
-  return box;
-}
-
-/** Lowest common form of a cycle of ids over all starts and both directions. */
-std::vector<Id> MakeCanonical(const std::vector<Id>& outline, bool& reversed)
-{
-  const std::size_t n = outline.size();
-  const Id lowest = *std::min_element(outline.begin(), outline.end());
-  std::vector<Id> best;
-  std::vector<Id> candidate(n);
-  for (const bool backward : { false, true })
-  {
-    for (std::size_t start = 0; start < n; ++start)
-    {
-      if (outline[start] != lowest)
-      {
-        continue;
-      }
-      for (std::size_t i = 0; i < n; ++i)
-      {
-        candidate[i] = outline[(backward ? start + n - i : start + i) % n];
-      }
-      if (best.empty() || candidate < best)
-      {
-        best = candidate;
-        reversed = backward;
-      }
-    }
-  }
-  return best;
-}
-
-void SortUnique(std::vector<Id>& ids)
-{
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-}
 
 /** The first few ids, for a message. */
 std::string ToText(const std::vector<Id>& ids)
@@ -258,25 +161,8 @@ private:
     {
       this->Representatives[id] = id;
     }
-    std::vector<Id> order;
-    for (Id i = 0; i < n; ++i)
-    {
-      if (this->Representatives[i] != NoId)
-      {
-        order.push_back(i);
-      }
-    }
-    std::sort(order.begin(), order.end(),
-      [this](Id a, Id b)
-      { return this->Points[a] != this->Points[b] ? this->Points[a] < this->Points[b] : a < b; });
-    for (std::size_t i = 1; i < order.size(); ++i)
-    {
-      if (this->Points[order[i]] == this->Points[order[i - 1]])
-      {
-        this->Representatives[order[i]] = this->Representatives[order[i - 1]];
-      }
-    }
-    if (this->Options.MergeTolerance > 0.0 && !this->MergeNearPoints())
+    if (!FindRepresentatives(this->Points, this->Options.MergeTolerance,
+          this->Context.Part(0.0, 0.05), this->Representatives))
     {
       return Status::Aborted();
     }
@@ -286,69 +172,6 @@ private:
         this->Representatives[i] != NoId && this->Representatives[i] != i;
     }
     return {};
-  }
-
-  /** Cells of a grid as wide as the tolerance: a near point lies in one of 27 of them. */
-  bool MergeNearPoints()
-  {
-    using Cell = std::array<double, 3>;
-    struct CellHash
-    {
-      std::size_t operator()(const Cell& cell) const
-      {
-        const std::hash<double> hash;
-        return (hash(cell[0]) * 0x9E3779B97F4A7C15u + hash(cell[1])) * 0x9E3779B97F4A7C15u +
-          hash(cell[2]);
-      }
-    };
-    const double tolerance = this->Options.MergeTolerance;
-    std::unordered_map<Cell, std::vector<Id>, CellHash> grid;
-    const Id n = static_cast<Id>(this->Points.size());
-    for (Id i = 0; i < n; ++i)
-    {
-      if (!this->Continue(i, n, 0.0, 0.05, "Merging points"))
-      {
-        return false;
-      }
-      if (this->Representatives[i] == NoId)
-      {
-        continue;
-      }
-      if (this->Representatives[i] != i)
-      {
-        this->Representatives[i] = this->Representatives[this->Representatives[i]];
-        continue;
-      }
-      const Vec3& p = this->Points[i];
-      const Cell home{ std::floor(p.X / tolerance), std::floor(p.Y / tolerance),
-        std::floor(p.Z / tolerance) };
-      Id found = NoId;
-      for (int k = 0; k < 27; ++k)
-      {
-        const auto cell =
-          grid.find({ home[0] + k % 3 - 1, home[1] + k / 3 % 3 - 1, home[2] + k / 9 - 1 });
-        if (cell == grid.end())
-        {
-          continue;
-        }
-        for (const Id other : cell->second)
-        {
-          if (Distance(p, this->Points[other]) < tolerance && (found == NoId || other < found))
-          {
-            found = other;
-          }
-        }
-      }
-      if (found != NoId)
-      {
-        this->Representatives[i] = found;
-      }
-      else
-      {
-        grid[home].push_back(i);
-      }
-    }
-    return true;
   }
 
   Status CleanPolygons()
@@ -412,140 +235,21 @@ private:
       cells);
   }
 
-  /** Inserts into the polygons the vertices that lie on their edges. */
   Status SplitEdges()
   {
-    const Outlines& polygons = this->Polygons;
-    std::vector<EdgeIds> edges;
-    for (Id p = 0; p < polygons.GetSize(); ++p)
+    std::vector<TJunction> junctions;
+    if (!SplitEdgesAtVertices(this->Points, this->Options.MergeTolerance,
+          this->Context.Part(0.1, 0.3), this->Polygons, junctions))
     {
-      for (Id i = polygons.Offsets[p]; i < polygons.Offsets[p + 1]; ++i)
-      {
-        const Id next = i + 1 < polygons.Offsets[p + 1] ? i + 1 : polygons.Offsets[p];
-        edges.push_back(MakeEdge(polygons.Vertices[i], polygons.Vertices[next]));
-      }
+      return Status::Aborted();
     }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-
-    const double tolerance = this->Options.MergeTolerance;
-    const Vec3 margin{ tolerance, tolerance, tolerance };
-    std::vector<Box> boxes(edges.size());
-    for (std::size_t e = 0; e < edges.size(); ++e)
+    for (const TJunction& junction : junctions)
     {
-      boxes[e].Add(this->Points[edges[e][0]]);
-      boxes[e].Add(this->Points[edges[e][1]]);
-      boxes[e].Low = boxes[e].Low - margin;
-      boxes[e].High = boxes[e].High + margin;
+      const Vec3& p = this->Points[junction.Vertex];
+      this->AddProblem(SurfaceProblemKind::TJunction, junction.Cell, NoId, p, p);
     }
-    const BoxTree tree(std::move(boxes));
-
-    std::vector<Id> vertices = polygons.Vertices;
-    SortUnique(vertices);
-    // (edge, vertex on it)
-    std::vector<std::pair<Id, Id>> junctions;
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-    {
-      if (!this->Continue(static_cast<Id>(i), static_cast<Id>(vertices.size()), 0.1, 0.3,
-            "Looking for vertices on edges"))
-      {
-        return Status::Aborted();
-      }
-      const Id vertex = vertices[i];
-      const Vec3& p = this->Points[vertex];
-      Box box;
-      box.Add(p);
-      tree.VisitOverlaps(box,
-        [&](Id e)
-        {
-          if (edges[e][0] != vertex && edges[e][1] != vertex && this->IsOnEdge(p, edges[e]))
-          {
-            junctions.emplace_back(e, vertex);
-          }
-        });
-    }
-    if (!junctions.empty())
-    {
-      this->InsertJunctions(edges, junctions);
-    }
+    this->Output.Report.TJunctions = static_cast<Id>(junctions.size());
     return {};
-  }
-
-  /** For a point that lies in the box of the edge and is none of its ends. */
-  bool IsOnEdge(const Vec3& p, const EdgeIds& edge) const
-  {
-    const Vec3& a = this->Points[edge[0]];
-    const Vec3& b = this->Points[edge[1]];
-    const double tolerance = this->Options.MergeTolerance;
-    if (tolerance == 0.0)
-    {
-      return AreCollinear(a, b, p);
-    }
-    const Vec3 direction = b - a;
-    const double ratio = Dot(p - a, direction) / SquaredNorm(direction);
-    return ratio > 0.0 && ratio < 1.0 && Distance(p, a + ratio * direction) < tolerance;
-  }
-
-  void InsertJunctions(const std::vector<EdgeIds>& edges, std::vector<std::pair<Id, Id>>& junctions)
-  {
-    // In the order along the edge. Exactly on it, that is the lexicographic one.
-    const bool exact = this->Options.MergeTolerance == 0.0;
-    std::sort(junctions.begin(), junctions.end(),
-      [&](const std::pair<Id, Id>& s, const std::pair<Id, Id>& t)
-      {
-        if (s.first != t.first)
-        {
-          return s.first < t.first;
-        }
-        const Vec3& a = this->Points[edges[s.first][0]];
-        const Vec3& b = this->Points[edges[s.first][1]];
-        const Vec3& p = this->Points[s.second];
-        const Vec3& q = this->Points[t.second];
-        if (!exact && Dot(b - a, p - a) != Dot(b - a, q - a))
-        {
-          return Dot(b - a, p - a) < Dot(b - a, q - a);
-        }
-        return a < b ? p < q : q < p;
-      });
-    Outlines result;
-    std::vector<Id> outline;
-    std::vector<Id> split;
-    for (Id k = 0; k < this->Polygons.GetSize(); ++k)
-    {
-      this->Polygons.Get(k, outline);
-      split.clear();
-      for (std::size_t i = 0; i < outline.size(); ++i)
-      {
-        const Id from = outline[i];
-        const EdgeIds edge = MakeEdge(from, outline[(i + 1) % outline.size()]);
-        split.push_back(from);
-        const Id e =
-          static_cast<Id>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin());
-        const auto begin = std::lower_bound(
-          junctions.begin(), junctions.end(), std::pair<Id, Id>(e, NoId), CompareFirst);
-        const auto end = std::upper_bound(
-          junctions.begin(), junctions.end(), std::pair<Id, Id>(e, NoId), CompareFirst);
-        const std::size_t size = split.size();
-        for (auto junction = begin; junction != end; ++junction)
-        {
-          split.push_back(junction->second);
-          const Vec3& p = this->Points[junction->second];
-          ++this->Output.Report.TJunctions;
-          this->AddProblem(SurfaceProblemKind::TJunction, this->Polygons.Cells[k], NoId, p, p);
-        }
-        if (from != edge[0])
-        {
-          std::reverse(split.begin() + size, split.end());
-        }
-      }
-      result.Add(this->Polygons.Cells[k], split);
-    }
-    this->Polygons = std::move(result);
-  }
-
-  static bool CompareFirst(const std::pair<Id, Id>& a, const std::pair<Id, Id>& b)
-  {
-    return a.first < b.first;
   }
 
   bool HasLabels() const { return !this->Input.Labels.empty(); }
@@ -562,62 +266,32 @@ private:
 
   Status DropDuplicatePolygons()
   {
-    const Id n = this->Polygons.GetSize();
-    Outlines cycles;
-    std::vector<char> reversed(n);
-    std::vector<Id> outline;
-    for (Id k = 0; k < n; ++k)
-    {
-      bool isReversed = false;
-      this->Polygons.Get(k, outline);
-      cycles.Add(k, MakeCanonical(outline, isReversed));
-      reversed[k] = isReversed;
-    }
     if (!this->Context.Continue(0.35, "Looking for duplicate polygons"))
     {
       return Status::Aborted();
     }
-    const auto begin = [&cycles](Id k) { return cycles.Vertices.begin() + cycles.Offsets[k]; };
-    std::vector<Id> order(n);
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(),
-      [&begin](Id a, Id b)
-      {
-        if (std::lexicographical_compare(begin(a), begin(a + 1), begin(b), begin(b + 1)))
-        {
-          return true;
-        }
-        return a < b && std::equal(begin(a), begin(a + 1), begin(b), begin(b + 1));
-      });
-
     if (this->HasLabels())
     {
       this->Labels = this->Input.Labels;
     }
+    const Id n = this->Polygons.GetSize();
     std::vector<Id> originals(n, NoId);
     std::vector<Id> contradictions;
-    for (Id i = 1; i < n; ++i)
+    for (const DuplicateOutline& duplicate : FindDuplicateOutlines(this->Polygons))
     {
-      const Id last = order[i - 1];
-      const Id copy = order[i];
-      const Id first = originals[last] == NoId ? last : originals[last];
-      if (!std::equal(begin(copy), begin(copy + 1), begin(first), begin(first + 1)))
-      {
-        continue;
-      }
-      originals[copy] = first;
-      const Id firstCell = this->Polygons.Cells[first];
-      const Id copyCell = this->Polygons.Cells[copy];
+      originals[duplicate.Outline] = duplicate.Original;
+      const Id firstCell = this->Polygons.Cells[duplicate.Original];
+      const Id copyCell = this->Polygons.Cells[duplicate.Outline];
       if (this->HasLabels() &&
-        !UniteLabels(
-          this->Labels[firstCell], this->Input.Labels[copyCell], reversed[first] != reversed[copy]))
+        !UniteLabels(this->Labels[firstCell], this->Input.Labels[copyCell], duplicate.IsReversed))
       {
         contradictions.push_back(firstCell);
         contradictions.push_back(copyCell);
       }
     }
 
-    Outlines result;
+    PolygonOutlines result;
+    std::vector<Id> outline;
     for (Id k = 0; k < n; ++k)
     {
       this->Polygons.Get(k, outline);
@@ -723,185 +397,43 @@ private:
     return {};
   }
 
-  /** A step of a ring: an open edge, and the vertex where it is entered. */
-  struct RingStep
-  {
-    Id Edge;
-    Id From;
-  };
-
   Status PatchGaps()
   {
-    if (this->Options.MaximumGapEdges < 3)
+    const GapPatchOptions options{ this->Options.MaximumGapEdges,
+      this->Options.ResolveSelfIntersections };
+    std::vector<GapPatch> patches;
+    if (!FindGapPatches(
+          this->Points, this->Triangles, options, this->Context.Part(0.5, 0.55), patches))
     {
-      return {};
+      return Status::Aborted();
     }
-    const std::vector<EdgeUse> edges = CollectEdges(this->Triangles);
-    std::vector<EdgeUse> open;
-    for (std::size_t i = 0; i < edges.size(); ++i)
+    for (const GapPatch& patch : patches)
     {
-      if ((i == 0 || edges[i - 1].Points != edges[i].Points) &&
-        (i + 1 == edges.size() || edges[i + 1].Points != edges[i].Points))
+      ++this->Output.Report.PatchedRings;
+      for (const OpenEdge& edge : patch.Edges)
       {
-        open.push_back(edges[i]);
+        this->AddProblem(SurfaceProblemKind::PatchedGap, this->Sources[edge.Triangle], NoId,
+          this->Points[edge.Points[0]], this->Points[edge.Points[1]]);
       }
-    }
-    std::vector<Box> boxes(this->Triangles.size());
-    for (std::size_t t = 0; t < boxes.size(); ++t)
-    {
-      boxes[t] = GetBox(this->Points, this->Triangles[t]);
-    }
-    const BoxTree tree(std::move(boxes));
-    const Id unpatched = static_cast<Id>(this->Triangles.size());
-    for (const std::vector<RingStep>& ring : this->TraceRings(open))
-    {
-      if (!this->Context.Continue(0.5, "Patching gaps"))
+      this->Triangles.insert(this->Triangles.end(), patch.Triangles.begin(), patch.Triangles.end());
+      this->Sources.resize(this->Triangles.size(), this->Sources[patch.Neighbor]);
+      if (this->HasLabels())
       {
-        return Status::Aborted();
-      }
-      if (static_cast<Id>(ring.size()) <= this->Options.MaximumGapEdges && ring.size() >= 3)
-      {
-        this->PatchRing(ring, open, tree, unpatched);
+        const RegionPair labels = this->TriangleLabels[patch.Neighbor];
+        this->TriangleLabels.resize(this->Triangles.size(), labels);
       }
     }
     return {};
   }
 
-  /** Closed chains of open edges, cut where they come back to a vertex; the others are left out. */
-  static std::vector<std::vector<RingStep>> TraceRings(const std::vector<EdgeUse>& open)
-  {
-    std::unordered_map<Id, std::vector<Id>> edgesAt;
-    for (std::size_t e = 0; e < open.size(); ++e)
-    {
-      edgesAt[open[e].Points[0]].push_back(static_cast<Id>(e));
-      edgesAt[open[e].Points[1]].push_back(static_cast<Id>(e));
-    }
-    std::vector<char> used(open.size(), 0);
-    std::vector<std::vector<RingStep>> rings;
-    std::vector<RingStep> path;
-    // Position in the path where each vertex of it is left.
-    std::unordered_map<Id, std::size_t> positions;
-    for (std::size_t start = 0; start < open.size(); ++start)
-    {
-      if (used[start])
-      {
-        continue;
-      }
-      // A patch runs along an edge against the triangle that is there.
-      Id here = open[start].Points[open[start].Forward ? 1 : 0];
-      bool isOnPath = true;
-      while (isOnPath)
-      {
-        Id next = NoId;
-        for (const Id e : edgesAt[here])
-        {
-          const bool runsAlong = open[e].Points[open[e].Forward ? 1 : 0] == here;
-          if (!used[e] && (next == NoId || runsAlong))
-          {
-            next = e;
-            if (runsAlong)
-            {
-              break;
-            }
-          }
-        }
-        if (next == NoId)
-        {
-          // A dead end belongs to no ring: go back.
-          isOnPath = !path.empty();
-          if (isOnPath)
-          {
-            here = path.back().From;
-            positions.erase(here);
-            path.pop_back();
-          }
-          continue;
-        }
-        used[next] = 1;
-        positions[here] = path.size();
-        path.push_back({ next, here });
-        here = open[next].Points[open[next].Points[0] == here ? 1 : 0];
-        const auto closing = positions.find(here);
-        if (closing != positions.end())
-        {
-          const std::size_t first = closing->second;
-          rings.emplace_back(path.begin() + first, path.end());
-          for (const RingStep& step : rings.back())
-          {
-            positions.erase(step.From);
-          }
-          path.resize(first);
-        }
-      }
-    }
-    return rings;
-  }
-
-  /** Where intersections are resolved a patch may cross the surface, but not lie in it. */
-  bool CanPatchBeside(const TriangleIds& patch, const TriangleIds& other) const
-  {
-    return ClassifyTriangles(this->Points, patch, other) != TriangleContact::Intersection ||
-      (this->Options.ResolveSelfIntersections && !AreCoplanar(this->Points, patch, other));
-  }
-
-  void PatchRing(
-    std::vector<RingStep> ring, const std::vector<EdgeUse>& open, const BoxTree& tree, Id unpatched)
-  {
-    const auto lowest = std::min_element(ring.begin(), ring.end(),
-      [](const RingStep& a, const RingStep& b) { return a.Edge < b.Edge; });
-    const EdgeUse& edge = open[lowest->Edge];
-    std::vector<Id> outline;
-    for (const RingStep& step : ring)
-    {
-      outline.push_back(step.From);
-    }
-    if (lowest->From == edge.Points[edge.Forward ? 0 : 1])
-    {
-      std::reverse(outline.begin(), outline.end());
-    }
-    std::vector<TriangleIds> patch;
-    if (TriangulatePolygon(this->Points, outline, patch) != PolygonTriangulationResult::Ok)
-    {
-      return;
-    }
-    for (const TriangleIds& t : patch)
-    {
-      bool isFree = true;
-      const auto test = [&](Id other)
-      { isFree = isFree && this->CanPatchBeside(t, this->Triangles[other]); };
-      tree.VisitOverlaps(GetBox(this->Points, t), test);
-      for (Id other = unpatched; other < static_cast<Id>(this->Triangles.size()); ++other)
-      {
-        test(other);
-      }
-      if (!isFree)
-      {
-        return;
-      }
-    }
-    ++this->Output.Report.PatchedRings;
-    for (const RingStep& step : ring)
-    {
-      const EdgeUse& patched = open[step.Edge];
-      this->AddProblem(SurfaceProblemKind::PatchedGap, this->Sources[patched.Triangle], NoId,
-        this->Points[patched.Points[0]], this->Points[patched.Points[1]]);
-    }
-    this->Triangles.insert(this->Triangles.end(), patch.begin(), patch.end());
-    this->Sources.resize(this->Triangles.size(), this->Sources[edge.Triangle]);
-    if (this->HasLabels())
-    {
-      const RegionPair labels = this->TriangleLabels[edge.Triangle];
-      this->TriangleLabels.resize(this->Triangles.size(), labels);
-    }
-  }
-
   Status CountEdges()
   {
-    const std::vector<EdgeUse> edges = CollectEdges(this->Triangles);
+    const std::vector<EdgeUse> edges =
+      SortEdgeUses(this->Triangles, this->Points.size() + this->NewPoints.size());
     for (std::size_t begin = 0; begin < edges.size();)
     {
       std::size_t end = begin + 1;
-      while (end < edges.size() && edges[end].Points == edges[begin].Points)
+      while (end < edges.size() && edges[end].Edge == edges[begin].Edge)
       {
         ++end;
       }
@@ -909,8 +441,9 @@ private:
       if (end - begin == 1)
       {
         ++this->Output.Report.OpenEdges;
-        this->AddProblem(SurfaceProblemKind::OpenEdge, this->Sources[edges[begin].Triangle], NoId,
-          this->GetPoint(edges[begin].Points[0]), this->GetPoint(edges[begin].Points[1]));
+        const auto [a, b] = edges[begin].GetPoints();
+        this->AddProblem(SurfaceProblemKind::OpenEdge, this->Sources[edges[begin].Use / 3], NoId,
+          this->GetPoint(a), this->GetPoint(b));
       }
       begin = end;
     }
@@ -1066,7 +599,7 @@ private:
   const std::vector<Vec3>& Points;
 
   std::vector<Id> Representatives;
-  Outlines Polygons;
+  PolygonOutlines Polygons;
   /** Of each input polygon, united with those of its copies. */
   std::vector<RegionPair> Labels;
   std::vector<TriangleIds> Triangles;

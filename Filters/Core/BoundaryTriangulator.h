@@ -4,15 +4,16 @@
  * @brief Stage 0: from a soup of polygons to a clean, well connected triangulated surface.
  *
  * Method (thesis 3.5 and 6.3):
- *  1. refuse points that are not finite; merge coincident points (exactly, or within a tolerance);
+ *  1. refuse points that are not finite; merge coincident points (exactly, or within a tolerance:
+ *     CoincidentPoints.h);
  *  2. drop repeated vertices and degenerate polygons;
- *  3. split polygon edges at the vertices that lie on them (T-junctions, Fig. 3.16); then drop
- *     duplicate polygons, whose labels are united;
+ *  3. split polygon edges at the vertices that lie on them (T-junctions, Fig. 3.16, TJunctions.h);
+ *     then drop duplicate polygons, whose labels are united;
  *  4. triangulate every polygon by recursive splitting with exact signs, in the projection along
  *     the largest component of its normal (PolygonTriangulation.h); outlines bridged to holes and
  *     collinear vertices are welcome. A non-planar polygon is triangulated in that same projection;
- *  5. trace open edges into rings and patch those of at most MaximumGapEdges edges, unless the
- *     patch would meet the surface (a lone triangle is no hole, nor is a flat sheet);
+ *  5. trace open edges into rings and patch those of at most MaximumGapEdges edges (GapPatches.h),
+ *     unless the patch would meet the surface (a lone triangle is no hole, nor is a flat sheet);
  *  6. find all pairs of triangles that cross, overlap or touch other than in a common edge or
  *     vertex, exactly (TriangleIntersection.h); as an option split them along their intersections
  *     (IntersectionResolver.h);

@@ -6,10 +6,12 @@
 #ifndef cdmBox_h
 #define cdmBox_h
 
+#include "Types.h"
 #include "Vec3.h"
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 namespace cdm
 {
@@ -65,6 +67,17 @@ struct Box
       box.Low.Y <= this->High.Y && this->Low.Z <= box.High.Z && box.Low.Z <= this->High.Z;
   }
 };
+
+/** The box of a triangle. */
+inline Box GetBox(const std::vector<Vec3>& points, const TriangleIds& t)
+{
+  Box box;
+  for (const Id id : t)
+  {
+    box.Add(points[id]);
+  }
+  return box;
+}
 } // namespace cdm
 
 #endif

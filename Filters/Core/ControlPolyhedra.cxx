@@ -8,6 +8,7 @@
 #include "ParallelSort.h"
 #include "Predicates.h"
 #include "SimplexIncidence.h"
+#include "SortedIds.h"
 #include "VoronoiMeasures.h"
 
 #include <algorithm>
@@ -83,7 +84,7 @@ private:
   }
   Id GetEdgeVertex(Id a, Id b) const
   {
-    const EdgeIds edge{ std::min(a, b), std::max(a, b) };
+    const EdgeIds edge = MakeEdge(a, b);
     const auto found = std::lower_bound(this->BorderEdges.begin(), this->BorderEdges.end(), edge);
     return this->FirstEdge + static_cast<Id>(found - this->BorderEdges.begin());
   }
@@ -195,9 +196,7 @@ void PolyhedronMaker::CollectBorders()
       this->BorderEdges.push_back({ ids[0], ids[2] });
     }
   }
-  std::sort(this->BorderEdges.begin(), this->BorderEdges.end());
-  this->BorderEdges.erase(
-    std::unique(this->BorderEdges.begin(), this->BorderEdges.end()), this->BorderEdges.end());
+  SortUnique(this->BorderEdges);
   this->FirstEdge = static_cast<Id>(this->BorderFacets.size());
   this->FirstTetrahedron = this->FirstEdge + static_cast<Id>(this->BorderEdges.size());
   this->FirstPoint = this->FirstTetrahedron + count;
@@ -234,7 +233,7 @@ void PolyhedronMaker::FindFlatEdges()
     {
       const Id a = ids[i];
       const Id b = ids[(i + 1) % 3];
-      uses.push_back({ { std::min(a, b), std::max(a, b) }, border, ids[(i + 2) % 3] });
+      uses.push_back({ MakeEdge(a, b), border, ids[(i + 2) % 3] });
     }
   }
   std::sort(uses.begin(), uses.end(),

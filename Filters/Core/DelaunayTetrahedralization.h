@@ -11,8 +11,8 @@
  *     round;
  *  2. a vertex is located by a walk from the last one; the tetrahedra whose sphere holds it, and the
  *     facets of the hull that it sees, are removed, and the hole is filled with the cone from the
- *     vertex (Bowyer 1981, Watson 1981). Beyond each facet of the hull lies a tetrahedron with the
- *     vertex at infinity;
+ *     vertex (VertexInsertion.h). Beyond each facet of the hull lies a tetrahedron with the vertex
+ *     at infinity;
  *  3. a sphere is tested in single precision with a bound of its error, then in double precision,
  *     then exactly. Points on one sphere are told apart as if each had been pulled into it
  *     infinitely little, the lowest numbered one most: that gives the cells of the Delaunay

@@ -2,6 +2,7 @@
 #include "FacetPolygons.h"
 
 #include "Predicates.h"
+#include "SortedIds.h"
 
 namespace cdm
 {
@@ -13,7 +14,7 @@ FacetPolygons::FacetPolygons(const TriangleMesh& surface) : Surface(surface)
     {
       const Id a = surface.Triangles[t][i];
       const Id b = surface.Triangles[t][(i + 1) % 3];
-      this->Uses.push_back({ { std::min(a, b), std::max(a, b) }, static_cast<Id>(t) });
+      this->Uses.push_back({ MakeEdge(a, b), static_cast<Id>(t) });
     }
   }
   std::sort(this->Uses.begin(), this->Uses.end());
@@ -22,7 +23,7 @@ FacetPolygons::FacetPolygons(const TriangleMesh& surface) : Surface(surface)
 /** The other triangle at the edge, or NoId if there is not exactly one. */
 Id FacetPolygons::GetOther(Id triangle, Id a, Id b) const
 {
-  const std::pair<EdgeIds, Id> key{ { std::min(a, b), std::max(a, b) }, 0 };
+  const std::pair<EdgeIds, Id> key{ MakeEdge(a, b), 0 };
   const auto first = std::lower_bound(this->Uses.begin(), this->Uses.end(), key);
   auto last = first;
   while (last != this->Uses.end() && last->first == key.first)

@@ -3,6 +3,7 @@
 
 #include "IdLists.h"
 #include "Predicates.h"
+#include "SortedIds.h"
 #include "TriangleIntersection.h"
 
 #include <algorithm>
@@ -42,7 +43,7 @@ std::vector<NetEdge> CollectEdges(const FaceNet& net)
     {
       const Id a = ids[i];
       const Id b = ids[(i + 1) % 4];
-      edges.push_back({ { std::min(a, b), std::max(a, b) }, static_cast<Id>(f) });
+      edges.push_back({ MakeEdge(a, b), static_cast<Id>(f) });
     }
   }
   std::sort(edges.begin(), edges.end(),

@@ -7,9 +7,10 @@
  *  1. find the triangles that intersect, exactly (TriangleIntersection.h); after the first round
  *     only those that have changed are looked at;
  *  2. compute the points where an edge pierces a triangle and where edges of coplanar triangles
- *     cross: parameters from exact determinants, then rounded to double. A point within a tolerance
- *     of another one is that point; within it of an edge it divides the edge, in all triangles that
- *     have it: so pieces stay connected, and a closed surface stays closed;
+ *     cross (IntersectionPoints.h, CuttingRound.h): parameters from exact determinants, then
+ *     rounded to double. A point within a tolerance of another one is that point; within it of an
+ *     edge it divides the edge, in all triangles that have it: so pieces stay connected, and a
+ *     closed surface stays closed;
  *  3. the segments between these points are chains common to both triangles; where two chains
  *     cross in a triangle both get the crossing;
  *  4. triangulate each triangle anew with its points and chains (ConstrainedTriangulation.h);
@@ -19,12 +20,9 @@
  *     intersecting is pulled together. If points are nearer than that they are merged first.
  *     Triangles of the input that are narrower than the first tolerance (what is left of a
  *     T-junction in a file whose coordinates are rounded) are closed in the first round, too.
- * Last, of an unlabelled surface only the pieces that bound the outside are kept, unless all are
- * asked for. The boundary of a union: with windings counted (one more on the back of each piece),
- * those with winding 0 on one side only. Where orientations contradict each other, those of which a
- * side belongs to the outer shell (SurfaceSides.h), but for scraps: sheets of cut triangles that
- * stick out of something closed. Parts of the surface that take part in no intersection stay as
- * they are, inner sheets included.
+ * Last, of an unlabelled surface only the pieces that bound the outside are kept (UnionBoundary.h),
+ * unless all are asked for. Parts of the surface that take part in no intersection stay as they
+ * are, inner sheets included.
  *
  * Inputs: the invariants of TriangleMesh.h but for the intersections; SourceCells, for messages.
  * Outputs: pieces have the label and source cell of their triangle. Points are appended; those that
@@ -39,10 +37,8 @@
  * with different regions on the same side; the surface is then left as it was.
  * Cost: O(n log n) per round for n triangles of bounded overlap, k^2 in a triangle with k cuts.
  *
- * References: D. Halperin, E. Packer, "Iterated snap rounding", Computational Geometry 23 (2002),
- * 209-225 (pulling rounded points together, in rounds); J. R. Shewchuk, "Adaptive precision
- * floating-point arithmetic and fast robust geometric predicates", 1997, doi:10.1007/PL00009321
- * (exact sums).
+ * Reference: D. Halperin, E. Packer, "Iterated snap rounding", Computational Geometry 23 (2002),
+ * 209-225 (pulling rounded points together, in rounds).
  */
 #ifndef cdmIntersectionResolver_h
 #define cdmIntersectionResolver_h

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MergeableSurface.h"
 
+#include "SortedIds.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -37,8 +39,7 @@ std::vector<Id> MergeableSurface::GetNeighbors(Id point) const
       }
     }
   }
-  std::sort(neighbors.begin(), neighbors.end());
-  neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
+  SortUnique(neighbors);
   std::vector<Id> ids;
   ids.reserve(neighbors.size());
   for (const auto& neighbor : neighbors)

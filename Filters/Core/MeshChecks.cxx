@@ -6,6 +6,7 @@
 #include "ParallelSort.h"
 #include "Predicates.h"
 #include "SimplexIncidence.h"
+#include "SortedIds.h"
 #include "SphereCriteria.h"
 #include "VolumeSums.h"
 
@@ -252,9 +253,7 @@ void Checker::CollectRegions()
       }
     }
   }
-  std::sort(this->RegionIds.begin(), this->RegionIds.end());
-  this->RegionIds.erase(
-    std::unique(this->RegionIds.begin(), this->RegionIds.end()), this->RegionIds.end());
+  SortUnique(this->RegionIds);
   this->Regions.resize(this->RegionIds.size());
 }
 
@@ -606,8 +605,7 @@ bool Checker::CheckBoundarySpheres(const SphereCriteria& criteria, const Executi
     edges.push_back({ ids[1], ids[2] });
     edges.push_back({ ids[0], ids[2] });
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  SortUnique(edges);
   const auto countFilled =
     [&](const auto& simplices, const ExecutionContext& part, const char* activity, Id& result)
   {
@@ -817,8 +815,7 @@ Status BuildNeighbors(TetMesh& mesh, int numberOfThreads)
   }
   if (!cells.empty())
   {
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    SortUnique(cells);
     return Status::InvalidInput(
       std::to_string(cells.size()) + " tetrahedra share a facet with more than one other.", cells);
   }

@@ -7,6 +7,7 @@
 #include "ParallelSort.h"
 #include "Predicates.h"
 #include "SimplexIncidence.h"
+#include "SortedIds.h"
 #include "SphereCriteria.h"
 #include "VolumeSums.h"
 #include "VoronoiMeasures.h"
@@ -562,8 +563,7 @@ std::vector<Id> Evaluator::FindRegions() const
     std::vector<Id>& ids = blocks[block];
     std::unique_copy(this->Mesh.Regions.begin() + begin, this->Mesh.Regions.begin() + end,
       std::back_inserter(ids));
-    std::sort(ids.begin(), ids.end());
-    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    SortUnique(ids);
   };
   ParallelLoop(this->Mesh.Regions.size(), this->LoopOptions, {}, "", find);
   std::vector<Id> ids;
@@ -578,8 +578,7 @@ std::vector<Id> Evaluator::FindRegions() const
       ids.insert(ids.end(), { labels.Front, labels.Back });
     }
   }
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  SortUnique(ids);
   ids.erase(std::remove(ids.begin(), ids.end(), OutsideRegion), ids.end());
   return ids;
 }

@@ -8,6 +8,7 @@
 #include "PointOctree.h"
 #include "RegionLocator.h"
 #include "SizingOctree.h"
+#include "SortedIds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -640,8 +641,7 @@ Status Generator::PlaceOrthoProduct()
   }
   for (int axis = 0; axis < 3; ++axis)
   {
-    std::sort(ticks[axis].begin(), ticks[axis].end());
-    ticks[axis].erase(std::unique(ticks[axis].begin(), ticks[axis].end()), ticks[axis].end());
+    SortUnique(ticks[axis]);
     numberOfCells *= static_cast<double>(ticks[axis].size());
   }
   if (numberOfCells > this->Options.MaximumNumberOfPoints)

@@ -10,6 +10,7 @@
 #include "Predicates.h"
 #include "RegionLocator.h"
 #include "ShortestEdges.h"
+#include "SortedIds.h"
 #include "SurfaceCoarsening.h"
 #include "SurfaceSides.h"
 #include "TriangleIntersection.h"
@@ -708,8 +709,7 @@ Status Remeshing::Describe(Status status, const Surface& surface) const
       }
     }
   }
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
+  SortUnique(points);
   status.Message =
     "The moved boundary cannot be meshed; move it by less, or in more steps. " + status.Message;
   status.Cells.clear();

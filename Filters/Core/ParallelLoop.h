@@ -3,10 +3,12 @@
  * @file ParallelLoop.h
  * @brief A loop over independent items on several threads, with progress and abort.
  *
- * The items are cut into blocks of equal size, whatever the number of threads; each thread takes the
- * next block until none is left. The calling thread works too, and alone reports progress and asks
- * for aborts. Results are the same for any number of threads if what a block writes depends on its
- * items only, and no two blocks write to the same place.
+ * The items are cut into blocks of equal size, whatever the number of threads; each thread takes
+ * the next block until none is left. The calling thread works too, and alone reports progress and
+ * asks for aborts. Results are the same for any number of threads if what a block writes depends on
+ * its items only, and no two blocks write to the same place.
+ *
+ * ForAll(), ForEach() and HoldForAll() are loops that end so soon that nobody need be asked.
  */
 #ifndef cdmParallelLoop_h
 #define cdmParallelLoop_h
@@ -78,6 +80,54 @@ bool ParallelLoop(std::size_t count, const ParallelLoopOptions& options,
       }
     });
   return !isAborted;
+}
+
+/**
+ * work(begin, end) for parts of the numbers below size. The parts are large: what is close in
+ * number is close in memory, and threads that write to the same place wait for each other.
+ */
+template <typename Work>
+void ForAll(std::size_t size, int numberOfThreads, const Work& work)
+{
+  const std::size_t part =
+    std::max(std::size_t(1) << 15, size / (8 * GetNumberOfThreads(numberOfThreads)) + 1);
+  ParallelLoop(size, { numberOfThreads, part }, {}, "",
+    [&work](std::size_t begin, std::size_t end, std::size_t) { work(begin, end); });
+}
+
+/** work(i) for the numbers below size. */
+template <typename Work>
+void ForEach(std::size_t size, int numberOfThreads, const Work& work)
+{
+  ForAll(size, numberOfThreads,
+    [&work](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        work(i);
+      }
+    });
+}
+
+/** Whether a condition holds for all numbers below size. */
+template <typename Condition>
+bool HoldForAll(std::size_t size, int numberOfThreads, const Condition& condition)
+{
+  std::atomic<bool> isTrue{ true };
+  ForAll(size, numberOfThreads,
+    [&](std::size_t begin, std::size_t end)
+    {
+      bool isTrueHere = true;
+      for (std::size_t i = begin; i < end && isTrueHere; ++i)
+      {
+        isTrueHere = condition(i);
+      }
+      if (!isTrueHere)
+      {
+        isTrue = false;
+      }
+    });
+  return isTrue;
 }
 } // namespace cdm
 

@@ -6,6 +6,7 @@
 #include "IdLimits.h"
 #include "Predicates.h"
 #include "PulledSphere.h"
+#include "SortedIds.h"
 #include "SpatialSort.h"
 
 #include <algorithm>
@@ -794,8 +795,7 @@ Status PartTetrahedralization::LookUp(
   {
     return {};
   }
-  std::sort(neighbors.begin(), neighbors.end());
-  neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
+  SortUnique(neighbors);
   std::copy_if(neighbors.begin(), neighbors.end(), std::back_inserter(found),
     [&](Id id) { return !isVertex(id) && IsInConflict(query, this->Points[id]); });
   return isKnown && query.IsFacet == 0 && found.empty()

@@ -74,10 +74,7 @@ Status RegionLocator::Build()
   Box bounds;
   for (std::size_t t = 0; t < boxes.size(); ++t)
   {
-    for (const Id id : this->Surface.Triangles[t])
-    {
-      boxes[t].Add(this->Surface.Points[id]);
-    }
+    boxes[t] = GetBox(this->Surface.Points, this->Surface.Triangles[t]);
     bounds.Add(boxes[t]);
   }
   this->Low = bounds.Low;

@@ -5,6 +5,7 @@
 #include "Measures.h"
 #include "MergeableSurface.h"
 #include "Predicates.h"
+#include "SortedIds.h"
 #include "StructuralEdges.h"
 #include "SurfaceSides.h"
 #include "TriangleIntersection.h"
@@ -93,7 +94,7 @@ public:
     }
     for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
     {
-      this->Boxes.Add(static_cast<Id>(t), this->GetTriangleBox(surface.Triangles[t]));
+      this->Boxes.Add(static_cast<Id>(t), GetBox(this->Points, surface.Triangles[t]));
     }
   }
 
@@ -189,16 +190,6 @@ private:
       bounds.Add(point);
     }
     return bounds;
-  }
-
-  Box GetTriangleBox(const TriangleIds& ids) const
-  {
-    Box box;
-    for (const Id id : ids)
-    {
-      box.Add(this->Points[id]);
-    }
-    return box;
   }
 
   /** Queues a point under what its cheapest merge costs; not if there is none. */
@@ -501,7 +492,7 @@ private:
       for (std::size_t i = 1; i < page.GetEnd(); ++i)
       {
         triangles.push_back({ target, page.Path[i], page.Path[i + 1] });
-        boxes.push_back(this->GetTriangleBox(triangles.back()));
+        boxes.push_back(GetBox(this->Points, triangles.back()));
         if (AreCollinear(
               this->Points[target], this->Points[page.Path[i]], this->Points[page.Path[i + 1]]))
         {
@@ -584,7 +575,7 @@ private:
   bool KeepsRegions(Id point, Id target, Id a, Id b) const
   {
     std::vector<TriangleAtEdge> around;
-    const EdgeIds edge{ std::min(a, b), std::max(a, b) };
+    const EdgeIds edge = MakeEdge(a, b);
     for (const Id t : this->Mergeable.GetUses(a))
     {
       TriangleIds ids = this->Mergeable.GetTriangle(t);
@@ -600,7 +591,7 @@ private:
       {
         const Id begin = ids[i];
         const Id end = ids[(i + 1) % 3];
-        if (EdgeIds{ std::min(begin, end), std::max(begin, end) } == edge)
+        if (MakeEdge(begin, end) == edge)
         {
           around.push_back({ edge, t, ids[(i + 2) % 3], begin < end });
         }
@@ -650,7 +641,7 @@ private:
     {
       if (this->Mergeable.Has(t, target) && !this->Mergeable.Has(t, point))
       {
-        this->Boxes.Add(t, this->GetTriangleBox(this->Mergeable.GetTriangle(t)));
+        this->Boxes.Add(t, GetBox(this->Points, this->Mergeable.GetTriangle(t)));
       }
     }
     for (const Page& page : candidate.Pages)

@@ -3,6 +3,7 @@
 
 #include "DisjointSets.h"
 #include "Predicates.h"
+#include "SortedIds.h"
 
 #include <algorithm>
 
@@ -21,8 +22,7 @@ std::vector<TriangleAtEdge> CollectEdgeUses(const TriangleMesh& surface)
     {
       const Id a = triangle[i];
       const Id b = triangle[(i + 1) % 3];
-      uses.push_back(
-        { { std::min(a, b), std::max(a, b) }, static_cast<Id>(t), triangle[(i + 2) % 3], a < b });
+      uses.push_back({ MakeEdge(a, b), static_cast<Id>(t), triangle[(i + 2) % 3], a < b });
     }
   }
   std::sort(uses.begin(), uses.end(),
@@ -117,9 +117,7 @@ SurfaceSides FindSurfaceSides(const TriangleMesh& surface)
       components.Unite(use.Triangle, next.Triangle);
     }
   }
-  std::sort(result.OpenTriangles.begin(), result.OpenTriangles.end());
-  result.OpenTriangles.erase(std::unique(result.OpenTriangles.begin(), result.OpenTriangles.end()),
-    result.OpenTriangles.end());
+  SortUnique(result.OpenTriangles);
 
   // Number the shells, and sum up what each encloses: the outer shell of a component encloses minus
   // the sum of all others, so that it is the smallest whatever the rounding.

@@ -410,10 +410,7 @@ bool FindIntersectingPairs(const std::vector<Vec3>& points,
   std::vector<Box> boxes(n);
   for (Id t = 0; t < n; ++t)
   {
-    for (const Id id : triangles[t])
-    {
-      boxes[t].Add(points[id]);
-    }
+    boxes[t] = GetBox(points, triangles[t]);
   }
   const BoxTree tree(boxes);
   const auto isActive = [&active](Id t) { return active.empty() || active[t]; };
