@@ -12,6 +12,7 @@
 #include "PointSearches.h"
 #include "Predicates.h"
 #include "RefinableSurface.h"
+#include "SortedIds.h"
 #include "SpatialSort.h"
 #include "SurfaceDelaunayTest.h"
 #include "SurfaceFlips.h"
@@ -234,8 +235,7 @@ Status SurfaceRefiner::CheckSurface()
   }
   if (!coincident.empty())
   {
-    std::sort(coincident.begin(), coincident.end());
-    coincident.erase(std::unique(coincident.begin(), coincident.end()), coincident.end());
+    SortUnique(coincident);
     return Status::InvalidInput("Points of the surface coincide; merge them with "
                                 "vtkBoundaryTriangulator first.",
       {}, std::move(coincident));
@@ -1167,8 +1167,7 @@ Status SurfaceRefiner::Finish()
       cells.push_back(surface.SourceCells[duplicate.Original]);
       cells.push_back(surface.SourceCells[duplicate.Triangle]);
     }
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    SortUnique(cells);
     this->IsCrumpled.resize(this->Input.Surface->Triangles.size(), 0);
     for (Id source : cells)
     {

@@ -4,6 +4,7 @@
 #include "DelaunayTetrahedralization.h"
 #include "Predicates.h"
 #include "PulledSphere.h"
+#include "SortedIds.h"
 
 #include <algorithm>
 #include <utility>
@@ -287,8 +288,7 @@ bool DynamicTetrahedralization::Remove(Id point)
     hole.Outer.push_back(this->Mesh.Neighbors[t][i]);
     ids.insert(ids.end(), facet.begin(), facet.end());
   }
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  SortUnique(ids);
   RawVector<Vec3> points;
   points.reserve(ids.size());
   for (Id id : ids)

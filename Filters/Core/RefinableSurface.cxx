@@ -2,6 +2,7 @@
 #include "RefinableSurface.h"
 
 #include "Predicates.h"
+#include "SortedIds.h"
 
 #include <algorithm>
 
@@ -167,8 +168,7 @@ std::vector<Id> RefinableSurface::GetFacets(Id segment) const
   {
     facets.push_back(this->Triangles[this->SegmentUses[u] / 3].Facet);
   }
-  std::sort(facets.begin(), facets.end());
-  facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
+  SortUnique(facets);
   return facets;
 }
 

@@ -3,6 +3,7 @@
 
 #include "DisjointSets.h"
 #include "EdgeUses.h"
+#include "SortedIds.h"
 
 #include <algorithm>
 
@@ -94,9 +95,7 @@ void SharpAngles::FindFacets(const TriangleMesh& surface, const std::vector<Stru
       }
     }
   }
-  std::sort(this->FacetPairs.begin(), this->FacetPairs.end());
-  this->FacetPairs.erase(
-    std::unique(this->FacetPairs.begin(), this->FacetPairs.end()), this->FacetPairs.end());
+  SortUnique(this->FacetPairs);
 
   std::vector<std::pair<Id, Id>> pairs;
   for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()) && !sharp.empty(); ++t)
