@@ -604,7 +604,8 @@ bool VolumeRefinement::Move(Id point, double target)
     }
     const double angle = this->RateHole(position, required);
     return angle > required && this->IsClear(position) &&
-        brokenThere + this->CountBroken(position) <= broken && !this->DisturbsBoundary(position)
+        (broken > 0 || brokenThere + this->CountBroken(position) == 0) &&
+        !this->DisturbsBoundary(position)
       ? angle
       : 0.0;
   };

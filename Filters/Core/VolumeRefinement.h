@@ -13,7 +13,7 @@
  *    place is rated by the smallest dihedral angle of all tetrahedra that it would make, before
  *    anything is changed. If no point's move helps, a new point is tried in the same way, at last
  *    the boundary that is in the way is requested to be split. Each change makes the smallest angle
- *    of what it replaces larger, and leaves no more tetrahedra that break a limit than there were.
+ *    of what it replaces larger, and breaks no limit where all were kept.
  *
  * Sharp input angles would be refined for ever: a tetrahedron across one (SharpAngles.h) is refined
  * for its size only; if it is a sliver, its points are moved. Each point has a size, the
