@@ -6,6 +6,7 @@
 #include "Measures.h"
 #include "MeshBoundary.h"
 #include "MeshChecks.h"
+#include "PointRounding.h"
 #include "ShortestEdges.h"
 #include "VolumeRefinement.h"
 
@@ -25,12 +26,14 @@ namespace
 constexpr Id MaximumRounds = 200;
 /** Rounds that split the boundary for slivers. */
 constexpr int MaximumSliverRounds = 40;
+/** Roundings of points in a row that do not help. */
+constexpr int MaximumFailedRoundings = 2;
+/** Passes over slivers and shapes in turn, when the boundary stays as it is. */
+constexpr int MaximumLastPasses = 5;
 /** Slivers wait until no more requests than these are left from badly shaped tetrahedra. */
 constexpr std::size_t FewRequests = 16;
 /** Edges of the boundary for a largest volume, in edges of the regular tetrahedron of that volume. */
 constexpr double BoundaryEdgeRatio = 1.15;
-/** By how much a point of theirs is moved on the boundary, in radii of their circle. */
-constexpr double NudgeRatio = 1e-9;
 
 class Refiner
 {
@@ -59,8 +62,9 @@ private:
   void CollectSurfaceSizes(std::size_t first);
   void MeasureSizes();
   void CollectReport();
-  bool NudgeFlatBoundary();
-  Vec3 GetTangent(Id point, const Vec3& wanted) const;
+  Status PerturbSlivers(SliverMeans means);
+  Status PerturbLastSlivers();
+  bool RoundFlatTetrahedraAway();
   std::size_t CountRequests() const
   {
     return this->Round->GetRequestedTriangles().size() + this->Round->GetRequestedEdges().size();
@@ -88,6 +92,12 @@ private:
   std::vector<InteriorPoint> Interior;
   SliverMemory Memory;
   std::unique_ptr<VolumeRefinement> Round;
+  /** Flat tetrahedra at the last rounding of points. */
+  std::size_t LastFlat = std::numeric_limits<std::size_t>::max() / 4;
+  /** So many roundings in a row have not helped. */
+  int FailedRoundings = 0;
+  /** Points of flat tetrahedra that rounding has left, sorted. */
+  std::vector<TetrahedronIds> LeftFlat;
   /** Whether the last round has split nothing of what was requested. */
   bool IsStuck = false;
 };
@@ -420,6 +430,31 @@ Status Refiner::RefineRound(bool isShapeTested)
   return this->Round->RefineByLimits(isShapeTested, this->GetRoundContext());
 }
 
+Status Refiner::PerturbSlivers(SliverMeans means)
+{
+  return this->Round->PerturbSlivers(this->Options.DihedralAngleTarget, means,
+    static_cast<Id>(this->SurfaceSources.size()), this->GetRoundContext());
+}
+
+/** Points that were put in for shapes after the slivers' points were moved leave slivers, too. */
+Status Refiner::PerturbLastSlivers()
+{
+  Status status;
+  Id inserted = NoId;
+  for (int pass = 1; status.IsOk() && inserted != this->Round->GetReport().InsertedPoints; ++pass)
+  {
+    inserted = this->Round->GetReport().InsertedPoints;
+    const bool isLast = pass == MaximumLastPasses;
+    status = this->PerturbSlivers(isLast ? SliverMeans::Moves : SliverMeans::Points);
+    if (isLast)
+    {
+      break;
+    }
+    status = status.IsOk() ? this->RefineRound(true) : status;
+  }
+  return status;
+}
+
 void Refiner::CollectReport()
 {
   if (this->Round)
@@ -432,83 +467,35 @@ void Refiner::CollectReport()
 }
 
 /**
- * A direction in which a point of the surface may move and stay on it, near to the one wanted: in its
- * facet, along its edge; zero at a corner.
+ * Points of the input stay. Again and again, until a few tries in a row have not done away with a
+ * quarter of the flat tetrahedra; the next time when there are others than those that were left.
+ * False if there is nothing to be done.
  */
-Vec3 Refiner::GetTangent(Id point, const Vec3& wanted) const
+bool Refiner::RoundFlatTetrahedraAway()
 {
-  Vec3 first;
-  Vec3 along;
-  for (const TriangleIds& ids : this->Surface.Triangles)
+  const std::vector<Id> flat = this->Round->FindFlatTetrahedra();
+  std::vector<TetrahedronIds> found;
+  for (Id t : flat)
   {
-    if (std::find(ids.begin(), ids.end(), point) == ids.end())
-    {
-      continue;
-    }
-    const Vec3& a = this->Surface.Points[ids[0]];
-    Vec3 normal = Cross(this->Surface.Points[ids[1]] - a, this->Surface.Points[ids[2]] - a);
-    normal = (1.0 / Norm(normal)) * normal;
-    if (SquaredNorm(first) == 0.0)
-    {
-      first = normal;
-      continue;
-    }
-    const Vec3 across = Cross(first, normal);
-    // A facet whose points are rounded is still one.
-    constexpr double smallestSine = 1e-6;
-    if (Norm(across) < smallestSine)
-    {
-      continue;
-    }
-    if (SquaredNorm(along) == 0.0)
-    {
-      along = (1.0 / Norm(across)) * across;
-    }
-    else if (std::abs(Dot(along, normal)) > smallestSine)
-    {
-      return {};
-    }
+    found.push_back(this->Round->GetMesh().Tetrahedra[t]);
+    std::sort(found.back().begin(), found.back().end());
   }
-  return SquaredNorm(along) > 0.0 ? Dot(along, wanted) * along
-                                  : wanted - Dot(first, wanted) * first;
-}
-
-/**
- * Four points of a facet that is not across an axis lie in a plane but for rounding errors. If they
- * lie on a circle, but for as much, they have a flat tetrahedron, on this side or on the other. It goes
- * as soon as one of them is off the circle by more than it is off the plane. False if there are none.
- */
-bool Refiner::NudgeFlatBoundary()
-{
-  std::vector<char> isMoved(this->Surface.Points.size(), 0);
-  bool isNudged = false;
-  for (const TetrahedronIds& ids : this->Round->FindFlatTetrahedra())
+  std::sort(found.begin(), found.end());
+  if (std::includes(this->LeftFlat.begin(), this->LeftFlat.end(), found.begin(), found.end()))
   {
-    if (std::any_of(ids.begin(), ids.end(), [&](Id id) { return isMoved[id]; }))
-    {
-      continue;
-    }
-    for (int i = 0; i < 4; ++i)
-    {
-      // Points of the input stay.
-      if (ids[i] < static_cast<Id>(this->SurfaceSources.size()))
-      {
-        continue;
-      }
-      const std::vector<Vec3>& points = this->Surface.Points;
-      const Vec3 center = GetCircumcenter(
-        points[ids[(i + 1) % 4]], points[ids[(i + 2) % 4]], points[ids[(i + 3) % 4]]);
-      const Vec3 step = NudgeRatio * this->GetTangent(ids[i], points[ids[i]] - center);
-      if (Norm(step) > 0.1 * NudgeRatio * Distance(points[ids[i]], center))
-      {
-        this->Surface.Points[ids[i]] = points[ids[i]] + step;
-        isMoved[ids[i]] = 1;
-        isNudged = true;
-        break;
-      }
-    }
+    return false;
   }
-  return isNudged;
+  this->FailedRoundings = 4 * flat.size() > 3 * this->LastFlat ? this->FailedRoundings + 1 : 0;
+  if (this->FailedRoundings > MaximumFailedRoundings)
+  {
+    this->LeftFlat = std::move(found);
+    this->FailedRoundings = 0;
+    this->LastFlat = std::numeric_limits<std::size_t>::max() / 4;
+    return false;
+  }
+  this->LastFlat = flat.size();
+  const PointRounding rounding(this->Round->GetMesh(), this->Surface, flat);
+  return rounding.Move(static_cast<Id>(this->SurfaceSources.size()), this->Surface.Points);
 }
 
 void Refiner::FindFaults()
@@ -606,10 +593,10 @@ Status Refiner::Run()
 
   bool areSizesDone = false;
   int sliverRounds = 0;
-  std::size_t fewestFlat = std::numeric_limits<std::size_t>::max();
   bool isDone = false;
   while (status.IsOk() && !isDone)
   {
+    bool isRounded = false;
     if (!areSizesDone)
     {
       status = this->RefineRound(false);
@@ -628,31 +615,31 @@ Status Refiner::Run()
       if (status.IsOk() && (this->IsStuck || isFull || this->CountRequests() <= FewRequests))
       {
         const Id inserted = this->Round->GetReport().InsertedPoints;
-        if (this->Options.DihedralAngleTarget > 0.0)
+        const bool areMeant = this->Options.DihedralAngleTarget > 0.0;
+        isRounded = areMeant && !isFull && sliverRounds < MaximumSliverRounds &&
+          this->RoundFlatTetrahedraAway();
+        if (areMeant && !isRounded)
         {
           ++sliverRounds;
-          // In turned devices new points on the boundary have as many of them as are taken away.
-          const std::size_t flat = this->Round->FindFlatTetrahedra().size();
-          const bool isFlatRequested = flat < fewestFlat / 2;
-          fewestFlat = std::min(fewestFlat, flat);
-          status = this->Round->PerturbSlivers(this->Options.DihedralAngleTarget,
-            isFull                                 ? SliverMeans::Moves
+          status = this->PerturbSlivers(isFull     ? SliverMeans::Moves
               : sliverRounds < MaximumSliverRounds ? SliverMeans::Requests
-                                                   : SliverMeans::Points,
-            isFlatRequested, this->GetRoundContext());
+                                                   : SliverMeans::Points);
           status = status.IsOk() ? this->RefineRound(true) : status;
         }
-        const bool isNudged = status.IsOk() && !isFull && this->Options.DihedralAngleTarget > 0.0 &&
-          sliverRounds < MaximumSliverRounds && this->NudgeFlatBoundary();
-        isDone = !isNudged &&
+        isDone = !isRounded &&
           (this->IsStuck || isFull || sliverRounds >= MaximumSliverRounds ||
             (!this->HasRequests() && this->Round->GetReport().InsertedPoints == inserted));
+        if (isDone && areMeant && status.IsOk())
+        {
+          status = this->PerturbLastSlivers();
+        }
       }
     }
     if (status.IsOk())
     {
       isDone = isDone || this->Output.Report.Rounds >= MaximumRounds;
       status = this->StartRound();
+      this->IsStuck = this->IsStuck && !isRounded;
     }
   }
   if (status.IsOk())

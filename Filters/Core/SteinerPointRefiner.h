@@ -13,10 +13,10 @@
  *     are too large, then also in badly shaped ones, where each comes no closer to others than a
  *     fifth of the shortest edge that was there before; what disturbs the boundary is requested to
  *     be split instead;
- *  4. if little is requested any more: points of slivers are moved, taken out or added. Where points
- *     of one plane facet lie on a circle but for rounding, a new one of them is moved along the
- *     facet by 1e-9 of the circle; the boundary is split for the flat tetrahedra of such points only as
- *     long as that halves their number.
+ *  4. if little is requested any more: points of slivers are moved, taken out or added. Before
+ *     that, where tetrahedra are flat because points lie on a circle but for rounding, new points of
+ *     the surface are rounded in another way (PointRounding.h). The boundary is split for flat
+ *     tetrahedra only if their points are all given.
  * It ends when a round requests nothing, or nothing that can be done.
  *
  * Guarantees: the mesh is Delaunay by the pulling rule and conforms to the same surface; facets on

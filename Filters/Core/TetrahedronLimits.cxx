@@ -67,11 +67,4 @@ TetrahedronFault TetrahedronLimits::Find(
   }
   return TetrahedronFault::Shape;
 }
-
-bool TetrahedronLimits::IsKept(const std::array<Vec3, 4>& vertices) const
-{
-  Vec3 target;
-  double severity = 0.0;
-  return this->Find(vertices, true, target, severity) == TetrahedronFault::None;
-}
 } // namespace cdm

@@ -53,7 +53,6 @@ struct TetrahedronLimits
    */
   TetrahedronFault Find(
     const std::array<Vec3, 4>& vertices, bool isShapeTested, Vec3& target, double& severity) const;
-  bool IsKept(const std::array<Vec3, 4>& vertices) const;
 };
 } // namespace cdm
 

@@ -129,16 +129,14 @@ std::vector<InteriorPoint> VolumeRefinement::GetInterior() const
   return interior;
 }
 
-std::vector<TetrahedronIds> VolumeRefinement::FindFlatTetrahedra() const
+std::vector<Id> VolumeRefinement::FindFlatTetrahedra() const
 {
-  std::vector<TetrahedronIds> flat;
+  std::vector<Id> flat;
   for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
   {
-    const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
-    if (!this->Mesh.IsDead(t) && this->IsFlat(t) &&
-      !this->Layers.IsAcross(ids, this->GetMesh().Regions[t]))
+    if (!this->Mesh.IsDead(t) && this->IsFlat(t))
     {
-      flat.push_back(ids);
+      flat.push_back(t);
     }
   }
   return flat;
@@ -187,15 +185,34 @@ double VolumeRefinement::RateHole(const Vec3& position, double required) const
   return smallest;
 }
 
-/** Whether no tetrahedron of the hole's cone would break a limit. */
-bool VolumeRefinement::KeepsLimits(const Vec3& position) const
+/** Of what is refined for; ids of points inside do not matter. */
+bool VolumeRefinement::BreaksLimit(
+  const TetrahedronIds& ids, const std::array<Vec3, 4>& vertices) const
 {
-  return std::all_of(this->Hole.Facets.begin(), this->Hole.Facets.end(),
+  Vec3 target;
+  double severity = 0.0;
+  const TetrahedronFault fault = this->Limits.Find(vertices, true, target, severity);
+  return fault == TetrahedronFault::Size ||
+    (fault == TetrahedronFault::Shape && !this->Sharp.IsAcross(ids));
+}
+
+bool VolumeRefinement::BreaksLimit(Id tetrahedron) const
+{
+  const TetrahedronIds& ids = this->GetMesh().Tetrahedra[tetrahedron];
+  return this->BreaksLimit(ids, this->GetVertices(ids));
+}
+
+/** How many tetrahedra of the hole's cone would break a limit. */
+Id VolumeRefinement::CountBroken(const Vec3& position) const
+{
+  constexpr Id inside = std::numeric_limits<Id>::max();
+  return static_cast<Id>(std::count_if(this->Hole.Facets.begin(), this->Hole.Facets.end(),
     [&](const TriangleIds& facet)
     {
-      return this->Limits.IsKept({ this->Mesh.GetPoint(facet[0]), this->Mesh.GetPoint(facet[1]),
-        this->Mesh.GetPoint(facet[2]), position });
-    });
+      return this->BreaksLimit({ facet[0], facet[1], facet[2], inside },
+        { this->Mesh.GetPoint(facet[0]), this->Mesh.GetPoint(facet[1]),
+          this->Mesh.GetPoint(facet[2]), position });
+    }));
 }
 
 /** Whether the point keeps the distances that the sizes of its neighbors ask for. */
@@ -531,7 +548,7 @@ bool VolumeRefinement::Move(Id point, double target)
     return false;
   }
   const Vec3 old = this->Mesh.GetPoint(point);
-  bool isKept = true;
+  Id broken = 0;
   double smallest = 180.0;
   double nearest = Infinity;
   Vec3 sum;
@@ -539,7 +556,7 @@ bool VolumeRefinement::Move(Id point, double target)
   for (Id t : star)
   {
     const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
-    isKept = isKept && this->Limits.IsKept(this->GetVertices(ids));
+    broken += this->BreaksLimit(t);
     smallest = std::min(smallest, this->GetAngle(t));
     for (Id id : ids)
     {
@@ -557,12 +574,11 @@ bool VolumeRefinement::Move(Id point, double target)
   }
   const std::vector<Id> filled = this->Mesh.GetChanged();
   std::vector<double> angles;
-  bool isKeptWithout = true;
+  std::vector<char> isBroken;
   for (Id t : filled)
   {
     angles.push_back(this->GetAngle(t));
-    isKeptWithout =
-      isKeptWithout && this->Limits.IsKept(this->GetVertices(this->GetMesh().Tetrahedra[t]));
+    isBroken.push_back(this->BreaksLimit(t));
   }
   const auto rate = [&](const Vec3& position, double required)
   {
@@ -572,25 +588,32 @@ bool VolumeRefinement::Move(Id point, double target)
       return 0.0;
     }
     // What stays of the tetrahedra that fill the place of the point counts as well.
+    Id brokenThere = 0;
     for (std::size_t i = 0; i < filled.size(); ++i)
     {
-      if (angles[i] <= required &&
+      if ((angles[i] <= required || isBroken[i]) &&
         std::find(this->Hole.Tetrahedra.begin(), this->Hole.Tetrahedra.end(), filled[i]) ==
           this->Hole.Tetrahedra.end())
       {
-        return 0.0;
+        if (angles[i] <= required)
+        {
+          return 0.0;
+        }
+        ++brokenThere;
       }
     }
     const double angle = this->RateHole(position, required);
     return angle > required && this->IsClear(position) &&
-        (!isKept || this->KeepsLimits(position)) && !this->DisturbsBoundary(position)
+        (broken > 0 || brokenThere + this->CountBroken(position) == 0) &&
+        !this->DisturbsBoundary(position)
       ? angle
       : 0.0;
   };
   Place best{ old, smallest + SmallestGain, false };
   SearchMove(old, (1.0 / count) * sum, nearest, target, rate, best);
 
-  if (this->Means != SliverMeans::Moves && (isKeptWithout || !isKept) &&
+  if (this->Means != SliverMeans::Moves &&
+    std::count(isBroken.begin(), isBroken.end(), 1) <= broken &&
     *std::min_element(angles.begin(), angles.end()) > best.Angle)
   {
     ++this->Report.RemovedPoints;
@@ -628,7 +651,7 @@ bool VolumeRefinement::InsertBest(Id tetrahedron, double target)
       return 0.0;
     }
     const double angle = this->RateHole(position, required);
-    return angle > required && this->IsClear(position) && this->KeepsLimits(position) &&
+    return angle > required && this->IsClear(position) && this->CountBroken(position) == 0 &&
         !this->DisturbsBoundary(position)
       ? angle
       : 0.0;
@@ -682,7 +705,7 @@ bool VolumeRefinement::Mend(
 }
 
 Status VolumeRefinement::PerturbSlivers(
-  double target, SliverMeans means, bool isFlatRequested, const ExecutionContext& context)
+  double target, SliverMeans means, Id numberOfFixedPoints, const ExecutionContext& context)
 {
   this->Means = means;
   struct Sliver
@@ -727,7 +750,9 @@ Status VolumeRefinement::PerturbSlivers(
       const TetrahedronIds names = this->GetNames(ids);
       Id left = NoId;
       const bool isBad = sliver.Angle < target && !this->Sharp.IsAcross(ids);
-      const bool mayRequest = isFlatRequested || !this->IsFlat(sliver.Tetrahedron);
+      const bool mayRequest = means == SliverMeans::Requests &&
+        (!this->IsFlat(sliver.Tetrahedron) ||
+          *std::max_element(ids.begin(), ids.end()) < numberOfFixedPoints);
       const bool isHopeless = this->Memory.IsHopeless(names, isBad && mayInsert);
       if (!isHopeless &&
         this->Mend(
@@ -737,8 +762,7 @@ Status VolumeRefinement::PerturbSlivers(
         continue;
       }
       this->Memory.SetHopeless(names, isBad && mayInsert);
-      if (isBad && isLast && means == SliverMeans::Requests && mayRequest &&
-        !this->RequestEdge(ids))
+      if (isBad && isLast && mayRequest && !this->RequestEdge(ids))
       {
         const std::array<Vec3, 4> v = this->GetVertices(ids);
         const Vec3 center = GetCircumcenter(v[0], v[1], v[2], v[3]);

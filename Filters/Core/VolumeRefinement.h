@@ -13,7 +13,7 @@
  *    place is rated by the smallest dihedral angle of all tetrahedra that it would make, before
  *    anything is changed. If no point's move helps, a new point is tried in the same way, at last
  *    the boundary that is in the way is requested to be split. Each change makes the smallest angle
- *    of what it replaces larger, and breaks no limit that was kept.
+ *    of what it replaces larger, and breaks no limit where all were kept.
  *
  * Sharp input angles would be refined for ever: a tetrahedron across one (SharpAngles.h) is refined
  * for its size only; if it is a sliver, its points are moved. Each point has a size, the
@@ -132,17 +132,18 @@ public:
   Status RefineByLimits(bool isShapeTested, const ExecutionContext& context);
   /**
    * Until nothing of what may be done makes angles below the target (degrees) larger.
-   * @param isFlatRequested whether the boundary may be split for flat tetrahedra as well
+   * @param numberOfFixedPoints of the surface, which come first; the boundary is split for a
+   *   tetrahedron that is flat by rounding only if its points are all among them
    */
   Status PerturbSlivers(
-    double target, SliverMeans means, bool isFlatRequested, const ExecutionContext& context);
+    double target, SliverMeans means, Id numberOfFixedPoints, const ExecutionContext& context);
 
   /** What is to be split in the boundary. */
   const std::vector<Id>& GetRequestedTriangles() const { return this->RequestedTriangles; }
   const std::vector<EdgeIds>& GetRequestedEdges() const { return this->RequestedEdges; }
 
-  /** Tetrahedra that are there by rounding, but those across a layer. */
-  std::vector<TetrahedronIds> FindFlatTetrahedra() const;
+  /** Tetrahedra that are there by rounding. */
+  std::vector<Id> FindFlatTetrahedra() const;
 
   /** The points that are in the mesh now. */
   std::vector<InteriorPoint> GetInterior() const;
@@ -176,7 +177,9 @@ private:
   double GetAngle(Id tetrahedron) const;
   bool IsFlat(Id tetrahedron) const;
   double RateHole(const Vec3& position, double required) const;
-  bool KeepsLimits(const Vec3& position) const;
+  bool BreaksLimit(const TetrahedronIds& ids, const std::array<Vec3, 4>& vertices) const;
+  bool BreaksLimit(Id tetrahedron) const;
+  Id CountBroken(const Vec3& position) const;
   bool IsClear(const Vec3& position) const;
   bool DisturbsBoundary(const Vec3& position);
   bool TouchesOpenFacet() const;

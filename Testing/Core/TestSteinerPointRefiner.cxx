@@ -244,6 +244,29 @@ TEST(SteinerPointRefiner, TurnedBoxesGetNoFlatTetrahedra)
   }
 }
 
+TEST(SteinerPointRefiner, TurnedLayersAreMeshedAsStraightOnes)
+{
+  // Points on both sides of a layer are corners of rectangles; turned, these are so but for rounding.
+  SteinerPointRefinerOptions options;
+  options.MaximumEdgeLength = 0.2;
+  std::size_t straight = 0;
+  for (double angle : { 0.0, 10.0, 33.0, 77.0 })
+  {
+    SCOPED_TRACE("angle " + std::to_string(angle));
+    PolygonSoup soup = MakeLayers(0.1);
+    Rotate(soup.Points, (1.0 / std::sqrt(14.0)) * Vec3{ 1.0, 2.0, 3.0 }, angle * Pi / 180.0);
+    const Stage3 mesh = MakeMesh(soup);
+    SteinerPointRefinerInput input;
+    input.Mesh = &mesh.Output.Mesh;
+    const SteinerPointRefinerOutput output = Refine(input, options);
+    ExpectNoFaults(output.Report);
+    const std::size_t count = output.Mesh.Tetrahedra.size();
+    straight = angle == 0.0 ? count : straight;
+    EXPECT_NEAR(static_cast<double>(count), static_cast<double>(straight),
+      0.05 * static_cast<double>(straight));
+  }
+}
+
 TEST(SteinerPointRefiner, RandomComplexesInAnyPosition)
 {
   for (unsigned int seed = 1; seed <= 6; ++seed)
