@@ -8,6 +8,7 @@
 #include "PlaceSearch.h"
 #include "Predicates.h"
 #include "SphereCriteria.h"
+#include "SortedIds.h"
 #include "StructuralEdges.h"
 #include "VolumeRefinement.h"
 
@@ -836,8 +837,7 @@ bool Remover::FindIntactBoundary(const ExecutionContext& context, const std::vec
     }
   }
   surface.Triangles = std::move(intact);
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
+  SortUnique(all);
   for (std::size_t e = 0; e < all.size(); ++e)
   {
     if (e % ContinueInterval == 0 && !context.Continue(0.5, "Checking the boundary"))

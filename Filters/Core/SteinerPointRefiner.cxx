@@ -272,8 +272,7 @@ Status Refiner::Translate(Status status, const std::vector<Id>& sources) const
   {
     cells.push_back(this->Surface.SourceCells[sources.empty() ? triangle : sources[triangle]]);
   }
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  SortUnique(cells);
   if (!status.IsAborted())
   {
     status.Message = "The boundary of the mesh: " + status.Message;
