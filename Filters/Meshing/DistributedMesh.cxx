@@ -3,9 +3,9 @@
 
 #include "vtkCoreBridge.h"
 
-#include "Core/IdLimits.h"
-#include "Core/MeshChecks.h"
-#include "Core/PartRegions.h"
+#include "Core/Basics/IdLimits.h"
+#include "Core/Certificate/MeshChecks.h"
+#include "Core/Delaunay/PartRegions.h"
 
 #include <vtkCellData.h>
 #include <vtkDataSetAttributes.h>

@@ -13,11 +13,11 @@
 #include "DistributedSurface.h"
 #include "ProcessGroup.h"
 
-#include "Core/ExecutionContext.h"
-#include "Core/PartTetrahedralization.h"
-#include "Core/Status.h"
-#include "Core/TetMesh.h"
-#include "Core/TriangleMesh.h"
+#include "Core/Basics/ExecutionContext.h"
+#include "Core/Basics/Status.h"
+#include "Core/Delaunay/PartTetrahedralization.h"
+#include "Core/Meshes/TetMesh.h"
+#include "Core/Meshes/TriangleMesh.h"
 
 #include <vtkType.h>
 

@@ -13,9 +13,9 @@
 #include "AttributeRows.h"
 #include "ProcessGroup.h"
 
-#include "Core/PartTetrahedralization.h"
-#include "Core/SpacePartition.h"
-#include "Core/Status.h"
+#include "Core/Basics/Status.h"
+#include "Core/Delaunay/PartTetrahedralization.h"
+#include "Core/Search/SpacePartition.h"
 
 #include <vtkSmartPointer.h>
 #include <vtkType.h>

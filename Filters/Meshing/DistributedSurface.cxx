@@ -3,12 +3,12 @@
 
 #include "vtkCoreBridge.h"
 
-#include "Core/DuplicateTriangles.h"
-#include "Core/FacetPolygons.h"
-#include "Core/IdLimits.h"
-#include "Core/PartRegions.h"
-#include "Core/Predicates.h"
-#include "Core/RegionLocator.h"
+#include "Core/Basics/IdLimits.h"
+#include "Core/Delaunay/PartRegions.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Meshes/DuplicateTriangles.h"
+#include "Core/Meshes/FacetPolygons.h"
+#include "Core/Sizing/RegionLocator.h"
 
 #include <vtkCellData.h>
 #include <vtkDataSetAttributes.h>

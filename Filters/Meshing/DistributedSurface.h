@@ -12,9 +12,9 @@
 #include "AttributeRows.h"
 #include "ProcessGroup.h"
 
-#include "Core/PartTetrahedralization.h"
-#include "Core/Status.h"
-#include "Core/TriangleMesh.h"
+#include "Core/Basics/Status.h"
+#include "Core/Delaunay/PartTetrahedralization.h"
+#include "Core/Meshes/TriangleMesh.h"
 
 #include <vtkSmartPointer.h>
 #include <vtkType.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LayeredStructure.h"
 
-#include "Core/DisjointSets.h"
-#include "Core/Predicates.h"
+#include "Core/Basics/DisjointSets.h"
+#include "Core/Geometry/Predicates.h"
 
 #include <algorithm>
 #include <map>

@@ -31,7 +31,7 @@
 #ifndef cdmLayeredStructure_h
 #define cdmLayeredStructure_h
 
-#include "Core/PolygonSoup.h"
+#include "Core/Meshes/PolygonSoup.h"
 
 #include <array>
 #include <vector>

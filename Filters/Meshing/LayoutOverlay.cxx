@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LayoutOverlay.h"
 
-#include "Core/BoundaryTriangulator.h"
-#include "Core/Box.h"
-#include "Core/Predicates.h"
+#include "Core/Geometry/Box.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Surface/BoundaryTriangulator.h"
 
 #include <cmath>
 #include <utility>

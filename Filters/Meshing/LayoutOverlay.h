@@ -16,9 +16,9 @@
 #ifndef cdmLayoutOverlay_h
 #define cdmLayoutOverlay_h
 
-#include "Core/ExecutionContext.h"
-#include "Core/PolygonSoup.h"
-#include "Core/Status.h"
+#include "Core/Basics/ExecutionContext.h"
+#include "Core/Basics/Status.h"
+#include "Core/Meshes/PolygonSoup.h"
 
 #include <vector>
 

@@ -14,7 +14,7 @@
 #ifndef ProcessGroup_h
 #define ProcessGroup_h
 
-#include "Core/Status.h"
+#include "Core/Basics/Status.h"
 
 #include <vtkSmartPointer.h>
 

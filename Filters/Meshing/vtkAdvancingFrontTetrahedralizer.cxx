@@ -4,7 +4,7 @@
 #include "vtkConformingDelaunayCompatibility.h"
 #include "vtkCoreBridge.h"
 
-#include "Core/AdvancingFrontTetrahedralizer.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>

@@ -41,7 +41,7 @@
  * those of the result. Uses the threads of vtkSMPTools; the result does not depend on them.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
- * the modified advancing front. Filters/Core/AdvancingFrontTetrahedralizer.h is the engine.
+ * the modified advancing front. Filters/Core/Volume/AdvancingFrontTetrahedralizer.h is the engine.
  */
 #ifndef vtkAdvancingFrontTetrahedralizer_h
 #define vtkAdvancingFrontTetrahedralizer_h

@@ -3,7 +3,7 @@
 
 #include "vtkCoreBridge.h"
 
-#include "Core/BoundaryTriangulator.h"
+#include "Core/Surface/BoundaryTriangulator.h"
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>

@@ -12,10 +12,10 @@
 #include "vtkSliverRemover.h"
 #include "vtkSteinerPointRefiner.h"
 
-#include "Core/Measures.h"
-#include "Core/MeshBoundary.h"
-#include "Core/MeshChecks.h"
-#include "Core/StructuralEdges.h"
+#include "Core/Certificate/MeshChecks.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Meshes/MeshBoundary.h"
+#include "Core/Surface/StructuralEdges.h"
 
 #include <vtkAppendFilter.h>
 #include <vtkCellData.h>

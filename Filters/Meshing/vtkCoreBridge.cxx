@@ -3,8 +3,8 @@
 
 #include "vtkConformingDelaunayCompatibility.h"
 
-#include "Core/IdLimits.h"
-#include "Core/MeshChecks.h"
+#include "Core/Basics/IdLimits.h"
+#include "Core/Certificate/MeshChecks.h"
 
 #include <vtkCellArray.h>
 #include <vtkCellArrayIterator.h>

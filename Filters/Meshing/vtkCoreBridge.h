@@ -13,15 +13,15 @@
 #ifndef vtkCoreBridge_h
 #define vtkCoreBridge_h
 
-#include "Core/AdvancingFrontTetrahedralizer.h"
-#include "Core/ExecutionContext.h"
-#include "Core/ParallelLoop.h"
-#include "Core/PolygonSoup.h"
-#include "Core/SizingField.h"
-#include "Core/Status.h"
-#include "Core/StructuralEdges.h"
-#include "Core/TetMesh.h"
-#include "Core/TriangleMesh.h"
+#include "Core/Basics/ExecutionContext.h"
+#include "Core/Basics/ParallelLoop.h"
+#include "Core/Basics/Status.h"
+#include "Core/Meshes/PolygonSoup.h"
+#include "Core/Meshes/TetMesh.h"
+#include "Core/Meshes/TriangleMesh.h"
+#include "Core/Sizing/SizingField.h"
+#include "Core/Surface/StructuralEdges.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 
 #include <vtkCellArray.h>
 #include <vtkIdTypeArray.h>

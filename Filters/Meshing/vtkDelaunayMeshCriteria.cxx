@@ -3,7 +3,7 @@
 
 #include "vtkCoreBridge.h"
 
-#include "Core/MeshCriteria.h"
+#include "Core/Certificate/MeshCriteria.h"
 
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>

@@ -47,7 +47,7 @@
  * processor time; 160 bytes per tetrahedron, outputs included.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
- * the criteria. Filters/Core/MeshCriteria.h is the engine.
+ * the criteria. Filters/Core/Certificate/MeshCriteria.h is the engine.
  */
 #ifndef vtkDelaunayMeshCriteria_h
 #define vtkDelaunayMeshCriteria_h

@@ -3,7 +3,7 @@
 
 #include "vtkCoreBridge.h"
 
-#include "Core/DelaunaySurfaceRefiner.h"
+#include "Core/Surface/DelaunaySurfaceRefiner.h"
 
 #include <vtkCellData.h>
 #include <vtkDataSet.h>

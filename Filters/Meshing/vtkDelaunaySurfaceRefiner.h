@@ -34,7 +34,7 @@
  * Cost: about proportional to the points made, each with a search in an octree.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
- * the method. Filters/Core/DelaunaySurfaceRefiner.h is the engine.
+ * the method. Filters/Core/Surface/DelaunaySurfaceRefiner.h is the engine.
  */
 #ifndef vtkDelaunaySurfaceRefiner_h
 #define vtkDelaunaySurfaceRefiner_h

@@ -6,7 +6,7 @@
  * The tetrahedra of vtkAdvancingFrontTetrahedralizer depend on the points and their numbering only. So
  * each process makes those at the points in its own part of space, and the parts fit.
  *
- * Method (Fleischmann 1999, section 6.4; Filters/Core/PartTetrahedralization.h):
+ * Method (Fleischmann 1999, section 6.4; Filters/Core/Delaunay/PartTetrahedralization.h):
  *  1. points are numbered, by their global ids if they have any, otherwise from the first process to
  *     the last, the mesh points after the input; space is cut into boxes with equally many points,
  *     and each point goes to the process whose box holds it, with its point data;

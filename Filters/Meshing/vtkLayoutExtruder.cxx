@@ -6,7 +6,7 @@
 #include "vtkCoreBridge.h"
 #include "vtkStructureOutput.h"
 
-#include "Core/Box.h"
+#include "Core/Geometry/Box.h"
 
 #include <vtkCellData.h>
 #include <vtkDataArray.h>

@@ -3,7 +3,7 @@
 
 #include "vtkCoreBridge.h"
 
-#include "Core/MaterialInterfaces.h"
+#include "Core/Interfaces/MaterialInterfaces.h"
 
 #include <vtkDataArray.h>
 #include <vtkDataSetAttributes.h>

@@ -3,7 +3,7 @@
 
 #include "vtkCoreBridge.h"
 
-#include "Core/MeshPointGenerator.h"
+#include "Core/Volume/MeshPointGenerator.h"
 
 #include <vtkCellArray.h>
 #include <vtkDataSet.h>

@@ -3,8 +3,8 @@
 
 #include "vtkCoreBridge.h"
 
-#include "Core/MeshBoundary.h"
-#include "Core/MovingBoundaryRemesher.h"
+#include "Core/Meshes/MeshBoundary.h"
+#include "Core/Volume/MovingBoundaryRemesher.h"
 
 #include <vtkCellData.h>
 #include <vtkInformation.h>

@@ -3,8 +3,8 @@
 
 #include "vtkCoreBridge.h"
 
-#include "Core/IdLimits.h"
-#include "Core/SizingField.h"
+#include "Core/Basics/IdLimits.h"
+#include "Core/Sizing/SizingField.h"
 
 #include <vtkCellType.h>
 #include <vtkDataSet.h>

@@ -29,7 +29,7 @@
  * Cost: O(n log n) for n points.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
- * eq. 3.21. Filters/Core/SizingField.h has the gradation.
+ * eq. 3.21. Filters/Core/Sizing/SizingField.h has the gradation.
  */
 #ifndef vtkSizingFromSolution_h
 #define vtkSizingFromSolution_h

@@ -3,7 +3,7 @@
 
 #include "vtkCoreBridge.h"
 
-#include "Core/SliverRemover.h"
+#include "Core/Volume/SliverRemover.h"
 
 #include <vtkCellData.h>
 #include <vtkDataArray.h>

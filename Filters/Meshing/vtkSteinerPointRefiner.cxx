@@ -3,7 +3,7 @@
 
 #include "vtkCoreBridge.h"
 
-#include "Core/SteinerPointRefiner.h"
+#include "Core/Volume/SteinerPointRefiner.h"
 
 #include <vtkCellData.h>
 #include <vtkInformation.h>

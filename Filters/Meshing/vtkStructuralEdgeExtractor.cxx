@@ -3,7 +3,7 @@
 
 #include "vtkCoreBridge.h"
 
-#include "Core/StructuralEdges.h"
+#include "Core/Surface/StructuralEdges.h"
 
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>

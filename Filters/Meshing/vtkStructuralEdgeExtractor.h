@@ -24,7 +24,7 @@
  * Cost: O(n log n).
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
- * structural edges. Filters/Core/StructuralEdges.h is the engine.
+ * structural edges. Filters/Core/Surface/StructuralEdges.h is the engine.
  */
 #ifndef vtkStructuralEdgeExtractor_h
 #define vtkStructuralEdgeExtractor_h

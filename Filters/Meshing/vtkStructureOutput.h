@@ -6,7 +6,7 @@
 #ifndef vtkStructureOutput_h
 #define vtkStructureOutput_h
 
-#include "Core/PolygonSoup.h"
+#include "Core/Meshes/PolygonSoup.h"
 
 #include <string>
 #include <vector>

@@ -3,7 +3,7 @@
 
 #include "vtkCoreBridge.h"
 
-#include "Core/ControlPolyhedra.h"
+#include "Core/Certificate/ControlPolyhedra.h"
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>

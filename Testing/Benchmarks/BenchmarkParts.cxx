@@ -7,8 +7,8 @@
  *     BenchmarkParts random 1000000 1 2 4 8 27 64
  *     BenchmarkParts grid 1000000 8
  */
-#include "PartTetrahedralization.h"
-#include "SpacePartition.h"
+#include "Core/Delaunay/PartTetrahedralization.h"
+#include "Core/Search/SpacePartition.h"
 
 #include <algorithm>
 #include <cmath>

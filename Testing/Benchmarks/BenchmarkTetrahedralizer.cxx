@@ -20,7 +20,7 @@
  * mesh goes to name.node and name.ele, the files of TetGen.
  * --list programs: those that there are, one on each line, with the version where it is known.
  */
-#include "Core/AdvancingFrontTetrahedralizer.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "Measurement.h"
 #include "TetgenFiles.h"
 

@@ -15,10 +15,10 @@
  * Prints one line of "name value" pairs; seconds are processor time, without reading and writing.
  * Exit status: 0 done, 1 refused (the reason on the standard error), 2 wrong use.
  */
-#include "AdvancingFrontTetrahedralizer.h"
-#include "BoundaryTriangulator.h"
-#include "DelaunaySurfaceRefiner.h"
-#include "PolygonSoup.h"
+#include "Core/Meshes/PolygonSoup.h"
+#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Surface/DelaunaySurfaceRefiner.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>

@@ -8,7 +8,7 @@
 #ifndef TetgenFiles_h
 #define TetgenFiles_h
 
-#include "Core/Vec3.h"
+#include "Core/Basics/Vec3.h"
 
 #include <array>
 #include <cstddef>

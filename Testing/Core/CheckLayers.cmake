@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Core knows no VTK, Meshing knows no ParaView, CGAL is seen by one file only.
+# Core knows no VTK, Meshing knows no ParaView, CGAL is seen by one file only; a folder of Core knows
+# only those before it.
 #   cmake -D SOURCE_DIR=<folder of the project> -P CheckLayers.cmake
-file(GLOB core "${SOURCE_DIR}/Filters/Core/*.h" "${SOURCE_DIR}/Filters/Core/*.cxx")
+set(folders Basics Geometry Search Meshes Sizing Delaunay Certificate Surface Volume Interfaces)
+file(GLOB core "${SOURCE_DIR}/Filters/Core/*/*.h" "${SOURCE_DIR}/Filters/Core/*/*.cxx")
 file(GLOB meshing "${SOURCE_DIR}/Filters/Meshing/*.h" "${SOURCE_DIR}/Filters/Meshing/*.cxx"
   "${SOURCE_DIR}/Filters/Meshing/Devices/*.h" "${SOURCE_DIR}/Filters/Meshing/Devices/*.cxx")
 set(problems 0)
@@ -22,6 +24,20 @@ forbid("(vtkPV|vtkSM[^P]|vtkSI|pq)" "the filters know no ParaView" ${meshing})
 forbid("CGAL/" "the filters know no CGAL" ${meshing})
 list(FILTER core EXCLUDE REGEX "/Predicates\\.cxx$")
 forbid("CGAL/" "CGAL belongs into Predicates.cxx" ${core})
+
+set(later ${folders})
+foreach (folder IN LISTS folders)
+  list(REMOVE_ITEM later "${folder}")
+  file(GLOB sources "${SOURCE_DIR}/Filters/Core/${folder}/*.h"
+    "${SOURCE_DIR}/Filters/Core/${folder}/*.cxx")
+  list(LENGTH sources count)
+  if (count EQUAL 0)
+    message(FATAL_ERROR "There is no folder Filters/Core/${folder}")
+  endif ()
+  foreach (other IN LISTS later)
+    forbid("Core/${other}/" "${folder} does not know ${other}" ${sources})
+  endforeach ()
+endforeach ()
 
 if (problems GREATER 0)
   message(FATAL_ERROR "${problems} includes across the layers")

@@ -3,7 +3,7 @@
 #ifndef EnclosedVolumes_h
 #define EnclosedVolumes_h
 
-#include "TriangleMesh.h"
+#include "Core/Meshes/TriangleMesh.h"
 
 #include <map>
 

@@ -6,8 +6,8 @@
 #ifndef HullMeshes_h
 #define HullMeshes_h
 
-#include "AdvancingFrontTetrahedralizer.h"
-#include "MeshChecks.h"
+#include "Core/Certificate/MeshChecks.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #ifndef cdmRandomComplexes_h
 #define cdmRandomComplexes_h
 
-#include "PolygonSoup.h"
+#include "Core/Meshes/PolygonSoup.h"
 
 #include <cmath>
 #include <map>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/AdvancingFrontTetrahedralizer.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 
-#include "Core/MeshChecks.h"
-#include "Core/Predicates.h"
+#include "Core/Certificate/MeshChecks.h"
+#include "Core/Geometry/Predicates.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BoundaryTriangulator.h"
+#include "Core/Surface/BoundaryTriangulator.h"
 
-#include "Predicates.h"
-#include "TriangleIntersection.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Meshes/TriangleIntersection.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BoxOctree.h"
+#include "Core/Search/BoxOctree.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ConstrainedTriangulation.h"
+#include "Core/Meshes/ConstrainedTriangulation.h"
 
-#include "Predicates.h"
+#include "Core/Geometry/Predicates.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HullMeshes.h"
 
-#include "ControlPolyhedra.h"
-#include "Measures.h"
-#include "MeshChecks.h"
-#include "MeshCriteria.h"
-#include "VoronoiMeasures.h"
+#include "Core/Certificate/ControlPolyhedra.h"
+#include "Core/Certificate/MeshChecks.h"
+#include "Core/Certificate/MeshCriteria.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Meshes/VoronoiMeasures.h"
 
 #include <gtest/gtest.h>
 

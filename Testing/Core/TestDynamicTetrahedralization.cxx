@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "AdvancingFrontTetrahedralizer.h"
-#include "BoundarySpheres.h"
-#include "BoundaryTriangulator.h"
-#include "DelaunaySurfaceRefiner.h"
-#include "DynamicTetrahedralization.h"
-#include "Measures.h"
-#include "MeshChecks.h"
+#include "Core/Certificate/MeshChecks.h"
+#include "Core/Delaunay/DynamicTetrahedralization.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Surface/DelaunaySurfaceRefiner.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
+#include "Core/Volume/BoundarySpheres.h"
 #include "RandomComplexes.h"
 
 #include <gtest/gtest.h>

@@ -3,9 +3,9 @@
  * @file TestGridBlock.cxx
  * @brief Blocks of grids are found, and make the tetrahedra that inserting their points makes.
  */
-#include "DelaunayTetrahedralization.h"
-#include "GridBlock.h"
-#include "SpatialSort.h"
+#include "Core/Delaunay/DelaunayTetrahedralization.h"
+#include "Core/Delaunay/GridBlock.h"
+#include "Core/Search/SpatialSort.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "IdLimits.h"
+#include "Core/Basics/IdLimits.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BoundaryTriangulator.h"
-#include "IntersectionResolver.h"
-#include "Predicates.h"
-#include "SurfaceSides.h"
-#include "TriangleIntersection.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Meshes/SurfaceSides.h"
+#include "Core/Meshes/TriangleIntersection.h"
+#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Surface/IntersectionResolver.h"
 
 #include <gtest/gtest.h>
 

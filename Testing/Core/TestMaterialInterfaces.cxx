@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BoundaryTriangulator.h"
-#include "BoxTree.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Interfaces/MaterialInterfaces.h"
+#include "Core/Meshes/SurfaceOrientation.h"
+#include "Core/Meshes/SurfaceSides.h"
+#include "Core/Meshes/TriangleIntersection.h"
+#include "Core/Search/BoxTree.h"
+#include "Core/Surface/BoundaryTriangulator.h"
 #include "EnclosedVolumes.h"
-#include "MaterialInterfaces.h"
-#include "Measures.h"
-#include "SurfaceOrientation.h"
-#include "SurfaceSides.h"
-#include "TriangleIntersection.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Measures.h"
+#include "Core/Geometry/Measures.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "EmptySphereSearch.h"
+#include "Core/Certificate/MeshChecks.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Meshes/SimplexIncidence.h"
+#include "Core/Search/EmptySphereSearch.h"
 #include "HullMeshes.h"
-#include "MeshChecks.h"
-#include "Predicates.h"
-#include "SimplexIncidence.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HullMeshes.h"
 
-#include "MeshCriteria.h"
-#include "Predicates.h"
-#include "SphereCriteria.h"
+#include "Core/Certificate/MeshCriteria.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Search/SphereCriteria.h"
 
 #include <gtest/gtest.h>
 

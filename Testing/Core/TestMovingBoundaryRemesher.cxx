@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Certificate/MeshChecks.h"
+#include "Core/Meshes/MeshBoundary.h"
+#include "Core/Volume/MovingBoundaryRemesher.h"
 #include "EnclosedVolumes.h"
 #include "HullMeshes.h"
-#include "MeshBoundary.h"
-#include "MeshChecks.h"
-#include "MovingBoundaryRemesher.h"
 
 #include <gtest/gtest.h>
 

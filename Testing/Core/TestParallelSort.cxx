@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ParallelSort.h"
+#include "Core/Basics/ParallelSort.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "MeshChecks.h"
-#include "PartRegions.h"
+#include "Core/Certificate/MeshChecks.h"
+#include "Core/Delaunay/PartRegions.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "../Support/PointSets.h"
-#include "DelaunayTetrahedralization.h"
-#include "PartTetrahedralization.h"
-#include "Predicates.h"
-#include "SpacePartition.h"
-#include "SpatialSort.h"
+#include "Core/Delaunay/DelaunayTetrahedralization.h"
+#include "Core/Delaunay/PartTetrahedralization.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Search/SpacePartition.h"
+#include "Core/Search/SpatialSort.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "PolygonTriangulation.h"
+#include "Core/Meshes/PolygonTriangulation.h"
 
-#include "Predicates.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Meshes/TriangleIntersection.h"
 #include "RandomComplexes.h"
-#include "TriangleIntersection.h"
 
 #include <gtest/gtest.h>
 

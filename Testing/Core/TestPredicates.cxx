@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Predicates.h"
+#include "Core/Geometry/Predicates.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "AdvancingFrontTetrahedralizer.h"
-#include "BoundaryTriangulator.h"
-#include "DelaunaySurfaceRefiner.h"
+#include "Core/Sizing/RegionLocator.h"
+#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Surface/DelaunaySurfaceRefiner.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "RandomComplexes.h"
-#include "RegionLocator.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SharpAngles.h"
+#include "Core/Surface/SharpAngles.h"
 
 #include <gtest/gtest.h>
 

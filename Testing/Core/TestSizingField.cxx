@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SizingField.h"
+#include "Core/Sizing/SizingField.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BoundaryTriangulator.h"
+#include "Core/Sizing/SizingOctree.h"
+#include "Core/Surface/BoundaryTriangulator.h"
 #include "RandomComplexes.h"
-#include "SizingOctree.h"
 
 #include <gtest/gtest.h>
 

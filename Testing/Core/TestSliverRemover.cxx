@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "AdvancingFrontTetrahedralizer.h"
+#include "Core/Certificate/MeshChecks.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Meshes/MeshBoundary.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
+#include "Core/Volume/SliverRemover.h"
 #include "HullMeshes.h"
-#include "Measures.h"
-#include "MeshBoundary.h"
-#include "MeshChecks.h"
-#include "Predicates.h"
-#include "SliverRemover.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "StructuralEdges.h"
+#include "Core/Surface/StructuralEdges.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geometry/Predicates.h"
+#include "Core/Meshes/TriangleIntersection.h"
+#include "Core/Surface/SurfaceCoarsening.h"
 #include "EnclosedVolumes.h"
-#include "Predicates.h"
-#include "SurfaceCoarsening.h"
-#include "TriangleIntersection.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BoundaryTriangulator.h"
-#include "SurfaceOrientation.h"
+#include "Core/Meshes/SurfaceOrientation.h"
+#include "Core/Surface/BoundaryTriangulator.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SurfaceReduction.h"
-#include "TriangleIntersection.h"
+#include "Core/Interfaces/SurfaceReduction.h"
+#include "Core/Meshes/TriangleIntersection.h"
 
 #include <gtest/gtest.h>
 

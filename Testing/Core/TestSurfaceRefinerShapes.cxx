@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The surface refiner on the shapes that make refinement run away: thin curved and wedged layers,
 // fans of facets at one edge, many edges at one vertex, needles, sheets a hair apart.
-#include "AdvancingFrontTetrahedralizer.h"
-#include "BoundaryTriangulator.h"
-#include "DelaunaySurfaceRefiner.h"
-#include "Measures.h"
-#include "MeshChecks.h"
+#include "Core/Certificate/MeshChecks.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Surface/DelaunaySurfaceRefiner.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "RandomComplexes.h"
 
 #include <gtest/gtest.h>

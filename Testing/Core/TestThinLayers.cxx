@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ThinLayers.h"
+#include "Core/Volume/ThinLayers.h"
 
 #include <gtest/gtest.h>
 

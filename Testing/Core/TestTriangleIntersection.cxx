@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "TriangleIntersection.h"
+#include "Core/Meshes/TriangleIntersection.h"
 
 #include <gtest/gtest.h>
 

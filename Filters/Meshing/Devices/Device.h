@@ -11,7 +11,7 @@
 #ifndef cdmDevice_h
 #define cdmDevice_h
 
-#include "Core/PolygonSoup.h"
+#include "Core/Meshes/PolygonSoup.h"
 
 #include <functional>
 #include <string>

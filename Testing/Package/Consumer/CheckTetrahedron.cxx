@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Uses the engine alone, without VTK: the checker on a mesh of one tetrahedron.
-#include <Core/MeshChecks.h>
+#include <Core/Certificate/MeshChecks.h>
 
 #include <cstdlib>
 #include <iostream>

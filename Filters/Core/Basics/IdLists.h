@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file IdLists.h
+ * @brief A list of ids for each of many owners: the triangles at each point, and the like.
+ *
+ * Cost: O(n) to build; 4 bytes per id and 8 per owner.
+ */
+#ifndef cdmIdLists_h
+#define cdmIdLists_h
+
+#include "Core/Basics/Types.h"
+
+#include <cstddef>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace cdm
+{
+/** Ids in one list, a range of it for each owner. */
+class IdLists
+{
+public:
+  struct Range
+  {
+    const Id* First = nullptr;
+    const Id* Last = nullptr;
+
+    const Id* begin() const { return this->First; }
+    const Id* end() const { return this->Last; }
+    bool empty() const { return this->First == this->Last; }
+    std::size_t size() const { return static_cast<std::size_t>(this->Last - this->First); }
+  };
+
+  /** From pairs (owner, id): a list has the order of the pairs, without repetitions in a row. */
+  void Build(Id numberOfOwners, const std::vector<std::pair<Id, Id>>& pairs)
+  {
+    std::vector<Id> next(static_cast<std::size_t>(numberOfOwners) + 1, 0);
+    for (const auto& pair : pairs)
+    {
+      ++next[pair.first + 1];
+    }
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    this->Begin = next;
+    this->End.assign(next.begin(), next.end() - 1);
+    this->Ids.resize(pairs.size());
+    for (const auto& [owner, id] : pairs)
+    {
+      Id& end = this->End[owner];
+      if (end == this->Begin[owner] || this->Ids[end - 1] != id)
+      {
+        this->Ids[end++] = id;
+      }
+    }
+  }
+
+  Range operator[](Id owner) const
+  {
+    return { this->Ids.data() + this->Begin[owner], this->Ids.data() + this->End[owner] };
+  }
+
+private:
+  std::vector<Id> Begin;
+  std::vector<Id> End;
+  std::vector<Id> Ids;
+};
+
+/** The triangles at each point. */
+inline IdLists ListTrianglesAtPoints(
+  const std::vector<TriangleIds>& triangles, std::size_t numberOfPoints)
+{
+  std::vector<std::pair<Id, Id>> pairs;
+  for (Id t = 0; t < static_cast<Id>(triangles.size()); ++t)
+  {
+    for (Id point : triangles[t])
+    {
+      pairs.emplace_back(point, t);
+    }
+  }
+  IdLists lists;
+  lists.Build(static_cast<Id>(numberOfPoints), pairs);
+  return lists;
+}
+} // namespace cdm
+
+#endif

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SortedIds.h
+ * @brief Ids in ascending order: of a list, and of the two ends of an edge.
+ */
+#ifndef cdmSortedIds_h
+#define cdmSortedIds_h
+
+#include "Core/Basics/Types.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace cdm
+{
+/** Ascending, each once. Also for edges, pairs and the like. */
+template <typename T>
+void SortUnique(std::vector<T>& ids)
+{
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+}
+
+/** The same for both directions. */
+inline EdgeIds MakeEdge(Id a, Id b)
+{
+  return a < b ? EdgeIds{ a, b } : EdgeIds{ b, a };
+}
+} // namespace cdm
+
+#endif

@@ -1,0 +1,408 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Delaunay/DynamicTetrahedralization.h"
+
+#include "Core/Basics/SortedIds.h"
+#include "Core/Delaunay/DelaunayTetrahedralization.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Geometry/PulledSphere.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+TriangleIds Sorted(TriangleIds ids)
+{
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+} // namespace
+
+DynamicTetrahedralization::DynamicTetrahedralization(TetMesh mesh)
+  : Mesh(std::move(mesh)), Stamps(this->Mesh.Tetrahedra.size(), 0),
+    PointTetrahedra(this->Mesh.Points.size(), NoId), Marks(this->Mesh.Tetrahedra.size(), 0)
+{
+  for (Id t = 0; t < this->GetNumberOfTetrahedra(); ++t)
+  {
+    for (Id point : this->Mesh.Tetrahedra[t])
+    {
+      this->PointTetrahedra[point] = t;
+    }
+  }
+}
+
+bool DynamicTetrahedralization::IsBoundary(Id tetrahedron, int facet) const
+{
+  const Id neighbor = this->Mesh.Neighbors[tetrahedron][facet];
+  return neighbor == NoId || this->Mesh.Regions[neighbor / 4] != this->Mesh.Regions[tetrahedron];
+}
+
+std::uint32_t DynamicTetrahedralization::StartSearch()
+{
+  this->Search += 2;
+  if (this->Search == 0)
+  {
+    std::fill(this->Marks.begin(), this->Marks.end(), 0);
+    this->Search = 2;
+  }
+  return this->Search;
+}
+
+bool DynamicTetrahedralization::FindStar(Id point, std::vector<Id>& star)
+{
+  const std::uint32_t search = this->StartSearch();
+  bool isInside = true;
+  star.assign(1, this->PointTetrahedra[point]);
+  this->Marks[star[0]] = search;
+  for (std::size_t i = 0; i < star.size(); ++i)
+  {
+    for (int facet = 0; facet < 4; ++facet)
+    {
+      if (this->Mesh.Tetrahedra[star[i]][facet] == point)
+      {
+        continue;
+      }
+      if (this->IsBoundary(star[i], facet))
+      {
+        isInside = false;
+        continue;
+      }
+      const Id neighbor = this->Mesh.Neighbors[star[i]][facet] / 4;
+      if (this->Marks[neighbor] != search)
+      {
+        this->Marks[neighbor] = search;
+        star.push_back(neighbor);
+      }
+    }
+  }
+  return isInside;
+}
+
+Id DynamicTetrahedralization::Locate(const Vec3& position, Id first) const
+{
+  Id t = first;
+  int from = -1;
+  for (Id step = 0; step < this->GetNumberOfTetrahedra(); ++step)
+  {
+    const TetrahedronIds& ids = this->Mesh.Tetrahedra[t];
+    int next = -1;
+    for (int i = 0; i < 4 && next < 0; ++i)
+    {
+      const int* const facet = FacetVertices[i];
+      if (i != from &&
+        Orientation(this->Mesh.Points[ids[facet[0]]], this->Mesh.Points[ids[facet[1]]],
+          this->Mesh.Points[ids[facet[2]]], position) > 0)
+      {
+        next = i;
+      }
+    }
+    if (next < 0)
+    {
+      return t;
+    }
+    if (this->IsBoundary(t, next))
+    {
+      return NoId;
+    }
+    const Id neighbor = this->Mesh.Neighbors[t][next];
+    t = neighbor / 4;
+    from = neighbor % 4;
+  }
+  return NoId;
+}
+
+bool DynamicTetrahedralization::IsInConflict(Id tetrahedron, const Vec3& position, Id number) const
+{
+  const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
+  const std::array<Vec3, 4> vertices{ this->Mesh.Points[ids[0]], this->Mesh.Points[ids[1]],
+    this->Mesh.Points[ids[2]], this->Mesh.Points[ids[3]] };
+  const int side = InSphere(vertices[0], vertices[1], vertices[2], vertices[3], position);
+  return side != 0 ? side > 0 : GetPulledPosition(vertices, ids, position, number, Orientation) > 0;
+}
+
+bool DynamicTetrahedralization::FindHole(const Vec3& position, Id number, Id first, Hole& hole)
+{
+  hole.Tetrahedra.clear();
+  hole.Facets.clear();
+  hole.Outer.clear();
+  if (!this->IsInConflict(first, position, number))
+  {
+    return false;
+  }
+  const std::uint32_t stays = this->StartSearch();
+  const std::uint32_t removed = stays + 1;
+  hole.Tetrahedra.push_back(first);
+  this->Marks[first] = removed;
+  for (std::size_t k = 0; k < hole.Tetrahedra.size(); ++k)
+  {
+    const Id t = hole.Tetrahedra[k];
+    for (int i = 0; i < 4; ++i)
+    {
+      const Id outer = this->Mesh.Neighbors[t][i];
+      bool isBorder = true;
+      if (outer != NoId)
+      {
+        std::uint32_t& mark = this->Marks[outer / 4];
+        const bool isNew = mark != stays && mark != removed;
+        if (isNew)
+        {
+          mark = this->IsInConflict(outer / 4, position, number) ? removed : stays;
+        }
+        isBorder = mark == stays;
+        if (!isBorder && this->IsBoundary(t, i))
+        {
+          return false;
+        }
+        if (isNew && !isBorder)
+        {
+          hole.Tetrahedra.push_back(outer / 4);
+        }
+      }
+      if (isBorder)
+      {
+        const TriangleIds facet = GetFacet(this->Mesh.Tetrahedra[t], i);
+        hole.Facets.push_back({ facet[0], facet[2], facet[1] });
+        hole.Outer.push_back(outer);
+      }
+    }
+  }
+  // Facets inside of a region are in front of the point by themselves.
+  for (const TriangleIds& facet : hole.Facets)
+  {
+    if (Orientation(this->Mesh.Points[facet[0]], this->Mesh.Points[facet[1]],
+          this->Mesh.Points[facet[2]], position) <= 0)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+Id DynamicTetrahedralization::Make(const TetrahedronIds& ids, Id region)
+{
+  Id t = NoId;
+  if (this->Free.empty())
+  {
+    t = this->GetNumberOfTetrahedra();
+    this->Mesh.Tetrahedra.push_back(ids);
+    this->Mesh.Neighbors.push_back({ NoId, NoId, NoId, NoId });
+    this->Mesh.Regions.push_back(region);
+    this->Stamps.push_back(0);
+    this->Marks.push_back(0);
+  }
+  else
+  {
+    t = this->Free.back();
+    this->Free.pop_back();
+    this->Mesh.Tetrahedra[t] = ids;
+    this->Mesh.Regions[t] = region;
+  }
+  ++this->Stamps[t];
+  for (Id point : ids)
+  {
+    this->PointTetrahedra[point] = t;
+  }
+  this->Changed.push_back(t);
+  return t;
+}
+
+void DynamicTetrahedralization::Kill(Id tetrahedron)
+{
+  this->Mesh.Tetrahedra[tetrahedron][0] = NoId;
+  ++this->Stamps[tetrahedron];
+  this->Free.push_back(tetrahedron);
+}
+
+void DynamicTetrahedralization::Fill(Id point, const Hole& hole)
+{
+  const Id region = this->Mesh.Regions[hole.Tetrahedra.front()];
+  for (auto t = hole.Tetrahedra.rbegin(); t != hole.Tetrahedra.rend(); ++t)
+  {
+    this->Kill(*t);
+  }
+  this->Changed.clear();
+  // New tetrahedra meet in the facets of the point and an edge of the hole.
+  this->Facets.clear();
+  for (std::size_t i = 0; i < hole.Facets.size(); ++i)
+  {
+    const TriangleIds& facet = hole.Facets[i];
+    const Id t = this->Make({ facet[0], facet[1], facet[2], point }, region);
+    const Id outer = hole.Outer[i];
+    this->Mesh.Neighbors[t][3] = outer;
+    if (outer != NoId)
+    {
+      this->Mesh.Neighbors[outer / 4][outer % 4] = 4 * t + 3;
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      const Id a = facet[(k + 1) % 3];
+      const Id b = facet[(k + 2) % 3];
+      this->Facets.push_back({ { std::min(a, b), std::max(a, b), 0 }, 4 * t + k });
+    }
+  }
+  std::sort(this->Facets.begin(), this->Facets.end());
+  for (std::size_t i = 0; i + 1 < this->Facets.size(); i += 2)
+  {
+    const Id one = this->Facets[i].second;
+    const Id other = this->Facets[i + 1].second;
+    this->Mesh.Neighbors[one / 4][one % 4] = other;
+    this->Mesh.Neighbors[other / 4][other % 4] = one;
+  }
+}
+
+Id DynamicTetrahedralization::Insert(const Vec3& position, const Hole& hole)
+{
+  const Id point = this->GetNumberOfPoints();
+  this->Mesh.Points.push_back(position);
+  this->PointTetrahedra.push_back(NoId);
+  this->Fill(point, hole);
+  return point;
+}
+
+void DynamicTetrahedralization::Restore(Id point, const Vec3& position, const Hole& hole)
+{
+  this->Mesh.Points[point] = position;
+  this->Fill(point, hole);
+}
+
+bool DynamicTetrahedralization::Remove(Id point)
+{
+  if (!this->FindStar(point, this->Star))
+  {
+    return false;
+  }
+  // The hole's facets and points.
+  Hole& hole = this->RemovedStar;
+  hole.Facets.clear();
+  hole.Outer.clear();
+  std::vector<Id> ids;
+  for (Id t : this->Star)
+  {
+    const TetrahedronIds& vertices = this->Mesh.Tetrahedra[t];
+    const int i =
+      static_cast<int>(std::find(vertices.begin(), vertices.end(), point) - vertices.begin());
+    const TriangleIds facet = GetFacet(vertices, i);
+    hole.Facets.push_back({ facet[0], facet[2], facet[1] });
+    hole.Outer.push_back(this->Mesh.Neighbors[t][i]);
+    ids.insert(ids.end(), facet.begin(), facet.end());
+  }
+  SortUnique(ids);
+  RawVector<Vec3> points;
+  points.reserve(ids.size());
+  for (Id id : ids)
+  {
+    points.push_back(this->Mesh.Points[id]);
+  }
+  DelaunayTetrahedralization local;
+  if (!BuildDelaunayTetrahedralization(points, ids, GridBlock(), 1, ExecutionContext(), local)
+         .IsOk())
+  {
+    return false;
+  }
+  const Id infinite = static_cast<Id>(ids.size());
+
+  // Those of its tetrahedra within the hole: from the hole's facets inwards.
+  this->Facets.clear();
+  const auto toGlobal = [&](const TriangleIds& facet) {
+    return TriangleIds{ ids[facet[0]], ids[facet[1]], ids[facet[2]] };
+  };
+  for (Id t = 0; t < static_cast<Id>(local.Tetrahedra.size()); ++t)
+  {
+    const TetrahedronIds& vertices = local.Tetrahedra[t];
+    if (vertices[0] == NoId ||
+      std::find(vertices.begin(), vertices.end(), infinite) != vertices.end())
+    {
+      continue;
+    }
+    for (int i = 0; i < 4; ++i)
+    {
+      this->Facets.push_back({ Sorted(toGlobal(GetFacet(vertices, i))), 4 * t + i });
+    }
+  }
+  std::sort(this->Facets.begin(), this->Facets.end());
+  constexpr Id Unseen = -2;
+  // For each facet within the hole that lies on its border, the number of that border's facet.
+  std::vector<Id> border(4 * local.Tetrahedra.size(), NoId);
+  std::vector<Id> made(local.Tetrahedra.size(), Unseen);
+  std::vector<Id> fill;
+  for (std::size_t k = 0; k < hole.Facets.size(); ++k)
+  {
+    const TriangleIds key = Sorted(hole.Facets[k]);
+    auto found = std::lower_bound(
+      this->Facets.begin(), this->Facets.end(), std::pair<TriangleIds, Id>(key, 0));
+    Id inner = NoId;
+    for (; found != this->Facets.end() && found->first == key; ++found)
+    {
+      const Id apex = local.Tetrahedra[found->second / 4][found->second % 4];
+      if (Orientation(this->Mesh.Points[hole.Facets[k][0]], this->Mesh.Points[hole.Facets[k][1]],
+            this->Mesh.Points[hole.Facets[k][2]], points[apex]) > 0)
+      {
+        inner = found->second;
+      }
+    }
+    if (inner == NoId)
+    {
+      return false;
+    }
+    border[inner] = static_cast<Id>(k);
+    if (made[inner / 4] == Unseen)
+    {
+      made[inner / 4] = NoId;
+      fill.push_back(inner / 4);
+    }
+  }
+  for (std::size_t k = 0; k < fill.size(); ++k)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      if (border[4 * fill[k] + i] != NoId)
+      {
+        continue;
+      }
+      const Id next = local.Neighbors[fill[k]][i] / 4;
+      const TetrahedronIds& vertices = local.Tetrahedra[next];
+      if (std::find(vertices.begin(), vertices.end(), infinite) != vertices.end())
+      {
+        return false;
+      }
+      if (made[next] == Unseen)
+      {
+        made[next] = NoId;
+        fill.push_back(next);
+      }
+    }
+  }
+
+  const Id region = this->Mesh.Regions[this->Star.front()];
+  for (auto t = this->Star.rbegin(); t != this->Star.rend(); ++t)
+  {
+    this->Kill(*t);
+  }
+  this->Changed.clear();
+  for (Id t : fill)
+  {
+    const TetrahedronIds& vertices = local.Tetrahedra[t];
+    made[t] = this->Make(
+      { ids[vertices[0]], ids[vertices[1]], ids[vertices[2]], ids[vertices[3]] }, region);
+  }
+  for (Id t : fill)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      const Id k = border[4 * t + i];
+      const Id inner = local.Neighbors[t][i];
+      const Id outer = k != NoId ? hole.Outer[k] : 4 * made[inner / 4] + inner % 4;
+      this->Mesh.Neighbors[made[t]][i] = outer;
+      if (k != NoId && outer != NoId)
+      {
+        this->Mesh.Neighbors[outer / 4][outer % 4] = 4 * made[t] + i;
+      }
+    }
+  }
+  this->PointTetrahedra[point] = NoId;
+  hole.Tetrahedra = this->Changed;
+  return true;
+}
+} // namespace cdm

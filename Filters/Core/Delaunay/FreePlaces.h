@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file FreePlaces.h
+ * @brief Places in arrays that a thread may fill: of things removed, and ranges never used.
+ */
+#ifndef cdmFreePlaces_h
+#define cdmFreePlaces_h
+
+#include "Core/Basics/Types.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace cdm
+{
+class FreePlaces
+{
+public:
+  std::size_t GetSize() const { return this->Size; }
+
+  /** Ranges [begin, end) that were never used. */
+  const std::vector<std::pair<Id, Id>>& GetRanges() const { return this->Ranges; }
+
+  void Add(Id place)
+  {
+    this->Removed.push_back(place);
+    ++this->Size;
+  }
+  void AddRange(Id begin, Id end)
+  {
+    this->Ranges.emplace_back(begin, end);
+    this->Size += static_cast<std::size_t>(end - begin);
+  }
+
+  /** One of them; there has to be one. What was removed last comes first. */
+  Id Take()
+  {
+    --this->Size;
+    if (!this->Removed.empty())
+    {
+      const Id place = this->Removed.back();
+      this->Removed.pop_back();
+      return place;
+    }
+    std::pair<Id, Id>& range = this->Ranges.back();
+    const Id place = range.first++;
+    if (range.first == range.second)
+    {
+      this->Ranges.pop_back();
+    }
+    return place;
+  }
+
+  /** Gives away all places, as far as the other one wants more. */
+  void MoveTo(FreePlaces& to, std::size_t wanted)
+  {
+    while (to.Size < wanted && !this->Removed.empty())
+    {
+      to.Add(this->Removed.back());
+      this->Removed.pop_back();
+      --this->Size;
+    }
+    while (to.Size < wanted && !this->Ranges.empty())
+    {
+      std::pair<Id, Id>& range = this->Ranges.back();
+      const std::size_t size =
+        std::min(wanted - to.Size, static_cast<std::size_t>(range.second - range.first));
+      const Id begin = range.second - static_cast<Id>(size);
+      to.AddRange(begin, range.second);
+      range.second = begin;
+      if (range.first == range.second)
+      {
+        this->Ranges.pop_back();
+      }
+      this->Size -= size;
+    }
+  }
+
+private:
+  std::vector<Id> Removed;
+  std::vector<std::pair<Id, Id>> Ranges;
+  std::size_t Size = 0;
+};
+} // namespace cdm
+
+#endif

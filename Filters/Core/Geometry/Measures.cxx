@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geometry/Measures.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace cdm
+{
+namespace
+{
+constexpr double DegreesPerRadian = 57.29577951308232;
+
+/** Infinite instead of a division by zero, which a debugger or a sanitizer would report. */
+Vec3 Divide(const Vec3& vector, double divisor)
+{
+  if (divisor == 0.0)
+  {
+    const double infinity = std::numeric_limits<double>::infinity();
+    return { infinity, infinity, infinity };
+  }
+  return { vector.X / divisor, vector.Y / divisor, vector.Z / divisor };
+}
+
+/** What the dihedral angles at the edges ab, ac, ad, bc, bd, cd are made of. */
+struct DihedralSides
+{
+  DihedralSides(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+  {
+    const Vec3 ab = b - a;
+    const Vec3 ac = c - a;
+    const Vec3 ad = d - a;
+    const Vec3 bc = c - b;
+    const Vec3 bd = d - b;
+    // Normals of the facets opposite to a, b, c, d, all to the same side (inside or outside).
+    const Vec3 normalA = Cross(bc, bd);
+    const Vec3 normalB = Cross(ad, ac);
+    const Vec3 normalC = Cross(ab, ad);
+    const Vec3 normalD = Cross(ac, ab);
+    this->SixVolumes = std::abs(Dot(normalD, ad));
+    this->Lengths = { Norm(ab), Norm(ac), Norm(ad), Norm(bc), Norm(bd), Norm(d - c) };
+    this->Products = { Dot(normalC, normalD), Dot(normalB, normalD), Dot(normalB, normalC),
+      Dot(normalA, normalD), Dot(normalA, normalC), Dot(normalA, normalB) };
+  }
+
+  double GetAngle(int edge) const
+  {
+    // n x m of the facets at an edge is the edge times six volumes: the sine's share.
+    return std::atan2(this->SixVolumes * this->Lengths[edge], 0.0 - this->Products[edge]) *
+      DegreesPerRadian;
+  }
+
+  double SixVolumes;
+  std::array<double, 6> Lengths;
+  /** Of the normals of the two facets at each edge. */
+  std::array<double, 6> Products;
+};
+} // namespace
+
+double GetSignedVolume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  return Dot(Cross(b - a, c - a), d - a) / 6.0;
+}
+
+double GetTriangleArea(const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  return 0.5 * Norm(Cross(b - a, c - a));
+}
+
+std::array<double, 6> GetDihedralAngles(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  const DihedralSides sides(a, b, c, d);
+  return { sides.GetAngle(0), sides.GetAngle(1), sides.GetAngle(2), sides.GetAngle(3),
+    sides.GetAngle(4), sides.GetAngle(5) };
+}
+
+double GetSmallestDihedralAngle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  const DihedralSides sides(a, b, c, d);
+  if (sides.SixVolumes == 0.0)
+  {
+    const std::array<double, 6> angles = GetDihedralAngles(a, b, c, d);
+    return *std::min_element(angles.begin(), angles.end());
+  }
+  // The smallest angle has the largest cotangent: one arc tangent is enough.
+  int smallest = 0;
+  for (int i = 1; i < 6; ++i)
+  {
+    smallest =
+      sides.Products[i] * sides.Lengths[smallest] < sides.Products[smallest] * sides.Lengths[i]
+      ? i
+      : smallest;
+  }
+  return sides.GetAngle(smallest);
+}
+
+double GetSmallestHeight(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  const double largestArea = std::max({ GetTriangleArea(b, c, d), GetTriangleArea(a, c, d),
+    GetTriangleArea(a, b, d), GetTriangleArea(a, b, c) });
+  return largestArea == 0.0 ? 0.0 : 3.0 * std::abs(GetSignedVolume(a, b, c, d)) / largestArea;
+}
+
+Vec3 GetCircumcenterOffset(const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  const Vec3 ab = b - a;
+  const Vec3 ac = c - a;
+  const Vec3 normal = Cross(ab, ac);
+  return Divide(
+    Cross(normal, SquaredNorm(ac) * ab - SquaredNorm(ab) * ac), 2.0 * SquaredNorm(normal));
+}
+
+Vec3 GetCircumcenter(const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  return a + GetCircumcenterOffset(a, b, c);
+}
+
+double GetDistanceToTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  const Vec3 normal = Cross(b - a, c - a);
+  const Vec3 corners[3] = { a, b, c };
+  bool isAbove = true;
+  double distance = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i)
+  {
+    const Vec3 edge = corners[(i + 1) % 3] - corners[i];
+    const Vec3 arm = p - corners[i];
+    isAbove = isAbove && Dot(normal, Cross(edge, arm)) >= 0.0;
+    const double along = std::min(std::max(Dot(arm, edge) / SquaredNorm(edge), 0.0), 1.0);
+    distance = std::min(distance, Norm(arm - along * edge));
+  }
+  return isAbove ? std::abs(Dot(normal, p - a)) / Norm(normal) : distance;
+}
+
+Vec3 GetBarycentricWeights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  const Vec3 normal = Cross(b - a, c - a);
+  const double square = SquaredNorm(normal);
+  const double weightB = Dot(normal, Cross(p - a, c - a)) / square;
+  const double weightC = Dot(normal, Cross(b - a, p - a)) / square;
+  return { 1.0 - weightB - weightC, weightB, weightC };
+}
+
+Vec3 GetCircumcenter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  const Vec3 ab = b - a;
+  const Vec3 ac = c - a;
+  const Vec3 ad = d - a;
+  const Vec3 sum = SquaredNorm(ad) * Cross(ab, ac) + SquaredNorm(ac) * Cross(ad, ab) +
+    SquaredNorm(ab) * Cross(ac, ad);
+  return a + Divide(sum, 2.0 * Dot(ab, Cross(ac, ad)));
+}
+} // namespace cdm

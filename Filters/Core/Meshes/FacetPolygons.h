@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file FacetPolygons.h
+ * @brief Triangles of a flat facet with a common circumcircle: a convex polygon, whose diagonals are
+ * those of the pulling rule in a mesh (thesis 6.4.3, "flip triangles on the fly").
+ *
+ * Cost: O(n log n) to build; 16 bytes per side of a triangle.
+ */
+#ifndef cdmFacetPolygons_h
+#define cdmFacetPolygons_h
+
+#include "Core/Meshes/TriangleMesh.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace cdm
+{
+class FacetPolygons
+{
+public:
+  /** The surface has to outlive this; triangles may be turned within their polygons. */
+  explicit FacetPolygons(const TriangleMesh& surface);
+
+  /**
+   * Triangles of the polygon around a triangle: crosses an edge of two triangles with the same
+   * labels if the point beyond is one of the circle's, isCocircular(point).
+   * @return the points beyond that are reached, ascending
+   */
+  template <typename IsCocircular>
+  std::vector<Id> Collect(
+    Id start, const IsCocircular& isCocircular, std::vector<Id>& triangles) const
+  {
+    triangles.assign(1, start);
+    std::vector<Id> reached;
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+    {
+      const TriangleIds& ids = this->Surface.Triangles[triangles[i]];
+      for (int e = 0; e < 3; ++e)
+      {
+        const Id a = ids[e];
+        const Id b = ids[(e + 1) % 3];
+        const Id other = this->GetOther(triangles[i], a, b);
+        if (other == NoId || !this->HaveSameLabels(triangles[i], other, a, b) ||
+          std::find(triangles.begin(), triangles.end(), other) != triangles.end())
+        {
+          continue;
+        }
+        const TriangleIds& beyond = this->Surface.Triangles[other];
+        const Id apex = beyond[0] != a && beyond[0] != b ? beyond[0]
+          : beyond[1] != a && beyond[1] != b             ? beyond[1]
+                                                         : beyond[2];
+        if (isCocircular(apex))
+        {
+          triangles.push_back(other);
+          reached.push_back(apex);
+        }
+      }
+    }
+    std::sort(reached.begin(), reached.end());
+    reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
+    return reached;
+  }
+
+private:
+  Id GetOther(Id triangle, Id a, Id b) const;
+  bool HaveSameLabels(Id s, Id t, Id a, Id b) const;
+
+  const TriangleMesh& Surface;
+  std::vector<std::pair<EdgeIds, Id>> Uses;
+};
+
+/**
+ * The fan from the lowest point of the convex polygon of a triangle and further points on its circle,
+ * turned like the triangle.
+ */
+std::vector<TriangleIds> MakePulledFan(
+  const std::vector<Vec3>& points, const TriangleIds& triangle, const std::vector<Id>& others);
+} // namespace cdm
+
+#endif

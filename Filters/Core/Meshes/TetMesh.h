@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file TetMesh.h
+ * @brief A tetrahedral mesh of several regions with adjacency, in flat arrays.
+ *
+ * 36 bytes per tetrahedron (16 vertices, 16 neighbours, 4 region); 24 bytes per point.
+ */
+#ifndef cdmTetMesh_h
+#define cdmTetMesh_h
+
+#include "Core/Basics/RawVector.h"
+#include "Core/Basics/Types.h"
+#include "Core/Basics/Vec3.h"
+
+#include <vector>
+
+namespace cdm
+{
+/**
+ * Facet i of a tetrahedron lies opposite to its vertex i. A facet id is 4 * tetrahedron + i.
+ *
+ * Invariants: every tetrahedron is positively oriented (exact sign); Regions and Neighbors have one
+ * entry for each tetrahedron; Neighbors[t][i] is the facet id, seen from the other tetrahedron, of
+ * the tetrahedron that shares facet i, also across interfaces between regions, and NoId where there
+ * is none. CheckTetMesh() in MeshChecks.h tests all of it.
+ */
+struct TetMesh
+{
+  std::vector<Vec3> Points;
+  RawVector<TetrahedronIds> Tetrahedra;
+  RawVector<Id> Regions;
+  RawVector<TetrahedronIds> Neighbors;
+};
+
+/**
+ * Vertices of the facet opposite to each vertex of a tetrahedron, turned so that the front side
+ * (the normal) looks out of the tetrahedron.
+ */
+constexpr int FacetVertices[4][3] = { { 1, 2, 3 }, { 0, 3, 2 }, { 0, 1, 3 }, { 0, 2, 1 } };
+
+/** Vertices of the edges; edges i and 5 - i are opposite to each other. */
+constexpr int TetrahedronEdges[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 },
+  { 2, 3 } };
+
+inline TriangleIds GetFacet(const TetrahedronIds& tetrahedron, int facet)
+{
+  return { tetrahedron[FacetVertices[facet][0]], tetrahedron[FacetVertices[facet][1]],
+    tetrahedron[FacetVertices[facet][2]] };
+}
+} // namespace cdm
+
+#endif

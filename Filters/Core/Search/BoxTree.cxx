@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Search/BoxTree.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+constexpr Id LeafSize = 4;
+}
+
+BoxTree::BoxTree(std::vector<Box> boxes) : Boxes(std::move(boxes)), Order(this->Boxes.size())
+{
+  std::iota(this->Order.begin(), this->Order.end(), 0);
+  if (!this->Order.empty())
+  {
+    this->Nodes.reserve(this->Order.size());
+    this->Build(0, static_cast<Id>(this->Order.size()));
+  }
+}
+
+void BoxTree::Build(Id begin, Id end)
+{
+  const std::size_t index = this->Nodes.size();
+  this->Nodes.emplace_back();
+  Node node;
+  node.Begin = begin;
+  node.End = end;
+  for (Id i = begin; i < end; ++i)
+  {
+    node.Bounds.Add(this->Boxes[this->Order[i]]);
+  }
+  if (end - begin > LeafSize)
+  {
+    const Vec3 size = node.Bounds.High - node.Bounds.Low;
+    const int axis = size.X >= size.Y && size.X >= size.Z ? 0 : size.Y >= size.Z ? 1 : 2;
+    const Id middle = begin + (end - begin) / 2;
+    std::nth_element(this->Order.begin() + begin, this->Order.begin() + middle,
+      this->Order.begin() + end,
+      [this, axis](Id a, Id b)
+      {
+        // Halves first: the sum of large coordinates may overflow.
+        const double left = 0.5 * this->Boxes[a].Low[axis] + 0.5 * this->Boxes[a].High[axis];
+        const double right = 0.5 * this->Boxes[b].Low[axis] + 0.5 * this->Boxes[b].High[axis];
+        return left != right ? left < right : a < b;
+      });
+    this->Build(begin, middle);
+    node.Right = static_cast<Id>(this->Nodes.size());
+    this->Build(middle, end);
+  }
+  this->Nodes[index] = node;
+}
+} // namespace cdm

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Sizing/SizingField.h"
+
+#include "Core/Basics/ParallelLoop.h"
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <numeric>
+
+namespace cdm
+{
+LocalSpacing::LocalSpacing(const Vec3& lengths)
+  : Rows{ { 1.0 / lengths.X, 0.0, 0.0 }, { 0.0, 1.0 / lengths.Y, 0.0 },
+      { 0.0, 0.0, 1.0 / lengths.Z } },
+    Extents(lengths), Smallest(std::min({ lengths.X, lengths.Y, lengths.Z })),
+    Largest(std::max({ lengths.X, lengths.Y, lengths.Z }))
+{
+}
+
+LocalSpacing::LocalSpacing(const Vec3& lengths, const Vec3 (&directions)[3])
+  : Smallest(std::min({ lengths.X, lengths.Y, lengths.Z })),
+    Largest(std::max({ lengths.X, lengths.Y, lengths.Z }))
+{
+  for (int row = 0; row < 3; ++row)
+  {
+    double square = 0.0;
+    for (int i = 0; i < 3; ++i)
+    {
+      this->Rows[row] = this->Rows[row] + (directions[i][row] / lengths[i]) * directions[i];
+      square += lengths[i] * lengths[i] * directions[i][row] * directions[i][row];
+    }
+    this->Extents[row] = std::sqrt(square);
+  }
+}
+
+LocalSpacing::LocalSpacing(const Vec3& direction, double along, double across)
+  : Smallest(std::min(along, across)), Largest(std::max(along, across))
+{
+  for (int row = 0; row < 3; ++row)
+  {
+    const double part = direction[row];
+    this->Rows[row] = (part * (1.0 / along - 1.0 / across)) * direction;
+    this->Rows[row][row] += 1.0 / across;
+    this->Extents[row] =
+      std::sqrt(part * part * along * along + std::max(0.0, 1.0 - part * part) * across * across);
+  }
+}
+
+namespace
+{
+constexpr const char* Activity = "Bounding the gradation";
+
+/**
+ * Visits points in the order of their sizes, a part of them at a time: larger parts have more to do
+ * for all threads at once, in smaller ones fewer points are lowered more than once.
+ */
+class GradationBound
+{
+public:
+  GradationBound(
+    const SizingCells& cells, const GradationOptions& options, const std::vector<double>& sizes)
+    : Cells(cells), Gradation(options.Gradation), Sizes(sizes.size()), IsNear(sizes.size())
+  {
+    this->LoopOptions.NumberOfThreads = options.NumberOfThreads;
+    std::copy(sizes.begin(), sizes.end(), this->Sizes.begin());
+  }
+
+  Status Run(const ExecutionContext& context, std::vector<double>& sizes);
+
+private:
+  void CollectCells();
+  bool LowerNeighbors(double limit, const ExecutionContext& context);
+  bool Lower(Id point, double size);
+  double GetSize(Id point) const { return this->Sizes[point].load(std::memory_order_relaxed); }
+
+  const SizingCells& Cells;
+  const double Gradation;
+  ParallelLoopOptions LoopOptions;
+  /** Mean distance of two points of a cell. */
+  double MeanDistance = 0.0;
+  /** The cells of each point. */
+  std::vector<Id> Starts;
+  std::vector<Id> CellsOfPoints;
+  std::vector<std::atomic<double>> Sizes;
+  /** Points up to the limit whose neighbors are to be lowered. */
+  std::vector<Id> Near;
+  std::vector<std::atomic<bool>> IsNear;
+  /** All points beyond the limit. */
+  std::vector<Id> Far;
+};
+
+void GradationBound::CollectCells()
+{
+  const Id numberOfCells = static_cast<Id>(this->Cells.Offsets.size()) - 1;
+  this->Starts.assign(this->Sizes.size() + 1, 0);
+  for (const Id point : this->Cells.Connectivity)
+  {
+    ++this->Starts[point + 1];
+  }
+  std::partial_sum(this->Starts.begin(), this->Starts.end(), this->Starts.begin());
+  std::vector<Id> places(this->Starts.begin(), this->Starts.end() - 1);
+  this->CellsOfPoints.resize(this->Cells.Connectivity.size());
+  double sum = 0.0;
+  for (Id cell = 0; cell < numberOfCells; ++cell)
+  {
+    const Id begin = this->Cells.Offsets[cell];
+    for (Id i = begin; i < this->Cells.Offsets[cell + 1]; ++i)
+    {
+      const Id point = this->Cells.Connectivity[i];
+      this->CellsOfPoints[places[point]++] = cell;
+      sum +=
+        Distance(this->Cells.Points[this->Cells.Connectivity[begin]], this->Cells.Points[point]);
+    }
+  }
+  this->MeanDistance = sum / std::max<double>(1.0, this->Cells.Connectivity.size());
+}
+
+/** Whether the size was larger. */
+bool GradationBound::Lower(Id point, double size)
+{
+  std::atomic<double>& place = this->Sizes[point];
+  double former = place.load(std::memory_order_relaxed);
+  while (size < former)
+  {
+    if (place.compare_exchange_weak(former, size, std::memory_order_relaxed))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/** Those of all near points; what is lowered, and not beyond the limit, is near then. */
+bool GradationBound::LowerNeighbors(double limit, const ExecutionContext& context)
+{
+  const std::size_t count = this->Near.size();
+  std::vector<std::vector<Id>> lowered(GetNumberOfBlocks(count, this->LoopOptions));
+  const bool isDone = ParallelLoop(count, this->LoopOptions, context, Activity,
+    [&](std::size_t begin, std::size_t end, std::size_t block)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        const Id point = this->Near[i];
+        // Whoever lowers it from here on makes it near again.
+        this->IsNear[point].exchange(false, std::memory_order_acq_rel);
+        const double size = this->GetSize(point);
+        for (Id j = this->Starts[point]; j < this->Starts[point + 1]; ++j)
+        {
+          const Id cell = this->CellsOfPoints[j];
+          for (Id k = this->Cells.Offsets[cell]; k < this->Cells.Offsets[cell + 1]; ++k)
+          {
+            const Id other = this->Cells.Connectivity[k];
+            const double bound = size +
+              this->Gradation * Distance(this->Cells.Points[point], this->Cells.Points[other]);
+            if (this->Lower(other, bound) && bound <= limit &&
+              !this->IsNear[other].exchange(true, std::memory_order_acq_rel))
+            {
+              lowered[block].push_back(other);
+            }
+          }
+        }
+      }
+    });
+  this->Near.clear();
+  for (const std::vector<Id>& points : lowered)
+  {
+    this->Near.insert(this->Near.end(), points.begin(), points.end());
+  }
+  return isDone;
+}
+
+Status GradationBound::Run(const ExecutionContext& context, std::vector<double>& sizes)
+{
+  // Points of so many cells in a row at a time; more if to look for them takes longer than to visit
+  // them, as where sizes differ by far more than cells do.
+  constexpr double cellsAtOnce = 4.0;
+  constexpr std::size_t fewVisits = 64;
+  this->CollectCells();
+  double step = std::max(
+    cellsAtOnce * this->Gradation * this->MeanDistance, std::numeric_limits<double>::min());
+  this->Far.resize(sizes.size());
+  std::iota(this->Far.begin(), this->Far.end(), 0);
+  while (!this->Far.empty())
+  {
+    const double done = 1.0 - double(this->Far.size()) / double(sizes.size());
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const Id point : this->Far)
+    {
+      smallest = std::min(smallest, this->GetSize(point));
+    }
+    const double limit = smallest + step;
+    const auto isBeyond = [&](Id point) { return this->GetSize(point) > limit; };
+    this->Near.assign(
+      std::partition(this->Far.begin(), this->Far.end(), isBeyond), this->Far.end());
+    for (const Id point : this->Near)
+    {
+      this->IsNear[point].store(true, std::memory_order_relaxed);
+    }
+    std::size_t visits = 0;
+    while (!this->Near.empty())
+    {
+      visits += this->Near.size();
+      if (!this->LowerNeighbors(limit, context.Part(done, done)))
+      {
+        return Status::Aborted();
+      }
+    }
+    step *= fewVisits * visits < this->Far.size() ? 2.0 : 1.0;
+    this->Far.erase(std::partition(this->Far.begin(), this->Far.end(), isBeyond), this->Far.end());
+  }
+  std::copy(this->Sizes.begin(), this->Sizes.end(), sizes.begin());
+  return {};
+}
+} // namespace
+
+Status BoundGradation(const SizingCells& cells, const GradationOptions& options,
+  const ExecutionContext& context, std::vector<double>& sizes)
+{
+  return GradationBound(cells, options, sizes).Run(context, sizes);
+}
+} // namespace cdm

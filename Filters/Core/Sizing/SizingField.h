@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SizingField.h
+ * @brief How long edges are to be: the control function of the thesis (3.3), and its gradation.
+ *
+ * The spacing around a position is an ellipsoid: a sphere (one length), an ellipsoid along the axes
+ * (three lengths) or one in any position (a tensor). F(x, d) of eq. 3.20 is its radius in direction
+ * d. A sizing field gives it for each position, of the domain or not.
+ *
+ * BoundGradation() lowers sizes given at the points of cells until they grow nowhere faster than
+ * wanted: the largest sizes below the given ones with |h(a) - h(b)| <= g |a - b| for any two points
+ * of a cell, from the smallest size on, as Dijkstra's algorithm does, but for many points of similar
+ * size at a time, which threads share: points that are lowered meanwhile are visited again. Which
+ * thread is first does not matter: the largest such sizes are unique, with their rounding too.
+ *
+ * Cost: O(n log n) for n points in cells of bounded size, of which some are visited twice; 40 bytes
+ * per point.
+ * References: H. Borouchaki, F. Hecht, P. J. Frey, "Mesh gradation control", 1998,
+ * doi:10.1002/(SICI)1097-0207(19981130)43:6<1143::AID-NME470>3.0.CO;2-I (the h-variation);
+ * P.-O. Persson, "Mesh size functions for implicit geometries and PDE-based gradient limiting",
+ * 2006, doi:10.1007/s00366-006-0014-1 (the largest field below one that has bounded slope).
+ */
+#ifndef cdmSizingField_h
+#define cdmSizingField_h
+
+#include "Core/Basics/ExecutionContext.h"
+#include "Core/Basics/Status.h"
+#include "Core/Basics/Vec3.h"
+
+#include <functional>
+#include <vector>
+
+namespace cdm
+{
+/** The spacing around one position; lengths are positive, in model units. */
+class LocalSpacing
+{
+public:
+  /** The same in all directions; implicit, so that a length is a spacing. */
+  LocalSpacing(double length) : LocalSpacing(Vec3{ length, length, length }) {}
+  /** One length for each axis. */
+  explicit LocalSpacing(const Vec3& lengths);
+  /** Lengths in three directions, which are orthogonal and of length 1. */
+  LocalSpacing(const Vec3& lengths, const Vec3 (&directions)[3]);
+  /** One length along a direction of length 1, another one across it. */
+  LocalSpacing(const Vec3& direction, double along, double across);
+
+  double GetSmallest() const { return this->Smallest; }
+  double GetLargest() const { return this->Largest; }
+  /** Half the extents of a box around the ellipsoid. */
+  const Vec3& GetExtents() const { return this->Extents; }
+  /** How many unit cells of this spacing fill a unit of volume. */
+  double GetDensity() const { return Dot(this->Rows[0], Cross(this->Rows[1], this->Rows[2])); }
+  /** The spacing in a direction of any length but zero. */
+  double GetAlong(const Vec3& direction) const
+  {
+    return Norm(direction) / Norm(this->ToUnits(direction));
+  }
+  /** An offset measured in spacings: the ellipsoid becomes the unit sphere. */
+  Vec3 ToUnits(const Vec3& offset) const
+  {
+    return { Dot(this->Rows[0], offset), Dot(this->Rows[1], offset), Dot(this->Rows[2], offset) };
+  }
+
+private:
+  /** Inverse of the spacing tensor, symmetric. */
+  Vec3 Rows[3];
+  Vec3 Extents;
+  double Smallest;
+  double Largest;
+};
+
+/** Stages call it from several threads at once; the same position always has the same spacing. */
+using SizingField = std::function<LocalSpacing(const Vec3&)>;
+
+/** Points in cells: cell i has the points Connectivity[Offsets[i]] to [Offsets[i + 1]]. */
+struct SizingCells
+{
+  std::vector<Vec3> Points;
+  std::vector<Id> Offsets{ 0 };
+  std::vector<Id> Connectivity;
+};
+
+struct GradationOptions
+{
+  /** How much larger sizes may be for each unit of distance. > 0. */
+  double Gradation = 0.3;
+  /** 0: one for each processor core. The sizes do not depend on it. */
+  int NumberOfThreads = 0;
+};
+
+/** One size for each point. */
+Status BoundGradation(const SizingCells& cells, const GradationOptions& options,
+  const ExecutionContext& context, std::vector<double>& sizes);
+} // namespace cdm
+
+#endif

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Sizing/TetrahedronLimits.h"
+
+#include "Core/Geometry/Measures.h"
+#include "Core/Meshes/TetMesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cdm
+{
+TetrahedronFault TetrahedronLimits::Find(
+  const std::array<Vec3, 4>& vertices, bool isShapeTested, Vec3& target, double& severity) const
+{
+  double longest = 0.0;
+  double shortest = std::numeric_limits<double>::infinity();
+  int shortestEdge = 0;
+  for (int e = 0; e < 6; ++e)
+  {
+    const double length =
+      Distance(vertices[TetrahedronEdges[e][0]], vertices[TetrahedronEdges[e][1]]);
+    longest = std::max(longest, length);
+    if (length < shortest)
+    {
+      shortest = length;
+      shortestEdge = e;
+    }
+  }
+  const Vec3 center = GetCircumcenter(vertices[0], vertices[1], vertices[2], vertices[3]);
+  const double radius = Distance(center, vertices[0]);
+  bool isLarge = (this->MaximumEdgeLength > 0.0 && longest > this->MaximumEdgeLength) ||
+    (this->MaximumVolume > 0.0 &&
+      GetSignedVolume(vertices[0], vertices[1], vertices[2], vertices[3]) > this->MaximumVolume);
+  if (!isLarge && this->Sizing)
+  {
+    const LocalSpacing spacing =
+      this->Sizing(0.25 * (vertices[0] + vertices[1] + vertices[2] + vertices[3]));
+    for (int e = 0; e < 6 && !isLarge; ++e)
+    {
+      isLarge = SquaredNorm(spacing.ToUnits(
+                  vertices[TetrahedronEdges[e][1]] - vertices[TetrahedronEdges[e][0]])) > 1.0;
+    }
+  }
+  if (isLarge)
+  {
+    target = center;
+    severity = radius;
+    return TetrahedronFault::Size;
+  }
+  if (!isShapeTested || this->RadiusEdgeRatio <= 0.0 || radius <= this->RadiusEdgeRatio * shortest)
+  {
+    return TetrahedronFault::None;
+  }
+  severity = radius / shortest;
+  target = center;
+  const Vec3 middle = 0.5 *
+    (vertices[TetrahedronEdges[shortestEdge][0]] + vertices[TetrahedronEdges[shortestEdge][1]]);
+  // The apex of an isosceles triangle over the edge whose circumradius is the ratio times the edge.
+  const double height = shortest *
+    (this->RadiusEdgeRatio +
+      std::sqrt(std::max(0.0, this->RadiusEdgeRatio * this->RadiusEdgeRatio - 0.25)));
+  const double distance = Distance(middle, center);
+  if (distance > height)
+  {
+    target = middle + (height / distance) * (center - middle);
+  }
+  return TetrahedronFault::Shape;
+}
+} // namespace cdm

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file TriangleLimits.h
+ * @brief How large a triangle of a surface and how small its angles may be.
+ */
+#ifndef cdmTriangleLimits_h
+#define cdmTriangleLimits_h
+
+#include "Core/Basics/Types.h"
+#include "Core/Basics/Vec3.h"
+#include "Core/Sizing/SizingField.h"
+
+#include <array>
+
+namespace cdm
+{
+struct TriangleLimits
+{
+  /** Model units; 0: no limit. */
+  double MaximumEdgeLength = 0.0;
+  /** Square model units; 0: no limit. */
+  double MaximumArea = 0.0;
+  /** Degrees; 0: no limit. Angles between two structural edges are as they are. */
+  double MinimumAngle = 0.0;
+  /** May be empty. Asked at the centroid. */
+  SizingField Sizing;
+
+  bool HasAny() const
+  {
+    return this->MaximumEdgeLength > 0.0 || this->MaximumArea > 0.0 || this->MinimumAngle > 0.0 ||
+      this->Sizing;
+  }
+
+  /**
+   * @param isStructural for the edges from each corner to the next one
+   * @param edge the structural edge to split first if the triangle is too large, the longest of them;
+   *        otherwise NoId
+   */
+  bool IsTooCoarse(
+    const std::array<Vec3, 3>& corners, const std::array<bool, 3>& isStructural, Id& edge) const;
+};
+} // namespace cdm
+
+#endif

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file DelaunaySurfaceRefiner.h
+ * @brief Stage 2: flips and new points until every triangle of the surface is strongly Delaunay.
+ *
+ * A triangle is strongly Delaunay if some sphere through its vertices holds no other point of the
+ * surface or the mesh points, neither inside nor on it; triangles of one flat facet with a common
+ * empty circumcircle count as one polygon. Then every Delaunay tetrahedralization of the points
+ * contains the surface (Filters/Core/README.md).
+ *
+ * Method (thesis 6.3):
+ *  1. find the structural edges (Def. 6.2), flip to saturation (recursive triangle flip, Def. 6.1);
+ *  2. test each triangle by the chosen criterion, with the double sphere (Crit. 6.1) in at most two
+ *     searches of the point octree, and remember the sphere that proves it. For criterion 3.2 the
+ *     structural edges come before all triangles, the shortest first, then the smallest triangle;
+ *  3. for a triangle that fails: flip; or split the structural edge that is disturbed at the foot or
+ *     the partner of the disturbing point (types P and R); or mirror the disturbing point into the
+ *     triangle's facet, about the edge or corner where the facets meet or along the normal; or
+ *     insert the projected circumcenter found by the walk (Fig. 6.10); or split the longest edge.
+ *     Points in facets come last, when no edge is left to split.
+ *     The rules and why they end: README.md beside this file;
+ *  4. test again the triangles whose proving sphere holds the new point;
+ *  5. with an accuracy angle, facets are curved, and points that mend one triangle may disturb its
+ *     neighbors for ever. Triangles of the input where points come much closer than the input's are
+ *     set aside; their edges become structural, and all begins anew.
+ *
+ * Guarantees: exact decisions; input points keep their coordinates and ids; new points follow them.
+ * Deterministic.
+ * Failure: InvalidInput for a surface that breaks the invariants of TriangleMesh.h, or of which two
+ * sheets within FlatnessRatio have become the same triangles. Triangles that
+ * stay bad because a limit stops the refinement are listed in UnresolvedTriangles: never silently.
+ * Cost: a triangle that is Delaunay takes one search of the octree, O(log n); a new point takes a few
+ * searches and one query of the spheres that prove the other triangles. About 350 bytes per triangle.
+ * Measured in Testing/Benchmarks/Surface.md.
+ */
+#ifndef cdmDelaunaySurfaceRefiner_h
+#define cdmDelaunaySurfaceRefiner_h
+
+#include "Core/Basics/ExecutionContext.h"
+#include "Core/Basics/Status.h"
+#include "Core/Meshes/TriangleMesh.h"
+#include "Core/Sizing/SizingField.h"
+#include "Core/Surface/StructuralEdges.h"
+
+namespace cdm
+{
+enum class SurfaceCriterion
+{
+  /** Criterion 5.2 by the double sphere 6.1: the surface is part of the Delaunay mesh. */
+  Delaunay = 0,
+  /** Criterion 3.1: the smallest sphere of each triangle is empty. */
+  SmallestSphere = 1,
+  /**
+   * Criterion 3.2: those of each triangle and of its structural edges are: closed control volumes.
+   * Edges inside of a facet are left out: the criterion for them would forbid obtuse angles.
+   */
+  SmallestSphereAndEdges = 2
+};
+
+struct DelaunaySurfaceRefinerOptions
+{
+  SurfaceCriterion Criterion = SurfaceCriterion::Delaunay;
+  /** What counts as flat, see StructuralEdges.h. */
+  StructuralEdgeOptions StructuralEdges;
+  /** Triangles with a smaller angle are refined where possible. Degrees, 0 (off) to 30. */
+  double MinimumAngle = 0.0;
+  /** Triangles with a larger area are refined. Square model units; 0: off. */
+  double MaximumArea = 0.0;
+  /** Edges longer than this are split. Model units; 0: off. */
+  double MaximumEdgeLength = 0.0;
+  /** Mesh points closer to the surface, as a ratio of the diagonal, are dropped. >= 0. */
+  double MeshPointClearanceRatio = 1e-3;
+  /** No edge is made shorter than this ratio of the diagonal. >= 0. */
+  double MinimumEdgeRatio = 1e-9;
+  /**
+   * The refinement stops when it has made so many points. 0: 50 for each triangle, at least 20000,
+   * or 1000000 where sizes or angles are asked for, and one for each mesh point. Surfaces that need
+   * more are hardly meant: sheets a hair apart that run into each other.
+   */
+  Id MaximumNewPoints = 0;
+  /** Threads for the first test of all triangles, at least 1; the result does not depend on it. */
+  int NumberOfThreads = 1;
+};
+
+struct DelaunaySurfaceRefinerInput
+{
+  const TriangleMesh* Surface = nullptr;
+  /** May be null. */
+  const std::vector<Vec3>* MeshPoints = nullptr;
+  /**
+   * May be empty. Of anisotropic spacing the largest length counts: Delaunay triangles that were as
+   * long as that in one direction and shorter in another would need points to match on all sides.
+   */
+  SizingField Sizing;
+  /**
+   * Triangles and structural edges to be split once each, if the criterion and the flips have not
+   * changed them before: what a stage after this one wants finer.
+   */
+  std::vector<Id> TrianglesToSplit = {};
+  std::vector<EdgeIds> EdgesToSplit = {};
+};
+
+struct DelaunaySurfaceRefinerReport
+{
+  Id EdgePoints = 0;
+  Id FacetPoints = 0;
+  Id Flips = 0;
+  Id DroppedMeshPoints = 0;
+};
+
+struct DelaunaySurfaceRefinerOutput
+{
+  /** SourceCells: triangle of the input surface. */
+  TriangleMesh Surface;
+  /** One for each point after those of the input. */
+  std::vector<PointParents> NewPoints;
+  /** The pieces of the structural edges; Chain is that of the input surface. */
+  std::vector<StructuralEdge> StructuralEdges;
+  /** Ids of the mesh points that are kept, ascending. */
+  std::vector<Id> KeptMeshPoints;
+  /** Triangles that do not fulfil the criterion, ascending. */
+  std::vector<Id> UnresolvedTriangles;
+  DelaunaySurfaceRefinerReport Report;
+};
+
+Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,
+  const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
+  DelaunaySurfaceRefinerOutput& output);
+} // namespace cdm
+
+#endif

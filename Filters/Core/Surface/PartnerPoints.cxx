@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Surface/PartnerPoints.h"
+
+#include "Core/Geometry/MatchingPoints.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Search/PointSearches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cdm
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+
+/** New points keep this distance, as a ratio of the edge, from the ends of an edge they split. */
+constexpr double SmallestPiece = 0.05;
+/** A disturbing point this close to the plane of a triangle, in units of its circumradius, is
+ * mirrored into the plane: thin layers get matching points instead of small triangles. */
+constexpr double ThinLayerRatio = 0.75;
+/** A disturbing point this close to an edge, in units of its length, is matched exactly. */
+constexpr double ThinGapRatio = 0.1;
+/** Disturbing points closer than this need no match near an end of the edge, in that unit, ... */
+constexpr double NeedleGapRatio = 1e-3;
+/** ... where the match lies within this part of the point's distance from the end. */
+constexpr double CloseEndRatio = 0.25;
+/** Another point on an edge, closer to the match than this part of the disturbing point's distance,
+ * is matched instead. */
+constexpr double CloseMatchRatio = 0.5;
+/**
+ * Lines and planes whose cosine is not above this are perpendicular: no point has a partner there.
+ * Of turned devices rounding would make partners of them here and there, and a quarter more points.
+ */
+constexpr double PerpendicularCosine = 1e-9;
+} // namespace
+
+/**
+ * The partner of a point on another edge: the point of this edge's line that is as far from the
+ * common perpendicular of the two lines. If the edges meet, that is type R about their corner; if
+ * they are parallel it is type P. Being partners is mutual, so that two edges never climb up a
+ * ladder between them, and a point is outside of the diametral spheres of all pieces that end at
+ * its partner.
+ */
+bool PartnerPoints::PlaceOnLine(Id segment, Id disturbing, double& way, Vec3& along) const
+{
+  const EdgeIds& ends = this->Surface.GetSegment(segment).Points;
+  const Vec3& a = this->Points[ends[0]];
+  const Vec3& p = this->Points[disturbing];
+  const Vec3 edge = this->Points[ends[1]] - a;
+  const Vec3 direction = (1.0 / Norm(edge)) * edge;
+  const std::vector<EdgeIds>& edges = this->Surface.GetInputEdges();
+  const Id own = this->Surface.GetSegment(segment).InputEdge;
+  // Of several edges at the point the one along this edge matters.
+  double best = PerpendicularCosine;
+  for (Id other : this->Incidences.GetEdges(disturbing))
+  {
+    if (other == own)
+    {
+      continue;
+    }
+    const Vec3& begin = this->Points[edges[other][0]];
+    Vec3 line = this->Points[edges[other][1]] - begin;
+    line = (1.0 / Norm(line)) * line;
+    double cosine = Dot(line, direction);
+    if (cosine < 0.0)
+    {
+      line = -1.0 * line;
+      cosine = -cosine;
+    }
+    if (cosine <= best)
+    {
+      continue;
+    }
+    best = cosine;
+    const Vec3 across = Cross(direction, line);
+    const double squaredSine = SquaredNorm(across);
+    const double foot = Dot(p - a, direction);
+    // Distance of p from the common perpendicular along its line, times 1 - cosine: a shift of the
+    // foot that stays small and accurate where the lines are almost parallel.
+    const double distance =
+      squaredSine > 0.0 ? Dot(Cross(p - a, direction), across) / squaredSine : 0.0;
+    const double shift = squaredSine > 1e-24 ? -distance * squaredSine / (1.0 + cosine) : 0.0;
+    way = foot + shift;
+    along = 0.5 * (direction + line);
+  }
+  return best > PerpendicularCosine;
+}
+
+Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id disturbing) const
+{
+  const EdgeIds& ends = this->Surface.GetSegment(segment).Points;
+  const Vec3& a = this->Points[ends[0]];
+  const Vec3& b = this->Points[ends[1]];
+  const double length = Distance(a, b);
+  const Vec3 direction = (1.0 / length) * (b - a);
+  for (int attempt = 0; disturbing != NoId; ++attempt)
+  {
+    const Vec3& p = this->Points[disturbing];
+    const double foot = Dot(p - a, direction);
+    const double height = Distance(p, a + foot * direction);
+    const bool isThin = height < ThinGapRatio * length;
+    double way = foot;
+    Vec3 along = direction;
+    const bool isPartner = this->PlaceOnLine(segment, disturbing, way, along);
+    // Close to an end of the piece, that end is the partner as good as there is: p stays outside of
+    // pieces that are shorter than its squared height over its distance along.
+    const double rest = std::abs(std::min(way, length - way));
+    const bool isClose = height < NeedleGapRatio * length && rest < CloseEndRatio * height;
+    if (isClose)
+    {
+      const double shorter = std::max(
+        height, rest > 0.0 ? std::min(0.5 * length, 0.5 * height * (height / rest)) : 0.5 * length);
+      way = way < 0.5 * length ? shorter : length - shorter;
+    }
+    const double margin = isThin ? 0.0
+      : isPartner                ? SmallestPiece * length
+                                 : std::min(height, 0.5 * length);
+    if (way > margin && way < length - margin)
+    {
+      const Vec3 position = a + way * direction;
+      if (isClose)
+      {
+        return position;
+      }
+      // A point that is much nearer is the one to match exactly.
+      NearestPointVisitor visitor(position, NoId, CloseMatchRatio * height);
+      this->Octree.Visit(visitor, visitor.GetReach());
+      if (attempt == 0 && visitor.Nearest != NoId && visitor.Nearest != disturbing &&
+        visitor.Nearest != ends[0] && visitor.Nearest != ends[1] &&
+        !this->Incidences.GetEdges(visitor.Nearest).empty())
+      {
+        disturbing = visitor.Nearest;
+        continue;
+      }
+      return MatchExactly(SnapToCoordinates(position, p, this->Diagonal), p, length, 10,
+        [&along](long double x, long double y, long double z)
+        { return std::abs(x * along.X + y * along.Y + z * along.Z); });
+    }
+    if (!isPartner && foot > 0.0 && foot < length)
+    {
+      // Type P, not nearer to the ends than the disturbing point is to the edge.
+      return a + std::min(std::max(foot, margin), length - margin) * direction;
+    }
+    break;
+  }
+  // From an acute corner only powers of two are used, so that all edges there end up alike.
+  const bool isAcuteA = this->Incidences.IsAcuteCorner(ends[0]);
+  const bool isAcuteB = this->Incidences.IsAcuteCorner(ends[1]);
+  if (isAcuteA != isAcuteB)
+  {
+    const double way = std::ldexp(1.0, std::ilogb(length * (2.0 / 3.0)));
+    return isAcuteA ? a + way * direction : b - way * direction;
+  }
+  return 0.5 * (a + b);
+}
+
+bool PartnerPoints::RotateAboutEdge(Id t, Id disturbing, Vec3& target) const
+{
+  const RefinableSurface::Triangle& triangle = this->Surface.GetTriangle(t);
+  const Vec3& p = this->Points[disturbing];
+  const Vec3 center = GetCircumcenter(this->Points[triangle.Points[0]],
+    this->Points[triangle.Points[1]], this->Points[triangle.Points[2]]);
+  double nearest = Infinity;
+  for (Id facet : this->Incidences.GetFacets(disturbing))
+  {
+    this->Incidences.ForEachSharedEdge(facet, triangle.Facet,
+      [&](Id edge)
+      {
+        const EdgeIds& axis = this->Surface.GetInputEdges()[edge];
+        const Vec3& begin = this->Points[axis[0]];
+        const Vec3 direction =
+          (1.0 / Distance(begin, this->Points[axis[1]])) * (this->Points[axis[1]] - begin);
+        const Vec3 foot = begin + Dot(p - begin, direction) * direction;
+        const Vec3 inward = center - (begin + Dot(center - begin, direction) * direction);
+        const double distance = Distance(p, foot);
+        if (distance < nearest && distance > 0.0 &&
+          Dot(inward, p - foot) > PerpendicularCosine * distance * Norm(inward))
+        {
+          nearest = distance;
+          target = foot + (distance / Norm(inward)) * inward;
+        }
+      });
+  }
+  return nearest < Infinity;
+}
+
+bool PartnerPoints::RotateAboutCorner(Id t, Id disturbing, Vec3& target) const
+{
+  const RefinableSurface::Triangle& triangle = this->Surface.GetTriangle(t);
+  const IdLists::Range corners = this->Incidences.GetCorners(triangle.Facet);
+  const Vec3& p = this->Points[disturbing];
+  double nearest = Infinity;
+  Id corner = NoId;
+  for (Id facet : this->Incidences.GetFacets(disturbing))
+  {
+    const IdLists::Range others = this->Incidences.GetCorners(facet);
+    const bool isSmaller = others.size() < corners.size();
+    for (Id candidate : isSmaller ? others : corners)
+    {
+      const double distance = Distance(p, this->Points[candidate]);
+      if (candidate != disturbing && distance < nearest &&
+        std::binary_search(
+          (isSmaller ? corners : others).begin(), (isSmaller ? corners : others).end(), candidate))
+      {
+        nearest = distance;
+        corner = candidate;
+      }
+    }
+  }
+  if (corner == NoId)
+  {
+    return false;
+  }
+  const Vec3& a = this->Points[triangle.Points[0]];
+  const Vec3& b = this->Points[triangle.Points[1]];
+  const Vec3& c = this->Points[triangle.Points[2]];
+  const Vec3 normal = Cross(b - a, c - a);
+  const Vec3 arm = p - this->Points[corner];
+  const Vec3 inPlane = arm - (Dot(arm, normal) / SquaredNorm(normal)) * normal;
+  target = this->Points[corner] + (nearest / Norm(inPlane)) * inPlane;
+  // Steep or far beyond the triangle, the turned point would do nothing for it.
+  return SquaredNorm(inPlane) > 0.25 * SquaredNorm(arm) && InEquatorialSphere(a, b, c, target) > 0;
+}
+
+/**
+ * Type P for facets: along the normal. If the point's own facet is not parallel, the foot is moved
+ * until both are equally far from the line where the two planes meet, somewhere outside: that is
+ * type R again, and mutual.
+ */
+bool PartnerPoints::Project(Id t, Id disturbing, Vec3& target) const
+{
+  const TriangleIds& ids = this->Surface.GetTriangle(t).Points;
+  const Vec3& a = this->Points[ids[0]];
+  const Vec3 normal = Cross(this->Points[ids[1]] - a, this->Points[ids[2]] - a);
+  const double radius = Distance(a, GetCircumcenter(a, this->Points[ids[1]], this->Points[ids[2]]));
+  const Vec3& p = this->Points[disturbing];
+  Vec3 unit = (1.0 / Norm(normal)) * normal;
+  unit = Dot(unit, p - a) < 0.0 ? -1.0 * unit : unit;
+  const double height = Dot(unit, p - a);
+  if (height > ThinLayerRatio * radius)
+  {
+    return false;
+  }
+  target = p - height * unit;
+  double best = 0.0;
+  Vec3 other;
+  for (Id facet : this->Incidences.GetFacets(disturbing))
+  {
+    const Vec3& candidate = this->Incidences.GetNormal(facet);
+    const double cosine = Dot(candidate, unit);
+    if (std::abs(cosine) > best)
+    {
+      best = std::abs(cosine);
+      other = cosine < 0.0 ? -1.0 * candidate : candidate;
+    }
+  }
+  if (best > 0.5)
+  {
+    // tan(angle / 2) = sin / (1 + cos); the sine is the length of the tilt.
+    const Vec3 tilt = other - best * unit;
+    target = target - (height / (1.0 + best)) * tilt;
+  }
+  return true;
+}
+
+bool PartnerPoints::PlaceInFacet(Id t, Id disturbing, Vec3& target) const
+{
+  // A point of the same facet, which is curved then, would be matched by ones ever closer to it.
+  const IdLists::Range facets = this->Incidences.GetFacets(disturbing);
+  if (std::find(facets.begin(), facets.end(), this->Surface.GetTriangle(t).Facet) != facets.end())
+  {
+    return false;
+  }
+  // However close to other points: only points that match exactly leave each other alone.
+  return this->RotateAboutEdge(t, disturbing, target) ||
+    this->RotateAboutCorner(t, disturbing, target) || this->Project(t, disturbing, target);
+}
+
+/** Moves a point in a plane facet by rounding errors, to match one of another facet exactly. */
+Vec3 PartnerPoints::MatchAcross(Id t, Id disturbing, const Vec3& position, double radius) const
+{
+  const Vec3& p = this->Points[disturbing];
+  const Vec3& own = this->Incidences.GetNormal(this->Surface.GetTriangle(t).Facet);
+  Vec3 across;
+  double best = 0.5;
+  for (Id facet : this->Incidences.GetFacets(disturbing))
+  {
+    const double cosine = Dot(this->Incidences.GetNormal(facet), own);
+    if (std::abs(cosine) > best)
+    {
+      best = std::abs(cosine);
+      across = own + (cosine < 0.0 ? -1.0 : 1.0) * this->Incidences.GetNormal(facet);
+    }
+  }
+  if (best <= 0.5 || Distance(position, p) > NeedleGapRatio * radius)
+  {
+    return position;
+  }
+  const long double square = SquaredNorm(across);
+  return MatchExactly(position, p, radius, 10,
+    [&across, square](long double x, long double y, long double z)
+    {
+      const long double along = (x * across.X + y * across.Y + z * across.Z) / square;
+      x -= along * across.X;
+      y -= along * across.Y;
+      z -= along * across.Z;
+      return std::sqrt(x * x + y * y + z * z);
+    });
+}
+} // namespace cdm

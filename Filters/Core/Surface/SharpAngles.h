@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SharpAngles.h
+ * @brief Which tetrahedra lie in sharp angles of a surface.
+ *
+ * Sharp are dihedral angles below 60 degrees between two facets at a structural edge, and plane
+ * angles below 30 degrees between two structural edges at a point. In these, points of one side ask
+ * for points of the other side, closer to the corner and so without end: refinement for shape has to
+ * stop there, and the tetrahedra from one side to the other keep the shape that they have.
+ *
+ * A side is a facet (triangles that no structural edge separates), or a structural edge with the edges
+ * that go straight on from it.
+ *
+ * Cost: O(n log n) to build; O(1) for a tetrahedron. About 60 bytes per triangle.
+ */
+#ifndef cdmSharpAngles_h
+#define cdmSharpAngles_h
+
+#include "Core/Basics/IdLists.h"
+#include "Core/Meshes/TriangleMesh.h"
+#include "Core/Surface/StructuralEdges.h"
+
+#include <utility>
+#include <vector>
+
+namespace cdm
+{
+class SharpAngles
+{
+public:
+  SharpAngles(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges);
+
+  /** Whether a vertex is the corner of a sharp angle, or lies on its edge. */
+  bool IsAtCorner(const TetrahedronIds& ids) const;
+  /**
+   * Whether one vertex lies on one side of a sharp angle, and another one on the other side. Only the
+   * surface's points lie on sides; ids of other points are larger.
+   */
+  bool IsAcross(const TetrahedronIds& ids) const;
+
+private:
+  /** A structural edge as seen from a corner with a sharp angle. */
+  struct Arm
+  {
+    Id Corner;
+    /** From the corner, of length one. */
+    Vec3 Direction;
+  };
+
+  void FindFacets(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges);
+  void FindArms(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges);
+  bool AreAcrossFacets(Id p, Id q) const;
+  bool AreAcrossArms(Id p, Id q) const;
+
+  /** One for each point of the surface. */
+  std::vector<char> IsCorner;
+  /** Of each point. */
+  IdLists PointFacets;
+  /** Pairs of facets with a sharp angle, the smaller one first; sorted. */
+  std::vector<std::pair<Id, Id>> FacetPairs;
+  std::vector<Arm> Arms;
+  /** Of each point, but of corners only if it lies on the arm of another one. */
+  IdLists PointArms;
+};
+} // namespace cdm
+
+#endif

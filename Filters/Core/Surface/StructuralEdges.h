@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file StructuralEdges.h
+ * @brief Stage 1: the edges of a surface that a mesh has to keep (thesis Def. 6.2).
+ *
+ * An edge is structural if it is open (one triangle), shared by more than two triangles, a border
+ * between different BoundaryLabels, or if its dihedral angle differs from 180 degrees by more than
+ * the accuracy angle. Two triangles count as flat, whatever the accuracy angle, if they bend by
+ * less than one degree and if each opposite vertex lies within FlatnessRatio of the size of the
+ * surface of the other's plane: coordinates in files are rounded.
+ *
+ * Exactly: let n and m be the normals of the two triangles, turned so that the triangles are
+ * oriented consistently along their edge; the edge bends by the angle between n and m (0 is flat,
+ * 180 folded back). The edge is smooth if it bends by no more than the accuracy angle, or by no
+ * more than one degree with both distances within FlatnessRatio * diagonal. A triangle without area
+ * has no normal: its edges are never smooth. Labels are compared after turning them with the
+ * triangle; surfaces without labels have no label change.
+ *
+ * Method:
+ *  1. sort all edges of all triangles, judge each group of equal edges;
+ *  2. trace chains from corners (points where not exactly two structural edges meet), in the order
+ *     of the corners' ids and, at a corner, of the edges;
+ *  3. what is left are closed chains, each traced from its smallest point.
+ *
+ * Guarantees: deterministic; edges come in the order of (smaller id, larger id).
+ * Failure: InvalidInput names triangles with ids out of range or repeated, and points that are not
+ * finite; the output is then empty, as after an abort.
+ * Cost: O(n log n); 28 bytes per structural edge.
+ */
+#ifndef cdmStructuralEdges_h
+#define cdmStructuralEdges_h
+
+#include "Core/Basics/ExecutionContext.h"
+#include "Core/Basics/Status.h"
+#include "Core/Meshes/TriangleMesh.h"
+
+#include <vector>
+
+namespace cdm
+{
+/** In order of precedence: an edge that is several of these is the first of them. */
+enum class StructuralEdgeKind : unsigned char
+{
+  Open = 0,
+  NonManifold = 1,
+  LabelChange = 2,
+  Sharp = 3
+};
+
+struct StructuralEdge
+{
+  /** Smaller id first. */
+  EdgeIds Points{ NoId, NoId };
+  StructuralEdgeKind Kind = StructuralEdgeKind::Sharp;
+  /** Chain of edges between corners (or closed) that the edge belongs to, from 0. */
+  Id Chain = NoId;
+  /**
+   * Degrees, 0 to 180: the smallest angle between two neighbouring triangles around the edge; 180
+   * is flat. -1 for an open edge.
+   */
+  double DihedralAngle = 0.0;
+};
+
+struct StructuralEdgeOptions
+{
+  /** Degrees, 0 to 180: edges that bend by no more are smooth. 0: only numerically flat ones. */
+  double AccuracyAngle = 0.0;
+  /** Distance, as a ratio of the bounding box diagonal, within which triangles count as flat. */
+  double FlatnessRatio = 1e-9;
+  /** Marks triangles at whose edges the accuracy angle does not count; empty: none. */
+  std::vector<char> IsExact = {};
+};
+
+struct StructuralEdgesOutput
+{
+  std::vector<StructuralEdge> Edges;
+  /** Points where chains end, ascending. */
+  std::vector<Id> Corners;
+  Id NumberOfChains = 0;
+};
+
+Status ExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeOptions& options,
+  const ExecutionContext& context, StructuralEdgesOutput& output);
+
+/**
+ * Whether two triangles (a, b, c) and (b, a, d) count as flat or bend by no more than the accuracy
+ * angle: the rule above in one place. flatness is a distance in model units.
+ */
+bool IsSmoothEdge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double accuracyAngle,
+  double flatness);
+
+/** Diagonal of the bounding box of the points; 0 without points. */
+double GetBoundingBoxDiagonal(const std::vector<Vec3>& points);
+} // namespace cdm
+
+#endif

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Surface/SurfaceDelaunayTest.h"
+
+#include "Core/Geometry/Measures.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Search/EmptySphereSearch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace cdm
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+constexpr double Epsilon = std::numeric_limits<double>::epsilon();
+
+/** Of points in a sphere so many are looked for. */
+constexpr std::size_t EnoughPoints = 64;
+
+/** Collects the points in and on the smallest sphere through a triangle. */
+class SmallestSphereVisitor
+{
+public:
+  SmallestSphereVisitor(const std::vector<Vec3>& points, const TriangleIds& triangle,
+    bool isOneEnough, SurfaceDelaunayTest::Result& result)
+    : IsOneEnough(isOneEnough), Triangle(triangle), A(points[triangle[0]]), B(points[triangle[1]]),
+      C(points[triangle[2]]), Found(result)
+  {
+    this->Center = this->A + GetCircumcenterOffset(this->A, this->B, this->C);
+    this->Radius = Distance(this->Center, this->A);
+    const Vec3 u = this->B - this->A;
+    const Vec3 v = this->C - this->A;
+    const double condition = Norm(u) * Norm(v) / Norm(Cross(u, v));
+    // Relative error of center and radius (see FourthPointSearch.cxx), with room to spare.
+    const double error = 64.0 * Epsilon * condition * condition;
+    const double reach = this->Radius + Norm(u) + Norm(v);
+    const double size = std::abs(this->A.X) + std::abs(this->A.Y) + std::abs(this->A.Z);
+    this->Slack = error * reach + 16.0 * Epsilon * (size + reach);
+    this->SquaredReach = (this->Radius + this->Slack) * (this->Radius + this->Slack);
+    this->SquaredCore = (this->Radius - this->Slack) * (this->Radius - this->Slack);
+    if (!(this->Slack < 1e-6 * this->Radius))
+    {
+      this->Form.emplace(this->A, this->B, this->C);
+    }
+  }
+
+  double Order(const Box& box) const
+  {
+    const double distance = box.GetSquaredDistance(this->Center);
+    if (this->Found.InsideSmallestSphere.size() >= EnoughPoints &&
+      (this->IsOneEnough || this->IsCoplanarInside || (this->IsFrontInside && this->IsBackInside)))
+    {
+      return Infinity;
+    }
+    if (this->Form)
+    {
+      return this->Form->MayTouch(box.Low, box.High) ? distance : Infinity;
+    }
+    return distance > this->SquaredReach ? Infinity : distance;
+  }
+
+  /** Beyond it nothing matters. */
+  Box GetReach() const
+  {
+    return this->Form ? Box::MakeInfinite()
+                      : Box::MakeAround(this->Center, this->Radius + 2.0 * this->Slack);
+  }
+
+  void Visit(Id id, const Vec3& q)
+  {
+    if (id == this->Triangle[0] || id == this->Triangle[1] || id == this->Triangle[2])
+    {
+      return;
+    }
+    const double distance = SquaredNorm(q - this->Center);
+    int position = this->Form         ? this->Form->GetSide(q)
+      : distance > this->SquaredReach ? -1
+      : distance < this->SquaredCore  ? 1
+                                      : 0;
+    if (position < 0)
+    {
+      return;
+    }
+    position = position == 0 ? InEquatorialSphere(this->A, this->B, this->C, q) : position;
+    if (position > 0)
+    {
+      this->Found.InsideSmallestSphere.push_back(id);
+      this->AddSide(q, this->IsFrontInside, this->IsBackInside, this->IsCoplanarInside);
+      if (distance < this->Deepest)
+      {
+        this->Deepest = distance;
+        std::swap(
+          this->Found.InsideSmallestSphere.front(), this->Found.InsideSmallestSphere.back());
+      }
+    }
+    else if (position == 0)
+    {
+      bool isCoplanar = false;
+      this->AddSide(q, this->IsFrontOn, this->IsBackOn, isCoplanar);
+      (isCoplanar ? this->Found.Cocircular : this->Found.OnSmallestSphere).push_back(id);
+    }
+  }
+
+  Vec3 Center;
+  double Radius;
+  /** How far off center and radius may be. */
+  double Slack;
+  /** Where the points strictly inside lie, and those on the sphere. */
+  bool IsFrontInside = false;
+  bool IsBackInside = false;
+  bool IsCoplanarInside = false;
+  bool IsFrontOn = false;
+  bool IsBackOn = false;
+
+private:
+  void AddSide(const Vec3& q, bool& isFront, bool& isBack, bool& isCoplanar) const
+  {
+    const int side = Orientation(this->A, this->B, this->C, q);
+    (side > 0 ? isFront : side < 0 ? isBack : isCoplanar) = true;
+  }
+
+  /** One point inside of the sphere settles the matter. */
+  bool IsOneEnough;
+  TriangleIds Triangle;
+  Vec3 A;
+  Vec3 B;
+  Vec3 C;
+  /** The sphere in twice the working precision, for needles. */
+  std::optional<SphereForm> Form;
+  /** Squared distances from the center: beyond the first points lie outside, below the second inside. */
+  double SquaredReach;
+  double SquaredCore;
+  double Deepest = Infinity;
+  SurfaceDelaunayTest::Result& Found;
+};
+
+/**
+ * Whether the sphere through a triangle and a point in front of it, of smallest lambda, holds a
+ * point behind the triangle, inside or on it.
+ */
+class OtherSideVisitor
+{
+public:
+  /** The sphere lies within a ball, of infinite radius if that is not certain. */
+  OtherSideVisitor(const std::vector<Vec3>& points, const TriangleIds& triangle, Id front,
+    const Vec3& center, double radius)
+    : Triangle(triangle), A(points[triangle[0]]), B(points[triangle[1]]), C(points[triangle[2]]),
+      D(points[front]), Front(front), Center(center), SquaredRadius(radius * radius)
+  {
+    const Vec3 u = this->B - this->A;
+    const Vec3 v = this->C - this->A;
+    this->Normal = Cross(u, v);
+    // Far more than rounding leaves of a distance from the plane, in units of the normal.
+    this->Tolerance = 1e-13 * Norm(u) * Norm(v);
+    if (!this->IsBall())
+    {
+      this->Form.emplace(this->A, this->B, this->C, this->D);
+    }
+  }
+
+  double Order(const Box& box) const
+  {
+    const bool mayHold = this->IsBall()
+      ? box.GetSquaredDistance(this->Center) <= this->SquaredRadius
+      : this->Form->MayTouch(box.Low, box.High);
+    return !this->IsFound && mayHold && !this->IsInFront(box) ? 0.0 : Infinity;
+  }
+
+  Box GetReach() const
+  {
+    return this->IsBall() ? Box::MakeAround(this->Center, std::sqrt(this->SquaredRadius))
+                          : Box::MakeInfinite();
+  }
+
+  void Visit(Id id, const Vec3& q)
+  {
+    if (this->IsFound || (this->IsBall() && SquaredNorm(q - this->Center) > this->SquaredRadius) ||
+      id == this->Triangle[0] || id == this->Triangle[1] || id == this->Triangle[2] ||
+      id == this->Front)
+    {
+      return;
+    }
+    const int side = this->IsBall() ? 0 : this->Form->GetSide(q);
+    this->IsFound = side >= 0 && Orientation(this->A, this->B, this->C, q) < 0 &&
+      (side > 0 || InSphere(this->A, this->B, this->C, this->D, q) >= 0);
+  }
+
+  bool IsFound = false;
+
+private:
+  bool IsBall() const { return this->SquaredRadius < Infinity; }
+
+  /** False if any point of the box may lie behind the triangle. */
+  bool IsInFront(const Box& box) const
+  {
+    double height = 0.0;
+    double size = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double nearest = this->Normal[axis] > 0.0 ? box.Low[axis] : box.High[axis];
+      height += this->Normal[axis] * (nearest - this->A[axis]);
+      size += std::abs(nearest) + std::abs(this->A[axis]);
+    }
+    return height > this->Tolerance * size;
+  }
+
+  TriangleIds Triangle;
+  Vec3 A;
+  Vec3 B;
+  Vec3 C;
+  Vec3 D;
+  Id Front;
+  Vec3 Center;
+  double SquaredRadius;
+  Vec3 Normal;
+  double Tolerance;
+  /** The sphere in twice the working precision, where there is no ball. */
+  std::optional<SphereForm> Form;
+};
+} // namespace
+
+void SurfaceDelaunayTest::Run(
+  const TriangleIds& triangle, Result& result, bool isSmallestSphereWanted) const
+{
+  result.InsideSmallestSphere.clear();
+  result.OnSmallestSphere.clear();
+  result.Cocircular.clear();
+  SmallestSphereVisitor visitor(this->Points, triangle, isSmallestSphereWanted, result);
+  this->Octree.Visit(visitor, visitor.GetReach());
+  std::sort(result.Cocircular.begin(), result.Cocircular.end());
+  // The proof may be a little larger than the empty sphere: that costs a needless test at most.
+  constexpr double Inflation = 1.0 + 1e-6;
+  result.ProofCenter = visitor.Center;
+  result.ProofRadius = (visitor.Radius + 2.0 * visitor.Slack) * Inflation;
+  if (!std::isfinite(result.ProofRadius))
+  {
+    result.ProofRadius = Infinity;
+  }
+  result.IsDelaunay = !visitor.IsCoplanarInside &&
+    !(visitor.IsFrontInside && visitor.IsBackInside) &&
+    !(visitor.IsFrontInside && visitor.IsBackOn) && !(visitor.IsFrontOn && visitor.IsBackInside) &&
+    !(visitor.IsFrontOn && visitor.IsBackOn) &&
+    !(isSmallestSphereWanted && !result.InsideSmallestSphere.empty());
+  if (!result.IsDelaunay || result.InsideSmallestSphere.empty())
+  {
+    return;
+  }
+
+  // All disturbing points lie on one side, from now on the front.
+  const TriangleIds turned =
+    visitor.IsFrontInside ? triangle : TriangleIds{ triangle[0], triangle[2], triangle[1] };
+  const Vec3& a = this->Points[turned[0]];
+  const Vec3& b = this->Points[turned[1]];
+  const Vec3& c = this->Points[turned[2]];
+  Id best = result.InsideSmallestSphere.front();
+  for (Id candidate : result.InsideSmallestSphere)
+  {
+    if (candidate != best && InSphere(a, b, c, this->Points[best], this->Points[candidate]) > 0)
+    {
+      best = candidate;
+    }
+  }
+  const Vec3 normal = Cross(b - a, c - a);
+  const Vec3 arm = this->Points[best] - a;
+  const double height = Dot(normal, arm);
+  const double lambda = Dot(arm, arm - 2.0 * (visitor.Center - a)) / (2.0 * height);
+  const Vec3 center = visitor.Center + lambda * normal;
+  const double radius =
+    std::max(Distance(center, a), Distance(center, this->Points[best])) * Inflation +
+    2.0 * visitor.Slack;
+  // Rounding moves the center by far less than the inflation, unless the four points are almost in
+  // a plane.
+  const double condition = Norm(b - a) * Norm(c - a) * Norm(arm) / height;
+  const bool isCertain =
+    std::isfinite(radius) && condition < 1e7 && condition * visitor.Slack < 1e-7 * radius;
+  OtherSideVisitor otherSide(this->Points, turned, best, center, isCertain ? radius : Infinity);
+  this->Octree.Visit(otherSide, otherSide.GetReach());
+  result.IsDelaunay = !otherSide.IsFound;
+  if (result.IsDelaunay)
+  {
+    result.ProofCenter = std::isfinite(radius) ? center : visitor.Center;
+    result.ProofRadius = std::isfinite(radius) ? radius : Infinity;
+  }
+}
+} // namespace cdm

@@ -1,0 +1,679 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Volume/SteinerPointRefiner.h"
+
+#include "Core/Basics/SortedIds.h"
+#include "Core/Certificate/MeshChecks.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Meshes/MeshBoundary.h"
+#include "Core/Meshes/ShortestEdges.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
+#include "Core/Volume/FeatureSizes.h"
+#include "Core/Volume/PointRounding.h"
+#include "Core/Volume/VolumeRefinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+/** Rounds without end would be an error of the rules; so many have never been seen. */
+constexpr Id MaximumRounds = 200;
+/** Rounds that split the boundary for slivers. */
+constexpr int MaximumSliverRounds = 40;
+/** Roundings of points in a row that do not help. */
+constexpr int MaximumFailedRoundings = 2;
+/** Passes over slivers and shapes in turn, when the boundary stays as it is. */
+constexpr int MaximumLastPasses = 5;
+/** Slivers wait until no more requests than these are left from badly shaped tetrahedra. */
+constexpr std::size_t FewRequests = 16;
+/** Edges of the boundary for a largest volume, in edges of the regular tetrahedron of that volume. */
+constexpr double BoundaryEdgeRatio = 1.15;
+
+class Refiner
+{
+public:
+  Refiner(const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options,
+    const ExecutionContext& context, SteinerPointRefinerOutput& output)
+    : Input(input), Options(options), Context(context),
+      Output(output), Limits{ options.RadiusEdgeRatio, options.MaximumVolume,
+        options.MaximumEdgeLength, input.Sizing },
+      MaximumNewPoints(GetMaximumNewPoints(input, options))
+  {
+  }
+
+  Status Run();
+
+private:
+  static Id GetMaximumNewPoints(
+    const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options);
+  Status CheckInput() const;
+  Status CheckBoundary() const;
+  void ExtractSurface();
+  ExecutionContext GetRoundContext() const;
+  Status Translate(Status status, const std::vector<Id>& sources) const;
+  Status StartRound();
+  Status RefineRound(bool isShapeTested);
+  void CollectSurfaceSizes(std::size_t first);
+  void MeasureSizes();
+  void CollectReport();
+  Status PerturbSlivers(SliverMeans means);
+  Status PerturbLastSlivers();
+  bool RoundFlatTetrahedraAway();
+  std::size_t CountRequests() const
+  {
+    return this->Round->GetRequestedTriangles().size() + this->Round->GetRequestedEdges().size();
+  }
+  bool HasRequests() const { return this->CountRequests() > 0; }
+  void FindFaults();
+  void MakeOutput();
+
+  const SteinerPointRefinerInput& Input;
+  const SteinerPointRefinerOptions& Options;
+  const ExecutionContext& Context;
+  SteinerPointRefinerOutput& Output;
+  const TetrahedronLimits Limits;
+  const Id MaximumNewPoints;
+
+  /** SourceCells: as those of the output's boundary. */
+  TriangleMesh Surface;
+  std::vector<StructuralEdge> Edges;
+  /** Input point of each of the surface's first points. */
+  std::vector<Id> SurfaceSources;
+  /** See InteriorPoint::Size; empty while only sizes are refined. */
+  std::vector<double> SurfaceSizes;
+  /** Of the surface when sizes were measured. */
+  std::unique_ptr<FeatureSizes> Features;
+  std::vector<InteriorPoint> Interior;
+  SliverMemory Memory;
+  std::unique_ptr<VolumeRefinement> Round;
+  /** Flat tetrahedra at the last rounding of points. */
+  std::size_t LastFlat = std::numeric_limits<std::size_t>::max() / 4;
+  /** So many roundings in a row have not helped. */
+  int FailedRoundings = 0;
+  /** Points of flat tetrahedra that rounding has left, sorted. */
+  std::vector<TetrahedronIds> LeftFlat;
+  /** Whether the last round has split nothing of what was requested. */
+  bool IsStuck = false;
+};
+
+Id Refiner::GetMaximumNewPoints(
+  const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options)
+{
+  if (options.MaximumNewPoints > 0)
+  {
+    return options.MaximumNewPoints;
+  }
+  constexpr Id largest = std::numeric_limits<Id>::max() / 8;
+  const bool hasSizes =
+    options.MaximumVolume > 0.0 || options.MaximumEdgeLength > 0.0 || input.Sizing;
+  return hasSizes
+    ? largest
+    : static_cast<Id>(std::min<std::size_t>(largest, 50000 + 200 * input.Mesh->Points.size()));
+}
+
+Status Refiner::CheckInput() const
+{
+  const TetMesh& mesh = *this->Input.Mesh;
+  Status status = CheckMeshInvariants(mesh, this->Options.NumberOfThreads);
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  std::vector<Id> outside;
+  for (Id t = 0; t < static_cast<Id>(mesh.Regions.size()); ++t)
+  {
+    if (mesh.Regions[t] < 0)
+    {
+      outside.push_back(t);
+    }
+  }
+  if (!outside.empty())
+  {
+    return Status::InvalidInput(std::to_string(outside.size()) +
+        " tetrahedra have a negative region id, which stands for the outside; number the regions "
+        "from 0 on.",
+      std::move(outside));
+  }
+  std::vector<Id> wrong;
+  for (Id p = 0; p < static_cast<Id>(this->Input.NewPoints.size()); ++p)
+  {
+    if (!IsFinite(this->Input.NewPoints[p]))
+    {
+      wrong.push_back(p);
+    }
+  }
+  return wrong.empty() ? Status()
+                       : Status::InvalidInput(std::to_string(wrong.size()) +
+                             " points to be inserted have coordinates that are not finite.",
+                           {}, std::move(wrong));
+}
+
+/** The triangles given have to be all facets between regions, and besides them only facets. */
+Status Refiner::CheckBoundary() const
+{
+  const TetMesh& mesh = *this->Input.Mesh;
+  const TriangleMesh& boundary = *this->Input.Boundary;
+  const Status status = CheckMeshInput(mesh, &boundary);
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  if (boundary.Labels.empty() || boundary.Points != mesh.Points)
+  {
+    return Status::InvalidInput("The boundary needs the points of the mesh, in the same order, and "
+                                "labels: use the one that belongs to it.");
+  }
+  const auto sort = [](TriangleIds ids)
+  {
+    std::sort(ids.begin(), ids.end());
+    return ids;
+  };
+  std::vector<std::pair<TriangleIds, Id>> facets;
+  for (Id t = 0; t < static_cast<Id>(boundary.Triangles.size()); ++t)
+  {
+    facets.emplace_back(sort(boundary.Triangles[t]), t);
+  }
+  std::sort(facets.begin(), facets.end());
+  const auto find = [&](const TriangleIds& ids)
+  {
+    const auto found =
+      std::lower_bound(facets.begin(), facets.end(), std::pair<TriangleIds, Id>(sort(ids), NoId));
+    return found != facets.end() && found->first == sort(ids) ? found->second : NoId;
+  };
+  std::vector<char> isFacet(boundary.Triangles.size(), 0);
+  std::size_t missing = 0;
+  for (Id t = 0; t < static_cast<Id>(mesh.Tetrahedra.size()); ++t)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      const Id neighbor = mesh.Neighbors[t][i];
+      const Id triangle = find(GetFacet(mesh.Tetrahedra[t], i));
+      if (triangle != NoId)
+      {
+        isFacet[triangle] = 1;
+      }
+      else if (neighbor == NoId || mesh.Regions[neighbor / 4] != mesh.Regions[t])
+      {
+        ++missing;
+      }
+    }
+  }
+  if (missing > 0)
+  {
+    return Status::InvalidInput(std::to_string(missing) +
+      " facets between regions or at the outside are not among the triangles of the boundary: use "
+      "the one that belongs to the mesh, or none.");
+  }
+  std::vector<Id> cells;
+  for (std::size_t t = 0; t < isFacet.size(); ++t)
+  {
+    if (!isFacet[t])
+    {
+      cells.push_back(static_cast<Id>(t));
+    }
+  }
+  return cells.empty()
+    ? Status()
+    : Status::InvalidInput(std::to_string(cells.size()) +
+          " triangles of the boundary are no facets of the mesh: use the one that "
+          "belongs to it, or none.",
+        std::move(cells));
+}
+
+void Refiner::ExtractSurface()
+{
+  const TetMesh& mesh = *this->Input.Mesh;
+  if (this->Input.Boundary == nullptr)
+  {
+    this->Surface = ExtractBoundary(mesh);
+  }
+  else
+  {
+    this->Surface = *this->Input.Boundary;
+    this->Surface.SourceCells.resize(this->Surface.Triangles.size());
+    std::iota(this->Surface.SourceCells.begin(), this->Surface.SourceCells.end(), 0);
+  }
+  this->SurfaceSources = RemoveUnusedPoints(this->Surface);
+  for (Id p : FindPointsInside(mesh, this->SurfaceSources))
+  {
+    if (!this->Input.IsRemoved.empty() && this->Input.IsRemoved[p])
+    {
+      ++this->Output.Report.RemovedPoints;
+      continue;
+    }
+    const bool isFree = !this->Input.IsFree.empty() && this->Input.IsFree[p];
+    this->Interior.push_back({ mesh.Points[p], 0.0, isFree, p, this->Memory.MakeName() });
+  }
+  for (const Vec3& position : this->Input.NewPoints)
+  {
+    this->Interior.push_back({ position, 0.0, false, NoId, this->Memory.MakeName() });
+  }
+}
+
+/** Rounds get smaller: each takes a part of what is left. */
+ExecutionContext Refiner::GetRoundContext() const
+{
+  const double done = 1.0 - std::pow(0.8, static_cast<double>(this->Output.Report.Rounds));
+  const double next = 1.0 - std::pow(0.8, static_cast<double>(this->Output.Report.Rounds + 1));
+  return this->Context.Part(done, next);
+}
+
+/** What a stage before says of triangles of the surface, in cells of the input. */
+Status Refiner::Translate(Status status, const std::vector<Id>& sources) const
+{
+  std::vector<Id> cells;
+  for (Id triangle : status.Cells)
+  {
+    cells.push_back(this->Surface.SourceCells[sources.empty() ? triangle : sources[triangle]]);
+  }
+  SortUnique(cells);
+  if (!status.IsAborted())
+  {
+    status.Message = "The boundary of the mesh: " + status.Message;
+  }
+  status.Cells = std::move(cells);
+  status.Points.clear();
+  return status;
+}
+
+/** Refine the boundary, splitting what was requested, and tetrahedralize. */
+Status Refiner::StartRound()
+{
+  const ExecutionContext context = this->GetRoundContext();
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &this->Surface;
+  input.Sizing = this->Input.Sizing;
+  if (this->Round)
+  {
+    this->Interior = this->Round->GetInterior();
+    input.TrianglesToSplit = this->Round->GetRequestedTriangles();
+    input.EdgesToSplit = this->Round->GetRequestedEdges();
+  }
+  std::vector<Vec3> points;
+  for (const InteriorPoint& point : this->Interior)
+  {
+    points.push_back(point.Position);
+  }
+  input.MeshPoints = &points;
+  DelaunaySurfaceRefinerOptions options;
+  options.Criterion = std::max(this->Options.Criterion, SurfaceCriterion::SmallestSphere);
+  options.StructuralEdges = this->Options.StructuralEdges;
+  options.MaximumEdgeLength = this->Options.MaximumEdgeLength;
+  options.MeshPointClearanceRatio = 0.0;
+  options.NumberOfThreads = this->Options.NumberOfThreads;
+  if (this->Options.MaximumVolume > 0.0)
+  {
+    const double edge =
+      BoundaryEdgeRatio * std::cbrt(6.0 * std::sqrt(2.0) * this->Options.MaximumVolume);
+    options.MaximumEdgeLength =
+      options.MaximumEdgeLength > 0.0 ? std::min(options.MaximumEdgeLength, edge) : edge;
+  }
+  DelaunaySurfaceRefinerOutput refined;
+  Status status = RefineDelaunaySurface(input, options, context.Part(0.0, 0.3), refined);
+  if (!status.IsOk())
+  {
+    return this->Translate(std::move(status), {});
+  }
+  std::vector<InteriorPoint> kept;
+  for (Id p : refined.KeptMeshPoints)
+  {
+    kept.push_back(this->Interior[p]);
+  }
+
+  points.clear();
+  for (const InteriorPoint& point : kept)
+  {
+    points.push_back(point.Position);
+  }
+  AdvancingFrontTetrahedralizerInput boundary;
+  boundary.Surface = &refined.Surface;
+  boundary.MeshPoints = &points;
+  AdvancingFrontTetrahedralizerOptions threads;
+  threads.NumberOfThreads = this->Options.NumberOfThreads;
+  AdvancingFrontTetrahedralizerOutput made;
+  status = TetrahedralizeByAdvancingFront(boundary, threads, context.Part(0.3, 0.4), made);
+  if (!status.IsOk())
+  {
+    return this->Translate(std::move(status), refined.Surface.SourceCells);
+  }
+
+  // From here on the round counts.
+  ++this->Output.Report.Rounds;
+  this->CollectReport();
+  this->IsStuck = refined.NewPoints.empty();
+  const Id oldPoints = static_cast<Id>(this->Surface.Points.size());
+  this->Output.Report.BoundaryPoints += static_cast<Id>(refined.NewPoints.size());
+  this->Output.Report.UnresolvedTriangles = static_cast<Id>(refined.UnresolvedTriangles.size());
+  this->Interior.clear();
+  for (Id p : made.MeshPointSources)
+  {
+    this->Interior.push_back(kept[p]);
+  }
+  this->Round.reset();
+  for (Id& source : made.Boundary.SourceCells)
+  {
+    source = this->Surface.SourceCells[refined.Surface.SourceCells[source]];
+  }
+  this->Surface = std::move(made.Boundary);
+  this->Surface.Points = std::move(refined.Surface.Points);
+  this->Edges = std::move(refined.StructuralEdges);
+  if (!this->SurfaceSizes.empty())
+  {
+    this->SurfaceSizes.resize(this->Surface.Points.size(), -1.0);
+    this->CollectSurfaceSizes(static_cast<std::size_t>(oldPoints));
+  }
+  this->Round = std::make_unique<VolumeRefinement>(std::move(made.Mesh), this->Surface, this->Edges,
+    this->SurfaceSizes, this->Interior, this->Limits,
+    this->MaximumNewPoints - this->Output.Report.BoundaryPoints -
+      this->Output.Report.InteriorPoints,
+    this->Memory);
+  this->Round->NoteNewPoints(oldPoints);
+  return status;
+}
+
+/**
+ * Sizes of the surface's points from the first new one on, which are negative: from those around them,
+ * and from edges that come close to each other.
+ */
+void Refiner::CollectSurfaceSizes(std::size_t first)
+{
+  bool isDone = false;
+  while (!isDone)
+  {
+    isDone = true;
+    std::vector<double> sizes = this->SurfaceSizes;
+    for (const TriangleIds& ids : this->Surface.Triangles)
+    {
+      for (int i = 0; i < 3; ++i)
+      {
+        const Id p = ids[i];
+        for (Id q : { ids[(i + 1) % 3], ids[(i + 2) % 3] })
+        {
+          if (this->SurfaceSizes[p] >= 0.0 || this->SurfaceSizes[q] < 0.0)
+          {
+            continue;
+          }
+          const double size =
+            this->SurfaceSizes[q] + Distance(this->Surface.Points[p], this->Surface.Points[q]);
+          sizes[p] = sizes[p] < 0.0 ? size : std::min(sizes[p], size);
+          isDone = false;
+        }
+      }
+    }
+    this->SurfaceSizes = std::move(sizes);
+  }
+  for (std::size_t p = first; p < this->SurfaceSizes.size(); ++p)
+  {
+    this->SurfaceSizes[p] = this->Features->Find(this->Surface.Points[p], this->SurfaceSizes[p]);
+  }
+}
+
+/** The shortest edge at each point of the mesh, and how close edges of the surface are. */
+void Refiner::MeasureSizes()
+{
+  this->Features = std::make_unique<FeatureSizes>(this->Surface.Points, this->Edges);
+  const std::vector<double> sizes = FindShortestEdges(this->Round->GetMesh());
+  this->SurfaceSizes.assign(
+    sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(this->Surface.Points.size()));
+  this->Round->SetSizes(sizes);
+}
+
+Status Refiner::RefineRound(bool isShapeTested)
+{
+  return this->Round->RefineByLimits(isShapeTested, this->GetRoundContext());
+}
+
+Status Refiner::PerturbSlivers(SliverMeans means)
+{
+  return this->Round->PerturbSlivers(this->Options.DihedralAngleTarget, means,
+    static_cast<Id>(this->SurfaceSources.size()), this->GetRoundContext());
+}
+
+/** Points that were put in for shapes after the slivers' points were moved leave slivers, too. */
+Status Refiner::PerturbLastSlivers()
+{
+  Status status;
+  Id inserted = NoId;
+  for (int pass = 1; status.IsOk() && inserted != this->Round->GetReport().InsertedPoints; ++pass)
+  {
+    inserted = this->Round->GetReport().InsertedPoints;
+    const bool isLast = pass == MaximumLastPasses;
+    status = this->PerturbSlivers(isLast ? SliverMeans::Moves : SliverMeans::Points);
+    if (isLast)
+    {
+      break;
+    }
+    status = status.IsOk() ? this->RefineRound(true) : status;
+  }
+  return status;
+}
+
+void Refiner::CollectReport()
+{
+  if (this->Round)
+  {
+    const VolumeRefinementReport& report = this->Round->GetReport();
+    this->Output.Report.InteriorPoints += report.InsertedPoints;
+    this->Output.Report.MovedPoints += report.MovedPoints;
+    this->Output.Report.RemovedPoints += report.RemovedPoints;
+  }
+}
+
+/**
+ * Points of the input stay. Again and again, until a few tries in a row have not done away with a
+ * quarter of the flat tetrahedra; the next time when there are others than those that were left.
+ * False if there is nothing to be done.
+ */
+bool Refiner::RoundFlatTetrahedraAway()
+{
+  const std::vector<Id> flat = this->Round->FindFlatTetrahedra();
+  std::vector<TetrahedronIds> found;
+  for (Id t : flat)
+  {
+    found.push_back(this->Round->GetMesh().Tetrahedra[t]);
+    std::sort(found.back().begin(), found.back().end());
+  }
+  std::sort(found.begin(), found.end());
+  if (std::includes(this->LeftFlat.begin(), this->LeftFlat.end(), found.begin(), found.end()))
+  {
+    return false;
+  }
+  this->FailedRoundings = 4 * flat.size() > 3 * this->LastFlat ? this->FailedRoundings + 1 : 0;
+  if (this->FailedRoundings > MaximumFailedRoundings)
+  {
+    this->LeftFlat = std::move(found);
+    this->FailedRoundings = 0;
+    this->LastFlat = std::numeric_limits<std::size_t>::max() / 4;
+    return false;
+  }
+  this->LastFlat = flat.size();
+  const PointRounding rounding(this->Round->GetMesh(), this->Surface, flat);
+  return rounding.Move(static_cast<Id>(this->SurfaceSources.size()), this->Surface.Points);
+}
+
+void Refiner::FindFaults()
+{
+  const TetMesh& mesh = this->Output.Mesh;
+  const SharpAngles& sharp = this->Round->GetSharpAngles();
+  SteinerPointRefinerReport& report = this->Output.Report;
+  for (std::size_t t = 0; t < mesh.Tetrahedra.size(); ++t)
+  {
+    const TetrahedronIds& ids = mesh.Tetrahedra[t];
+    const std::array<Vec3, 4> v{ mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]],
+      mesh.Points[ids[3]] };
+    Vec3 target;
+    double severity = 0.0;
+    const TetrahedronFault fault = this->Limits.Find(v, true, target, severity);
+    SteinerFault found = fault == TetrahedronFault::Size ? SteinerFault::Size
+      : fault == TetrahedronFault::Shape                 ? SteinerFault::Shape
+      : GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]) < this->Options.DihedralAngleTarget
+      ? SteinerFault::Sliver
+      : SteinerFault::None;
+    if (found == SteinerFault::Shape || found == SteinerFault::Sliver)
+    {
+      const bool isInevitable = this->Round->GetLayers().IsAcross(ids, mesh.Regions[t]) ||
+        sharp.IsAtCorner(ids) || sharp.IsAcross(ids);
+      found = isInevitable ? SteinerFault::Inevitable : found;
+    }
+    report.TooLarge += found == SteinerFault::Size;
+    report.BadlyShaped += found == SteinerFault::Shape;
+    report.Slivers += found == SteinerFault::Sliver;
+    report.Inevitable += found == SteinerFault::Inevitable;
+    this->Output.Faults.push_back(found);
+  }
+}
+
+/** The mesh of the round, which has the surface's points first, with the kept points first. */
+void Refiner::MakeOutput()
+{
+  this->FindFaults();
+  std::vector<Id> sources = this->SurfaceSources;
+  sources.resize(this->Surface.Points.size(), NoId);
+  for (const InteriorPoint& point : this->Interior)
+  {
+    sources.push_back(point.Source);
+  }
+  std::vector<Id> order(sources.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+    [&](Id a, Id b)
+    {
+      constexpr Id last = std::numeric_limits<Id>::max();
+      return (sources[a] == NoId ? last : sources[a]) < (sources[b] == NoId ? last : sources[b]);
+    });
+  std::vector<Id> newIds(sources.size());
+  std::vector<Vec3> points;
+  for (Id p : order)
+  {
+    newIds[p] = static_cast<Id>(points.size());
+    points.push_back(this->Output.Mesh.Points[p]);
+    this->Output.PointSources.push_back(sources[p]);
+    const Id inside = p - static_cast<Id>(this->Surface.Points.size());
+    this->Output.IsFree.push_back(inside >= 0 && this->Interior[inside].IsFree);
+  }
+  this->Output.Mesh.Points = std::move(points);
+  this->Output.Boundary = std::move(this->Surface);
+  this->Output.Boundary.Points = this->Output.Mesh.Points;
+  for (TriangleIds& ids : this->Output.Boundary.Triangles)
+  {
+    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]] };
+  }
+  for (TetrahedronIds& ids : this->Output.Mesh.Tetrahedra)
+  {
+    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]], newIds[ids[3]] };
+  }
+}
+
+Status Refiner::Run()
+{
+  Status status = this->CheckInput();
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  status = this->Input.Boundary != nullptr ? this->CheckBoundary() : status;
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  this->ExtractSurface();
+  status = this->StartRound();
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  this->Round->RemoveClosePoints(this->Options.MinimumEdgeLength, this->Input.Sizing);
+
+  bool areSizesDone = false;
+  int sliverRounds = 0;
+  bool isDone = false;
+  while (status.IsOk() && !isDone)
+  {
+    bool isRounded = false;
+    if (!areSizesDone)
+    {
+      status = this->RefineRound(false);
+      areSizesDone =
+        status.IsOk() && (this->IsStuck || !this->HasRequests() || this->Round->IsFull());
+      if (areSizesDone)
+      {
+        this->MeasureSizes();
+        this->IsStuck = false;
+      }
+    }
+    if (areSizesDone && status.IsOk())
+    {
+      status = this->RefineRound(true);
+      const bool isFull = this->Round->IsFull();
+      if (status.IsOk() && (this->IsStuck || isFull || this->CountRequests() <= FewRequests))
+      {
+        const Id inserted = this->Round->GetReport().InsertedPoints;
+        const bool areMeant = this->Options.DihedralAngleTarget > 0.0;
+        isRounded = areMeant && !isFull && sliverRounds < MaximumSliverRounds &&
+          this->RoundFlatTetrahedraAway();
+        if (areMeant && !isRounded)
+        {
+          ++sliverRounds;
+          status = this->PerturbSlivers(isFull     ? SliverMeans::Moves
+              : sliverRounds < MaximumSliverRounds ? SliverMeans::Requests
+                                                   : SliverMeans::Points);
+          status = status.IsOk() ? this->RefineRound(true) : status;
+        }
+        isDone = !isRounded &&
+          (this->IsStuck || isFull || sliverRounds >= MaximumSliverRounds ||
+            (!this->HasRequests() && this->Round->GetReport().InsertedPoints == inserted));
+        if (isDone && areMeant && status.IsOk())
+        {
+          status = this->PerturbLastSlivers();
+        }
+      }
+    }
+    if (status.IsOk())
+    {
+      isDone = isDone || this->Output.Report.Rounds >= MaximumRounds;
+      status = this->StartRound();
+      this->IsStuck = this->IsStuck && !isRounded;
+    }
+  }
+  if (status.IsOk())
+  {
+    // The last round has only numbered the points anew.
+    this->Output.Mesh = this->Round->GetMesh();
+    this->MakeOutput();
+  }
+  return status;
+}
+} // namespace
+
+Status RefineBySteinerPoints(const SteinerPointRefinerInput& input,
+  const SteinerPointRefinerOptions& options, const ExecutionContext& context,
+  SteinerPointRefinerOutput& output)
+{
+  output = SteinerPointRefinerOutput();
+  // How many rounds there will be nobody knows: a fraction counts where it is larger than those before.
+  double largest = 0.0;
+  bool isGoingOn = true;
+  const ExecutionContext ascending(
+    [&](double fraction, const char* activity)
+    {
+      largest = std::max(largest, fraction);
+      const std::string text =
+        std::string(activity) + ", round " + std::to_string(output.Report.Rounds + 1);
+      isGoingOn = context.Continue(largest, text.c_str());
+    },
+    [&] { return !isGoingOn; });
+  const Status status = Refiner(input, options, ascending, output).Run();
+  if (!status.IsOk())
+  {
+    output = SteinerPointRefinerOutput();
+  }
+  return status;
+}
+} // namespace cdm

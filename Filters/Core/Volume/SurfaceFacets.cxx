@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Volume/SurfaceFacets.h"
+
+#include "Core/Basics/ParallelLoop.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Meshes/DuplicateTriangles.h"
+#include "Core/Meshes/FacetPolygons.h"
+#include "Core/Meshes/TetMesh.h"
+#include "Core/Search/PointOctree.h"
+#include "Core/Surface/SurfaceDelaunayTest.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+/** How often the context is asked, in triangles. */
+constexpr std::size_t ReportInterval = 4096;
+
+/** +1 if two orders of the same three points turn the same way, else -1. */
+int GetRelativeTurn(const TriangleIds& s, const TriangleIds& t)
+{
+  const int first = s[0] == t[0] ? 0 : s[0] == t[1] ? 1 : 2;
+  return s[1] == t[(first + 1) % 3] ? 1 : -1;
+}
+
+class SurfaceFacetFinder
+{
+public:
+  SurfaceFacetFinder(const SurfaceFacetsInput& input, const ExecutionContext& context,
+    TriangleMesh& surface, SurfaceFacets& output)
+    : Input(input), Context(context), Surface(surface), Output(output)
+  {
+  }
+
+  Status Run();
+
+private:
+  void FindFacets();
+  bool IsSurelyStronglyDelaunay(Id triangle) const;
+  Status TurnDiagonals(const std::vector<Id>& doubtful);
+  bool IsBeyondHull(Id tetrahedron) const
+  {
+    const TetrahedronIds& ids = this->Input.All.Tetrahedra[tetrahedron];
+    return std::find(ids.begin(), ids.end(), static_cast<Id>(this->Input.Order.size())) !=
+      ids.end();
+  }
+
+  const SurfaceFacetsInput& Input;
+  const ExecutionContext& Context;
+  TriangleMesh& Surface;
+  SurfaceFacets& Output;
+};
+
+Status SurfaceFacetFinder::Run()
+{
+  const std::vector<DuplicateTriangle> duplicates = FindDuplicateTriangles(this->Surface.Triangles);
+  if (!duplicates.empty())
+  {
+    return Status::InvalidInput("Two triangles of the surface have the same points; clean the "
+                                "surface with vtkBoundaryTriangulator first.",
+      { duplicates.front().Triangle });
+  }
+  this->FindFacets();
+  const Id numberOfTriangles = static_cast<Id>(this->Surface.Triangles.size());
+  std::vector<Id> doubtful;
+  for (Id t = 0; t < numberOfTriangles; ++t)
+  {
+    if (!this->IsSurelyStronglyDelaunay(t))
+    {
+      doubtful.push_back(t);
+    }
+  }
+  if (!doubtful.empty())
+  {
+    const Status status = this->TurnDiagonals(doubtful);
+    if (!status.IsOk())
+    {
+      return status;
+    }
+    this->FindFacets();
+  }
+  for (Id side = 0; side < 2 * numberOfTriangles; ++side)
+  {
+    if (this->Output.Sides[side] == NoId)
+    {
+      return Status::InternalError("A boundary triangle is no facet of the mesh.", { side / 2 });
+    }
+  }
+  return Status();
+}
+
+Status SurfaceFacetFinder::TurnDiagonals(const std::vector<Id>& doubtful)
+{
+  const bool hasLabels = !this->Surface.Labels.empty();
+  const FacetPolygons polygons(this->Surface);
+  PointOctree octree;
+  for (Id point : this->Input.Order)
+  {
+    octree.Insert(point, this->Input.Points[point]);
+  }
+  SurfaceDelaunayTest test(this->Input.Points, octree);
+  SurfaceDelaunayTest::Result result;
+  std::vector<Id> offending;
+  std::vector<char> isDone(this->Surface.Triangles.size(), 0);
+  std::vector<Id> polygonTriangles;
+  for (std::size_t i = 0; i < doubtful.size(); ++i)
+  {
+    if (i % ReportInterval == 0 &&
+      !this->Context.Continue(double(i) / double(doubtful.size()), "Checking the surface"))
+    {
+      return Status::Aborted();
+    }
+    const Id t = doubtful[i];
+    if (isDone[t])
+    {
+      continue;
+    }
+    test.Run(this->Surface.Triangles[t], result);
+    const std::vector<Id>& cocircular = result.Cocircular;
+    const auto isCocircular = [&cocircular](Id point)
+    { return std::binary_search(cocircular.begin(), cocircular.end(), point); };
+    if (!result.IsDelaunay ||
+      (!cocircular.empty() && polygons.Collect(t, isCocircular, polygonTriangles) != cocircular))
+    {
+      offending.push_back(t);
+      continue;
+    }
+    if (cocircular.empty())
+    {
+      continue;
+    }
+
+    const std::vector<TriangleIds> fan =
+      MakePulledFan(this->Input.Points, this->Surface.Triangles[t], cocircular);
+    if (fan.size() != polygonTriangles.size())
+    {
+      return Status::InvalidInput("Triangles of a flat facet overlap; check the surface with "
+                                  "vtkBoundaryTriangulator.",
+        polygonTriangles);
+    }
+    const RegionPair labels = hasLabels ? this->Surface.Labels[t] : RegionPair{};
+    for (std::size_t k = 0; k < fan.size(); ++k)
+    {
+      const Id triangle = polygonTriangles[k];
+      TriangleIds before = this->Surface.Triangles[triangle];
+      TriangleIds after = fan[k];
+      std::sort(before.begin(), before.end());
+      std::sort(after.begin(), after.end());
+      this->Output.TurnedDiagonals += before != after;
+      this->Surface.Triangles[triangle] = fan[k];
+      if (hasLabels)
+      {
+        this->Surface.Labels[triangle] = labels;
+      }
+      isDone[triangle] = 1;
+    }
+  }
+  if (!offending.empty())
+  {
+    const std::string count = std::to_string(offending.size());
+    return Status::InvalidInput(count +
+        " triangles of the surface are not strongly Delaunay; refine the surface with "
+        "vtkDelaunaySurfaceRefiner first (mesh points on its second port, if there are any).",
+      std::move(offending));
+  }
+  return Status();
+}
+
+void SurfaceFacetFinder::FindFacets()
+{
+  // The triangles by their first vertex.
+  const std::size_t count = this->Input.Order.size();
+  std::vector<Id> vertices(this->Input.Points.size(), NoId);
+  for (std::size_t vertex = 0; vertex < count; ++vertex)
+  {
+    vertices[this->Input.Order[vertex]] = static_cast<Id>(vertex);
+  }
+  std::vector<Id> starts(count + 2, 0);
+  std::vector<char> isOnSurface(count + 1, 0);
+  const auto getFirst = [&vertices](const TriangleIds& ids) {
+    return std::min({ vertices[ids[0]], vertices[ids[1]], vertices[ids[2]] });
+  };
+  for (const TriangleIds& ids : this->Surface.Triangles)
+  {
+    ++starts[getFirst(ids) + 2];
+    for (Id point : ids)
+    {
+      isOnSurface[vertices[point]] = 1;
+    }
+  }
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  std::vector<Id> triangles(this->Surface.Triangles.size());
+  for (Id t = 0; t < static_cast<Id>(triangles.size()); ++t)
+  {
+    triangles[starts[getFirst(this->Surface.Triangles[t]) + 1]++] = t;
+  }
+
+  this->Output.Sides.assign(2 * this->Surface.Triangles.size(), NoId);
+  const auto find = [&](std::size_t t)
+  {
+    const TetrahedronIds& tetrahedron = this->Input.All.Tetrahedra[t];
+    if (tetrahedron[0] == NoId ||
+      isOnSurface[tetrahedron[0]] + isOnSurface[tetrahedron[1]] + isOnSurface[tetrahedron[2]] +
+          isOnSurface[tetrahedron[3]] <
+        3)
+    {
+      return;
+    }
+    for (int i = 0; i < 4; ++i)
+    {
+      const TriangleIds ids = GetFacet(tetrahedron, i);
+      if (!isOnSurface[ids[0]] || !isOnSurface[ids[1]] || !isOnSurface[ids[2]])
+      {
+        continue;
+      }
+      const Id first = std::min({ ids[0], ids[1], ids[2] });
+      TriangleIds points{ this->Input.Order[ids[0]], this->Input.Order[ids[1]],
+        this->Input.Order[ids[2]] };
+      const TriangleIds outward = points;
+      std::sort(points.begin(), points.end());
+      for (Id k = starts[first]; k < starts[first + 1]; ++k)
+      {
+        const TriangleIds& triangle = this->Surface.Triangles[triangles[k]];
+        TriangleIds sorted = triangle;
+        std::sort(sorted.begin(), sorted.end());
+        if (sorted == points)
+        {
+          // The tetrahedron lies behind its outward facet.
+          const bool isInFront = GetRelativeTurn(triangle, outward) < 0;
+          this->Output.Sides[2 * triangles[k] + (isInFront ? 0 : 1)] = static_cast<Id>(4 * t + i);
+          break;
+        }
+      }
+    }
+  };
+  // A side of a triangle is a facet of one tetrahedron: threads never write to the same place.
+  ForEach(this->Input.All.Tetrahedra.size(), this->Input.NumberOfThreads, find);
+}
+
+/** True if one of the two tetrahedra at the triangle is a cell of four points. */
+bool SurfaceFacetFinder::IsSurelyStronglyDelaunay(Id triangle) const
+{
+  if (this->Output.Sides[2 * triangle] == NoId || this->Output.Sides[2 * triangle + 1] == NoId)
+  {
+    return false;
+  }
+  if (!this->Input.All.HasCosphericalPoints)
+  {
+    return true;
+  }
+  const auto& p = this->Input.VertexPoints;
+  for (Id side = 2 * triangle; side < 2 * triangle + 2; ++side)
+  {
+    const Id t = this->Output.Sides[side] / 4;
+    const TetrahedronIds& ids = this->Input.All.Tetrahedra[t];
+    bool isAlone = !this->IsBeyondHull(t);
+    for (int i = 0; i < 4 && isAlone; ++i)
+    {
+      const Id facet = this->Input.All.Neighbors[t][i];
+      isAlone = this->IsBeyondHull(facet / 4) ||
+        InSphere(p[ids[0]], p[ids[1]], p[ids[2]], p[ids[3]],
+          p[this->Input.All.Tetrahedra[facet / 4][facet % 4]]) != 0;
+    }
+    if (isAlone)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+} // namespace
+
+Status FindSurfaceFacets(const SurfaceFacetsInput& input, const ExecutionContext& context,
+  TriangleMesh& surface, SurfaceFacets& output)
+{
+  return SurfaceFacetFinder(input, context, surface, output).Run();
+}
+} // namespace cdm

@@ -1,0 +1,785 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Volume/VolumeRefinement.h"
+
+#include "Core/Geometry/Measures.h"
+#include "Core/Search/PlaceSearch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t ReportInterval = 256;
+
+/** What is left of a point's size between it and a new one. */
+constexpr double SizeRatio = 0.2;
+/** Points are moved where angles are below this multiple of the target: it leaves some room. */
+constexpr double MoveRatio = 1.1;
+/** Free points closer to others than this part of the sizing are removed. */
+constexpr double CloseRatio = 0.3;
+/** Degrees: tetrahedra of boundary points with a smaller angle are flat but for rounding. */
+constexpr double FlatAngle = 1e-6;
+/** First step of the search for a new point's place, in radii of the sphere that it destroys. */
+constexpr double FirstInsertion = 0.3;
+/** Passes over the slivers that are left. */
+constexpr int MaximumPasses = 20;
+} // namespace
+
+void SliverMemory::SetChanged(const TetrahedronIds& names)
+{
+  ++this->Time;
+  for (Id name : names)
+  {
+    this->Changes[name] = this->Time;
+  }
+}
+
+void SliverMemory::SetHopeless(const TetrahedronIds& names, bool hasTriedInsertion)
+{
+  this->Failures[names] = { this->Time, hasTriedInsertion };
+}
+
+bool SliverMemory::IsHopeless(const TetrahedronIds& names, bool mayInsert) const
+{
+  const auto failure = this->Failures.find(names);
+  return failure != this->Failures.end() && (failure->second.HasTriedInsertion || !mayInsert) &&
+    std::none_of(names.begin(), names.end(),
+      [&](Id name)
+      {
+        const auto change = this->Changes.find(name);
+        return change != this->Changes.end() && change->second > failure->second.Time;
+      });
+}
+
+VolumeRefinement::VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
+  const std::vector<StructuralEdge>& edges, const std::vector<double>& surfaceSizes,
+  const std::vector<InteriorPoint>& interior, const TetrahedronLimits& limits, Id maximumNewPoints,
+  SliverMemory& memory)
+  : Mesh(std::move(mesh)), Surface(surface), Edges(edges), Limits(limits),
+    NumberOfSurfacePoints(static_cast<Id>(surface.Points.size())),
+    MaximumNewPoints(maximumNewPoints), Memory(memory), Spheres(surface, edges),
+    PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
+    Sharp(surface, edges), Layers(surface, this->PointTriangles),
+    IsTriangleRequested(surface.Triangles.size(), 0), IsEdgeRequested(edges.size(), 0)
+{
+  for (std::size_t p = 0; p < surface.Points.size(); ++p)
+  {
+    this->Points.push_back({ surface.Points[p], surfaceSizes.empty() ? 0.0 : surfaceSizes[p], false,
+      NoId, static_cast<Id>(p) });
+  }
+  this->Points.insert(this->Points.end(), interior.begin(), interior.end());
+  this->BoundSizes();
+}
+
+/** No size is larger than another one and the way there, along edges. */
+void VolumeRefinement::BoundSizes()
+{
+  std::vector<Id> changed;
+  const auto bound = [&](Id t)
+  {
+    const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
+    for (const auto& edge : TetrahedronEdges)
+    {
+      InteriorPoint* first = &this->Points[ids[edge[0]]];
+      InteriorPoint* second = &this->Points[ids[edge[1]]];
+      Id larger = ids[edge[1]];
+      if (first->Size > second->Size)
+      {
+        std::swap(first, second);
+        larger = ids[edge[0]];
+      }
+      const double size = first->Size + Distance(first->Position, second->Position);
+      if (second->Size > size)
+      {
+        second->Size = size;
+        changed.push_back(larger);
+      }
+    }
+  };
+  for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
+  {
+    bound(t);
+  }
+  std::vector<Id> star;
+  while (!changed.empty())
+  {
+    const Id point = changed.back();
+    changed.pop_back();
+    this->Mesh.FindStar(point, star);
+    std::for_each(star.begin(), star.end(), bound);
+  }
+}
+
+std::vector<InteriorPoint> VolumeRefinement::GetInterior() const
+{
+  std::vector<InteriorPoint> interior;
+  for (Id p = this->NumberOfSurfacePoints; p < this->Mesh.GetNumberOfPoints(); ++p)
+  {
+    if (this->Mesh.GetTetrahedronAt(p) != NoId)
+    {
+      interior.push_back(this->Points[p]);
+    }
+  }
+  return interior;
+}
+
+std::vector<Id> VolumeRefinement::FindFlatTetrahedra() const
+{
+  std::vector<Id> flat;
+  for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
+  {
+    if (!this->Mesh.IsDead(t) && this->IsFlat(t))
+    {
+      flat.push_back(t);
+    }
+  }
+  return flat;
+}
+
+bool VolumeRefinement::IsFree(Id point) const
+{
+  return point >= this->NumberOfSurfacePoints && this->Points[point].IsFree &&
+    this->Mesh.GetTetrahedronAt(point) != NoId;
+}
+
+std::array<Vec3, 4> VolumeRefinement::GetVertices(const TetrahedronIds& ids) const
+{
+  return { this->Mesh.GetPoint(ids[0]), this->Mesh.GetPoint(ids[1]), this->Mesh.GetPoint(ids[2]),
+    this->Mesh.GetPoint(ids[3]) };
+}
+
+double VolumeRefinement::GetAngle(Id tetrahedron) const
+{
+  const std::array<Vec3, 4> v = this->GetVertices(this->GetMesh().Tetrahedra[tetrahedron]);
+  return GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]);
+}
+
+/** By rounding: its four points, which are all on the surface, would have no tetrahedron otherwise. */
+bool VolumeRefinement::IsFlat(Id tetrahedron) const
+{
+  const TetrahedronIds& ids = this->GetMesh().Tetrahedra[tetrahedron];
+  return *std::max_element(ids.begin(), ids.end()) < this->NumberOfSurfacePoints &&
+    this->GetAngle(tetrahedron) < FlatAngle;
+}
+
+/** Smallest angle that the hole's cone would have; gives up below what is required. */
+double VolumeRefinement::RateHole(const Vec3& position, double required) const
+{
+  double smallest = 180.0;
+  for (const TriangleIds& facet : this->Hole.Facets)
+  {
+    smallest = std::min(smallest,
+      GetSmallestDihedralAngle(this->Mesh.GetPoint(facet[0]), this->Mesh.GetPoint(facet[1]),
+        this->Mesh.GetPoint(facet[2]), position));
+    if (smallest < required)
+    {
+      break;
+    }
+  }
+  return smallest;
+}
+
+/** Of what is refined for; ids of points inside do not matter. */
+bool VolumeRefinement::BreaksLimit(
+  const TetrahedronIds& ids, const std::array<Vec3, 4>& vertices) const
+{
+  Vec3 target;
+  double severity = 0.0;
+  const TetrahedronFault fault = this->Limits.Find(vertices, true, target, severity);
+  return fault == TetrahedronFault::Size ||
+    (fault == TetrahedronFault::Shape && !this->Sharp.IsAcross(ids));
+}
+
+bool VolumeRefinement::BreaksLimit(Id tetrahedron) const
+{
+  const TetrahedronIds& ids = this->GetMesh().Tetrahedra[tetrahedron];
+  return this->BreaksLimit(ids, this->GetVertices(ids));
+}
+
+/** How many tetrahedra of the hole's cone would break a limit. */
+Id VolumeRefinement::CountBroken(const Vec3& position) const
+{
+  constexpr Id inside = std::numeric_limits<Id>::max();
+  return static_cast<Id>(std::count_if(this->Hole.Facets.begin(), this->Hole.Facets.end(),
+    [&](const TriangleIds& facet)
+    {
+      return this->BreaksLimit({ facet[0], facet[1], facet[2], inside },
+        { this->Mesh.GetPoint(facet[0]), this->Mesh.GetPoint(facet[1]),
+          this->Mesh.GetPoint(facet[2]), position });
+    }));
+}
+
+/** Whether the point keeps the distances that the sizes of its neighbors ask for. */
+bool VolumeRefinement::IsClear(const Vec3& position) const
+{
+  for (const TriangleIds& facet : this->Hole.Facets)
+  {
+    for (Id id : facet)
+    {
+      if (Distance(position, this->Mesh.GetPoint(id)) < SizeRatio * this->Points[id].Size)
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool VolumeRefinement::DisturbsBoundary(const Vec3& position)
+{
+  // What would be disturbed is part of the hole.
+  const bool isNear = std::any_of(this->Hole.Facets.begin(), this->Hole.Facets.end(),
+    [&](const TriangleIds& facet)
+    { return *std::min_element(facet.begin(), facet.end()) < this->NumberOfSurfacePoints; });
+  if (!isNear)
+  {
+    return false;
+  }
+  this->Spheres.Find(position, this->Disturbed);
+  return !this->Disturbed.IsEmpty() || this->TouchesOpenFacet();
+}
+
+/**
+ * Whether the hole ends at an outer facet that is no triangle of the surface: its smallest sphere is
+ * not known to be empty, so a point on this side may be in conflict with what lies beyond, which the
+ * mesh does not have.
+ */
+bool VolumeRefinement::TouchesOpenFacet() const
+{
+  for (std::size_t i = 0; i < this->Hole.Facets.size(); ++i)
+  {
+    if (this->Hole.Outer[i] != NoId)
+    {
+      continue;
+    }
+    const TriangleIds& facet = this->Hole.Facets[i];
+    const auto isSame = [&](Id t)
+    {
+      const TriangleIds& triangle = this->Surface.Triangles[t];
+      return std::is_permutation(facet.begin(), facet.end(), triangle.begin());
+    };
+    // Only points of the surface have triangles.
+    if (facet[0] >= this->NumberOfSurfacePoints)
+    {
+      return true;
+    }
+    const IdLists::Range triangles = this->PointTriangles[facet[0]];
+    if (std::none_of(triangles.begin(), triangles.end(), isSame))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/** Sorted. */
+TetrahedronIds VolumeRefinement::GetNames(const TetrahedronIds& ids) const
+{
+  TetrahedronIds names{ this->Points[ids[0]].Name, this->Points[ids[1]].Name,
+    this->Points[ids[2]].Name, this->Points[ids[3]].Name };
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/** To what the last change of the mesh has made. */
+void VolumeRefinement::NoteChanges()
+{
+  for (Id t : this->Mesh.GetChanged())
+  {
+    this->Memory.SetChanged(this->GetNames(this->GetMesh().Tetrahedra[t]));
+  }
+}
+
+void VolumeRefinement::NoteNewPoints(Id first)
+{
+  for (const TetrahedronIds& ids : this->GetMesh().Tetrahedra)
+  {
+    if (std::any_of(ids.begin(), ids.end(),
+          [&](Id id) { return id >= first && id < this->NumberOfSurfacePoints; }))
+    {
+      this->Memory.SetChanged(this->GetNames(ids));
+    }
+  }
+}
+
+/** Into the hole. */
+void VolumeRefinement::AddPoint(const Vec3& position)
+{
+  double size = Infinity;
+  for (const TriangleIds& facet : this->Hole.Facets)
+  {
+    for (Id id : facet)
+    {
+      size = std::min(size, this->Points[id].Size + Distance(position, this->Mesh.GetPoint(id)));
+    }
+  }
+  this->Mesh.Insert(position, this->Hole);
+  this->Points.push_back({ position, size, true, NoId, this->Memory.MakeName() });
+  this->NoteChanges();
+  ++this->Report.InsertedPoints;
+}
+
+/** Whether a point at this distance from others is as far away as their sizes ask for. */
+template <typename Ids>
+bool VolumeRefinement::KeepsSizes(double distance, const Ids& ids) const
+{
+  return std::all_of(
+    ids.begin(), ids.end(), [&](Id id) { return distance >= SizeRatio * this->Points[id].Size; });
+}
+
+/** To split an edge of the boundary, if the sizes of its ends allow it. */
+bool VolumeRefinement::RequestEdge(Id edge, bool isSizeKept)
+{
+  const EdgeIds& ends = this->Edges[edge].Points;
+  const double half = 0.5 * Distance(this->Surface.Points[ends[0]], this->Surface.Points[ends[1]]);
+  if (isSizeKept && !this->KeepsSizes(half, ends))
+  {
+    return false;
+  }
+  if (!this->IsEdgeRequested[edge])
+  {
+    this->IsEdgeRequested[edge] = 1;
+    this->RequestedEdges.push_back(ends);
+  }
+  return true;
+}
+
+/**
+ * Where two triangles of the boundary that lie almost in a plane have a common circumcircle, almost,
+ * they share a flat tetrahedron. No point inside destroys it; a point on their edge does.
+ */
+bool VolumeRefinement::RequestEdge(const TetrahedronIds& ids)
+{
+  for (const auto& positions : TetrahedronEdges)
+  {
+    EdgeIds ends{ ids[positions[0]], ids[positions[1]] };
+    if (ends[0] > ends[1])
+    {
+      std::swap(ends[0], ends[1]);
+    }
+    const auto edge = std::lower_bound(this->Edges.begin(), this->Edges.end(), ends,
+      [](const StructuralEdge& a, const EdgeIds& b) { return a.Points < b; });
+    if (edge == this->Edges.end() || edge->Points != ends)
+    {
+      continue;
+    }
+    int count = 0;
+    for (Id t : this->PointTriangles[ends[0]])
+    {
+      const TriangleIds& triangle = this->Surface.Triangles[t];
+      count += std::all_of(triangle.begin(), triangle.end(),
+                 [&](Id id) { return std::find(ids.begin(), ids.end(), id) != ids.end(); }) &&
+        std::find(triangle.begin(), triangle.end(), ends[1]) != triangle.end();
+    }
+    if (count == 2 && this->RequestEdge(static_cast<Id>(edge - this->Edges.begin()), true))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/** To split what the position disturbs most; edges before triangles. */
+void VolumeRefinement::Request(const Vec3& position, bool isSizeKept)
+{
+  this->Spheres.Find(position, this->Disturbed);
+  double deepest = Infinity;
+  Id best = NoId;
+  for (Id e : this->Disturbed.Edges)
+  {
+    if (this->IsEdgeRequested[e])
+    {
+      return;
+    }
+    const EdgeIds& ends = this->Edges[e].Points;
+    const Vec3& a = this->Surface.Points[ends[0]];
+    const Vec3& b = this->Surface.Points[ends[1]];
+    const double radius = 0.5 * Distance(a, b);
+    const double depth = Distance(position, 0.5 * (a + b)) / radius;
+    if (depth < deepest && (!isSizeKept || this->KeepsSizes(radius, ends)))
+    {
+      deepest = depth;
+      best = e;
+    }
+  }
+  if (best != NoId)
+  {
+    this->RequestEdge(best, isSizeKept);
+  }
+  if (!this->Disturbed.Edges.empty())
+  {
+    return;
+  }
+  for (Id t : this->Disturbed.Triangles)
+  {
+    if (this->IsTriangleRequested[t])
+    {
+      return;
+    }
+    const TriangleIds& ids = this->Surface.Triangles[t];
+    const Vec3& a = this->Surface.Points[ids[0]];
+    const Vec3 offset =
+      GetCircumcenterOffset(a, this->Surface.Points[ids[1]], this->Surface.Points[ids[2]]);
+    const double depth = Distance(position, a + offset) / Norm(offset);
+    if (depth < deepest && (!isSizeKept || this->KeepsSizes(Norm(offset), ids)))
+    {
+      deepest = depth;
+      best = t;
+    }
+  }
+  if (best != NoId)
+  {
+    this->IsTriangleRequested[best] = 1;
+    this->RequestedTriangles.push_back(best);
+  }
+}
+
+void VolumeRefinement::SetSizes(const std::vector<double>& sizes)
+{
+  for (std::size_t p = 0; p < sizes.size(); ++p)
+  {
+    this->Points[p].Size = sizes[p];
+  }
+}
+
+void VolumeRefinement::RemoveClosePoints(double smallest, const SizingField& sizing)
+{
+  std::vector<Id> star;
+  for (Id p = this->NumberOfSurfacePoints; p < this->Mesh.GetNumberOfPoints(); ++p)
+  {
+    if (!this->IsFree(p) || !this->Mesh.FindStar(p, star))
+    {
+      continue;
+    }
+    const Vec3& position = this->Mesh.GetPoint(p);
+    const double limit =
+      std::max(smallest, sizing ? CloseRatio * sizing(position).GetSmallest() : 0.0);
+    const bool isClose = std::any_of(star.begin(), star.end(),
+      [&](Id t)
+      {
+        const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
+        return std::any_of(ids.begin(), ids.end(),
+          [&](Id id) { return id != p && Distance(position, this->Mesh.GetPoint(id)) < limit; });
+      });
+    if (isClose && this->Mesh.Remove(p))
+    {
+      ++this->Report.RemovedPoints;
+    }
+  }
+}
+
+Status VolumeRefinement::RefineByLimits(bool isShapeTested, const ExecutionContext& context)
+{
+  std::priority_queue<Task> tasks;
+  const auto schedule = [&](Id t)
+  {
+    const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
+    Vec3 target;
+    double severity = 0.0;
+    const TetrahedronFault fault =
+      this->Limits.Find(this->GetVertices(ids), isShapeTested, target, severity);
+    if (fault == TetrahedronFault::Size ||
+      (fault == TetrahedronFault::Shape && !this->Sharp.IsAcross(ids) &&
+        !this->Layers.IsAcross(ids, this->GetMesh().Regions[t]) && !this->IsFlat(t)))
+    {
+      tasks.push({ fault, severity, t, this->Mesh.GetStamp(t) });
+    }
+  };
+  for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
+  {
+    if (!this->Mesh.IsDead(t))
+    {
+      schedule(t);
+    }
+  }
+  for (std::size_t done = 0; !tasks.empty() && !this->IsFull(); ++done)
+  {
+    if (done % ReportInterval == 0 &&
+      !context.Continue(static_cast<double>(done) / static_cast<double>(done + tasks.size()),
+        "Refining tetrahedra"))
+    {
+      return Status::Aborted();
+    }
+    const Task task = tasks.top();
+    tasks.pop();
+    if (task.Stamp != this->Mesh.GetStamp(task.Tetrahedron))
+    {
+      continue;
+    }
+    Vec3 target;
+    double severity = 0.0;
+    this->Limits.Find(this->GetVertices(this->GetMesh().Tetrahedra[task.Tetrahedron]),
+      isShapeTested, target, severity);
+    if (!IsFinite(target))
+    {
+      continue;
+    }
+    const bool isSizeKept = task.Fault == TetrahedronFault::Shape;
+    this->Spheres.Find(target, this->Disturbed);
+    if (!this->Disturbed.IsEmpty())
+    {
+      this->Request(target, isSizeKept);
+    }
+    else if (this->Mesh.FindHole(
+               target, this->Mesh.GetNumberOfPoints(), task.Tetrahedron, this->Hole) &&
+      (!isSizeKept || this->IsClear(target)))
+    {
+      this->AddPoint(target);
+      for (Id t : this->Mesh.GetChanged())
+      {
+        schedule(t);
+      }
+    }
+  }
+  return Status();
+}
+
+bool VolumeRefinement::Move(Id point, double target)
+{
+  std::vector<Id> star;
+  if (!this->Mesh.FindStar(point, star))
+  {
+    return false;
+  }
+  const Vec3 old = this->Mesh.GetPoint(point);
+  Id broken = 0;
+  double smallest = 180.0;
+  double nearest = Infinity;
+  Vec3 sum;
+  double count = 0.0;
+  for (Id t : star)
+  {
+    const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
+    broken += this->BreaksLimit(t);
+    smallest = std::min(smallest, this->GetAngle(t));
+    for (Id id : ids)
+    {
+      if (id != point)
+      {
+        nearest = std::min(nearest, Distance(old, this->Mesh.GetPoint(id)));
+        sum = sum + this->Mesh.GetPoint(id);
+        count += 1.0;
+      }
+    }
+  }
+  if (!this->Mesh.Remove(point))
+  {
+    return false;
+  }
+  const std::vector<Id> filled = this->Mesh.GetChanged();
+  std::vector<double> angles;
+  std::vector<char> isBroken;
+  for (Id t : filled)
+  {
+    angles.push_back(this->GetAngle(t));
+    isBroken.push_back(this->BreaksLimit(t));
+  }
+  const auto rate = [&](const Vec3& position, double required)
+  {
+    const Id first = this->Mesh.Locate(position, filled.front());
+    if (first == NoId || !this->Mesh.FindHole(position, point, first, this->Hole))
+    {
+      return 0.0;
+    }
+    // What stays of the tetrahedra that fill the place of the point counts as well.
+    Id brokenThere = 0;
+    for (std::size_t i = 0; i < filled.size(); ++i)
+    {
+      if ((angles[i] <= required || isBroken[i]) &&
+        std::find(this->Hole.Tetrahedra.begin(), this->Hole.Tetrahedra.end(), filled[i]) ==
+          this->Hole.Tetrahedra.end())
+      {
+        if (angles[i] <= required)
+        {
+          return 0.0;
+        }
+        ++brokenThere;
+      }
+    }
+    const double angle = this->RateHole(position, required);
+    return angle > required && this->IsClear(position) &&
+        (broken > 0 || brokenThere + this->CountBroken(position) == 0) &&
+        !this->DisturbsBoundary(position)
+      ? angle
+      : 0.0;
+  };
+  Place best{ old, smallest + SmallestGain, false };
+  SearchMove(old, (1.0 / count) * sum, nearest, target, rate, best);
+
+  if (this->Means != SliverMeans::Moves &&
+    std::count(isBroken.begin(), isBroken.end(), 1) <= broken &&
+    *std::min_element(angles.begin(), angles.end()) > best.Angle)
+  {
+    ++this->Report.RemovedPoints;
+    this->NoteChanges();
+    return true;
+  }
+  if (!best.IsFound)
+  {
+    this->Mesh.Restore(point, old, this->Mesh.GetRemovedStar());
+    return false;
+  }
+  const Id first = this->Mesh.Locate(best.Position, filled.front());
+  this->Mesh.FindHole(best.Position, point, first, this->Hole);
+  this->Mesh.Restore(point, best.Position, this->Hole);
+  this->Points[point].Position = best.Position;
+  this->Points[point].Source = NoId;
+  ++this->Report.MovedPoints;
+  this->NoteChanges();
+  return true;
+}
+
+bool VolumeRefinement::InsertBest(Id tetrahedron, double target)
+{
+  const std::array<Vec3, 4> vertices = this->GetVertices(this->GetMesh().Tetrahedra[tetrahedron]);
+  const Vec3 center = GetCircumcenter(vertices[0], vertices[1], vertices[2], vertices[3]);
+  if (!IsFinite(center) || this->IsFull())
+  {
+    return false;
+  }
+  const Id number = this->Mesh.GetNumberOfPoints();
+  const auto rate = [&](const Vec3& position, double required)
+  {
+    if (!this->Mesh.FindHole(position, number, tetrahedron, this->Hole))
+    {
+      return 0.0;
+    }
+    const double angle = this->RateHole(position, required);
+    return angle > required && this->IsClear(position) && this->CountBroken(position) == 0 &&
+        !this->DisturbsBoundary(position)
+      ? angle
+      : 0.0;
+  };
+  Place best{ center, this->GetAngle(tetrahedron) + SmallestGain, false };
+  TryPlace(center, rate, best);
+  SearchPlace(center, FirstInsertion * Distance(center, vertices[0]), target, rate, best);
+  if (!best.IsFound || !this->Mesh.FindHole(best.Position, number, tetrahedron, this->Hole))
+  {
+    return false;
+  }
+  this->AddPoint(best.Position);
+  return true;
+}
+
+/**
+ * False if nothing helps.
+ * @param left the tetrahedron, which may have got another place
+ */
+bool VolumeRefinement::Mend(
+  const TetrahedronIds& ids, Id tetrahedron, Id stamp, double target, bool mayInsert, Id& left)
+{
+  left = tetrahedron;
+  Id tried = NoId;
+  for (Id id : ids)
+  {
+    if (!this->IsFree(id))
+    {
+      continue;
+    }
+    tried = id;
+    if (this->Move(id, target))
+    {
+      return true;
+    }
+  }
+  if (this->Mesh.GetStamp(tetrahedron) != stamp)
+  {
+    // A point that was taken out and put back has the same tetrahedra in other places.
+    std::vector<Id> star;
+    this->Mesh.FindStar(tried, star);
+    const auto same = std::find_if(star.begin(), star.end(),
+      [&](Id t)
+      {
+        const TetrahedronIds& others = this->GetMesh().Tetrahedra[t];
+        return std::is_permutation(ids.begin(), ids.end(), others.begin());
+      });
+    left = same == star.end() ? NoId : *same;
+  }
+  return left == NoId || (mayInsert && this->InsertBest(left, target));
+}
+
+Status VolumeRefinement::PerturbSlivers(
+  double target, SliverMeans means, Id numberOfFixedPoints, const ExecutionContext& context)
+{
+  this->Means = means;
+  struct Sliver
+  {
+    double Angle;
+    Id Tetrahedron;
+    Id Stamp;
+  };
+  // First moves, then new points as well; when neither helps any more, requests.
+  bool mayInsert = false;
+  bool isLast = false;
+  for (int pass = 0; pass < MaximumPasses; ++pass)
+  {
+    std::vector<Sliver> slivers;
+    for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
+    {
+      const double angle = this->Mesh.IsDead(t) ? 180.0 : this->GetAngle(t);
+      if (angle < MoveRatio * target &&
+        !this->Layers.IsAcross(this->GetMesh().Tetrahedra[t], this->GetMesh().Regions[t]))
+      {
+        slivers.push_back({ angle, t, this->Mesh.GetStamp(t) });
+      }
+    }
+    std::sort(slivers.begin(), slivers.end(),
+      [](const Sliver& a, const Sliver& b)
+      { return a.Angle != b.Angle ? a.Angle < b.Angle : a.Tetrahedron < b.Tetrahedron; });
+    bool isMended = false;
+    for (std::size_t i = 0; i < slivers.size(); ++i)
+    {
+      if (i % (ReportInterval / 16) == 0 &&
+        !context.Continue((pass + static_cast<double>(i) / slivers.size()) / MaximumPasses,
+          "Moving points of slivers"))
+      {
+        return Status::Aborted();
+      }
+      const Sliver& sliver = slivers[i];
+      if (this->Mesh.GetStamp(sliver.Tetrahedron) != sliver.Stamp)
+      {
+        continue;
+      }
+      const TetrahedronIds ids = this->GetMesh().Tetrahedra[sliver.Tetrahedron];
+      const TetrahedronIds names = this->GetNames(ids);
+      Id left = NoId;
+      const bool isBad = sliver.Angle < target && !this->Sharp.IsAcross(ids);
+      const bool mayRequest = means == SliverMeans::Requests &&
+        (!this->IsFlat(sliver.Tetrahedron) ||
+          *std::max_element(ids.begin(), ids.end()) < numberOfFixedPoints);
+      const bool isHopeless = this->Memory.IsHopeless(names, isBad && mayInsert);
+      if (!isHopeless &&
+        this->Mend(
+          ids, sliver.Tetrahedron, sliver.Stamp, MoveRatio * target, isBad && mayInsert, left))
+      {
+        isMended = isMended || isBad;
+        continue;
+      }
+      this->Memory.SetHopeless(names, isBad && mayInsert);
+      if (isBad && isLast && mayRequest && !this->RequestEdge(ids))
+      {
+        const std::array<Vec3, 4> v = this->GetVertices(ids);
+        const Vec3 center = GetCircumcenter(v[0], v[1], v[2], v[3]);
+        if (IsFinite(center))
+        {
+          this->Request(center, true);
+        }
+      }
+    }
+    const bool isMoving = means == SliverMeans::Moves;
+    if (isLast || slivers.empty() || (isMoving && !isMended))
+    {
+      break;
+    }
+    isLast = mayInsert && !isMended;
+    mayInsert = !isMoving;
+  }
+  return Status();
+}
+} // namespace cdm

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file VolumeRefinement.h
+ * @brief Steiner points inside of the regions, for a boundary that stays as it is.
+ *
+ * Method:
+ *  - tetrahedra that break a limit, the largest first, then the worst shaped, get a point at the
+ *    circumcenter or off-center (TetrahedronLimits.h); if it disturbs triangles or structural edges
+ *    of the boundary (BoundarySpheres.h), that which it disturbs most is requested to be split
+ *    instead;
+ *  - tetrahedra with a small dihedral angle, worst first: a free point of it is taken out of the mesh
+ *    and put in again at the best of some hundred places around, or left out if that is better. A
+ *    place is rated by the smallest dihedral angle of all tetrahedra that it would make, before
+ *    anything is changed. If no point's move helps, a new point is tried in the same way, at last
+ *    the boundary that is in the way is requested to be split. Each change makes the smallest angle
+ *    of what it replaces larger, and breaks no limit where all were kept.
+ *
+ * Sharp input angles would be refined for ever: a tetrahedron across one (SharpAngles.h) is refined
+ * for its size only; if it is a sliver, its points are moved. Each point has a size, the
+ * shortest edge at it before any shape was refined, or how close edges of the boundary come to each
+ * other there (FeatureSizes.h), and at most the size of another point and the way from there; no point
+ * comes closer to it than a fifth of that, but for size limits. Of tetrahedra across a thin layer
+ * (ThinLayers.h) only the size counts. Nor is a tetrahedron refined for its shape whose points all
+ * belong to the boundary and lie in one plane but for rounding, as those of turned devices do: new
+ * points on the boundary would have more of the kind.
+ *
+ * References: J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998,
+ * doi:10.1145/276884.276894 (what is split instead, and why it ends); J. Tournois, R. Srinivasan,
+ * P. Alliez, "Perturbing slivers in 3D Delaunay meshes", 2009, doi:10.1007/978-3-642-04319-2_10
+ * (moved points).
+ */
+#ifndef cdmVolumeRefinement_h
+#define cdmVolumeRefinement_h
+
+#include "Core/Basics/ExecutionContext.h"
+#include "Core/Basics/IdLists.h"
+#include "Core/Basics/Status.h"
+#include "Core/Delaunay/DynamicTetrahedralization.h"
+#include "Core/Sizing/TetrahedronLimits.h"
+#include "Core/Surface/SharpAngles.h"
+#include "Core/Volume/BoundarySpheres.h"
+#include "Core/Volume/ThinLayers.h"
+
+#include <map>
+#include <unordered_map>
+#include <vector>
+
+namespace cdm
+{
+/** A point inside of a region. */
+struct InteriorPoint
+{
+  Vec3 Position;
+  /** No other point comes closer than a fifth of this; 0: no bound. */
+  double Size = 0.0;
+  /** Whether it may be moved and removed. */
+  bool IsFree = false;
+  /** Where it comes from, to the caller; NoId for new and moved points. */
+  Id Source = NoId;
+  /** See SliverMemory. */
+  Id Name = NoId;
+};
+
+/** What has been tried in vain, so that it is not tried again before something has changed there. */
+class SliverMemory
+{
+public:
+  /** A name for a point inside of a region, for good. */
+  Id MakeName() { return this->NextName++; }
+  /** Names of new points are larger than ids of points of the surface, which are their names. */
+  static constexpr Id FirstName = 1 << 29;
+
+  /** That the points of a tetrahedron have got other neighbors. */
+  void SetChanged(const TetrahedronIds& names);
+  /** That nothing helps the tetrahedron, or nothing but a new point. */
+  void SetHopeless(const TetrahedronIds& names, bool hasTriedInsertion);
+  bool IsHopeless(const TetrahedronIds& names, bool mayInsert) const;
+
+private:
+  struct Failure
+  {
+    std::int64_t Time = 0;
+    bool HasTriedInsertion = false;
+  };
+  Id NextName = FirstName;
+  std::int64_t Time = 0;
+  std::unordered_map<Id, std::int64_t> Changes;
+  std::map<TetrahedronIds, Failure> Failures;
+};
+
+/** What may be done about slivers; each also what is above it. */
+enum class SliverMeans
+{
+  /** Free points are moved. */
+  Moves,
+  /** They are also taken out, and new ones put in. */
+  Points,
+  /** What is in the way in the boundary is requested to be split. */
+  Requests
+};
+
+struct VolumeRefinementReport
+{
+  Id InsertedPoints = 0;
+  Id MovedPoints = 0;
+  Id RemovedPoints = 0;
+};
+
+class VolumeRefinement
+{
+public:
+  /**
+   * The mesh has the points of the surface, then the interior points. It is Delaunay; by the pulling
+   * rule it stays if it is. The surface's triangles are those of its outer and interface facets
+   * whose smallest spheres are empty, and stay so; points are put in only where no other outer
+   * facet is near.
+   * @param surfaceSizes as InteriorPoint::Size, one for each point of the surface, or empty
+   * @param memory is kept from one boundary to the next, which has more points
+   */
+  VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
+    const std::vector<StructuralEdge>& edges, const std::vector<double>& surfaceSizes,
+    const std::vector<InteriorPoint>& interior, const TetrahedronLimits& limits,
+    Id maximumNewPoints, SliverMemory& memory);
+
+  /** That the points of the surface from this one on have not been there before. */
+  void NoteNewPoints(Id first);
+  /** As InteriorPoint::Size, one for each point of the mesh. */
+  void SetSizes(const std::vector<double>& sizes);
+  /** Free points closer to another one than this, or than 0.3 of the sizing, which may be empty. */
+  void RemoveClosePoints(double smallest, const SizingField& sizing);
+  /** Until no tetrahedron breaks a limit, but for those that need the boundary split. */
+  Status RefineByLimits(bool isShapeTested, const ExecutionContext& context);
+  /**
+   * Until nothing of what may be done makes angles below the target (degrees) larger.
+   * @param numberOfFixedPoints of the surface, which come first; the boundary is split for a
+   *   tetrahedron that is flat by rounding only if its points are all among them
+   */
+  Status PerturbSlivers(
+    double target, SliverMeans means, Id numberOfFixedPoints, const ExecutionContext& context);
+
+  /** What is to be split in the boundary. */
+  const std::vector<Id>& GetRequestedTriangles() const { return this->RequestedTriangles; }
+  const std::vector<EdgeIds>& GetRequestedEdges() const { return this->RequestedEdges; }
+
+  /** Tetrahedra that are there by rounding. */
+  std::vector<Id> FindFlatTetrahedra() const;
+
+  /** The points that are in the mesh now. */
+  std::vector<InteriorPoint> GetInterior() const;
+  const TetMesh& GetMesh() const { return this->Mesh.GetMesh(); }
+  const VolumeRefinementReport& GetReport() const { return this->Report; }
+  /** Whether it has made as many points as it may. */
+  bool IsFull() const { return this->Report.InsertedPoints >= this->MaximumNewPoints; }
+
+  const ThinLayers& GetLayers() const { return this->Layers; }
+  const SharpAngles& GetSharpAngles() const { return this->Sharp; }
+
+private:
+  struct Task
+  {
+    TetrahedronFault Fault;
+    double Severity;
+    Id Tetrahedron;
+    Id Stamp;
+
+    /** Large ones first, then the most severe fault, then the smallest id. */
+    friend bool operator<(const Task& a, const Task& b)
+    {
+      return a.Fault != b.Fault    ? a.Fault > b.Fault
+        : a.Severity != b.Severity ? a.Severity < b.Severity
+                                   : a.Tetrahedron > b.Tetrahedron;
+    }
+  };
+  void BoundSizes();
+  bool IsFree(Id point) const;
+  std::array<Vec3, 4> GetVertices(const TetrahedronIds& ids) const;
+  double GetAngle(Id tetrahedron) const;
+  bool IsFlat(Id tetrahedron) const;
+  double RateHole(const Vec3& position, double required) const;
+  bool BreaksLimit(const TetrahedronIds& ids, const std::array<Vec3, 4>& vertices) const;
+  bool BreaksLimit(Id tetrahedron) const;
+  Id CountBroken(const Vec3& position) const;
+  bool IsClear(const Vec3& position) const;
+  bool DisturbsBoundary(const Vec3& position);
+  bool TouchesOpenFacet() const;
+  void AddPoint(const Vec3& position);
+  void Request(const Vec3& position, bool isSizeKept);
+  bool Move(Id point, double target);
+  bool InsertBest(Id tetrahedron, double target);
+  TetrahedronIds GetNames(const TetrahedronIds& ids) const;
+  void NoteChanges();
+  bool RequestEdge(const TetrahedronIds& ids);
+  bool RequestEdge(Id edge, bool isSizeKept);
+  template <typename Ids>
+  bool KeepsSizes(double distance, const Ids& ids) const;
+  bool Mend(
+    const TetrahedronIds& ids, Id tetrahedron, Id stamp, double target, bool mayInsert, Id& left);
+
+  DynamicTetrahedralization Mesh;
+  const TriangleMesh& Surface;
+  const std::vector<StructuralEdge>& Edges;
+  const TetrahedronLimits& Limits;
+  const Id NumberOfSurfacePoints;
+  const Id MaximumNewPoints;
+  SliverMemory& Memory;
+  BoundarySpheres Spheres;
+  /** Triangles at each point of the surface. */
+  const IdLists PointTriangles;
+  const SharpAngles Sharp;
+  const ThinLayers Layers;
+  /** One for each point of the mesh. */
+  std::vector<InteriorPoint> Points;
+  VolumeRefinementReport Report;
+  SliverMeans Means = SliverMeans::Moves;
+
+  std::vector<Id> RequestedTriangles;
+  std::vector<EdgeIds> RequestedEdges;
+  std::vector<char> IsTriangleRequested;
+  std::vector<char> IsEdgeRequested;
+  /** Work space. */
+  DynamicTetrahedralization::Hole Hole;
+  BoundarySpheres::Disturbed Disturbed;
+};
+} // namespace cdm
+
+#endif
