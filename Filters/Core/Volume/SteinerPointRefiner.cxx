@@ -432,8 +432,12 @@ Status Refiner::RefineRound(bool isShapeTested)
 
 Status Refiner::PerturbSlivers(SliverMeans means)
 {
-  return this->Round->PerturbSlivers(this->Options.DihedralAngleTarget, means,
-    static_cast<Id>(this->SurfaceSources.size()), this->GetRoundContext());
+  // Rounding may leave a few flat tetrahedra, for which the boundary is split then; many are those of
+  // a device that is turned, and splits would not end there.
+  const std::size_t fixed = this->LeftFlat.size() <= FewRequests ? this->Surface.Points.size()
+                                                                 : this->SurfaceSources.size();
+  return this->Round->PerturbSlivers(
+    this->Options.DihedralAngleTarget, means, static_cast<Id>(fixed), this->GetRoundContext());
 }
 
 /** Points that were put in for shapes after the slivers' points were moved leave slivers, too. */

@@ -385,6 +385,36 @@ bool VolumeRefinement::RequestEdge(const TetrahedronIds& ids)
   return false;
 }
 
+/** To split the largest triangle at the tetrahedron's points on the boundary, if sizes allow it. */
+void VolumeRefinement::RequestLargestTriangle(const TetrahedronIds& ids)
+{
+  double largest = 0.0;
+  Id best = NoId;
+  for (Id id : ids)
+  {
+    if (id >= static_cast<Id>(this->Surface.Points.size()))
+    {
+      continue;
+    }
+    for (Id t : this->PointTriangles[id])
+    {
+      const TriangleIds& corners = this->Surface.Triangles[t];
+      const double radius = Norm(GetCircumcenterOffset(this->Surface.Points[corners[0]],
+        this->Surface.Points[corners[1]], this->Surface.Points[corners[2]]));
+      if (radius > largest && this->KeepsSizes(radius, corners))
+      {
+        largest = radius;
+        best = t;
+      }
+    }
+  }
+  if (best != NoId)
+  {
+    this->IsTriangleRequested[best] = 1;
+    this->RequestedTriangles.push_back(best);
+  }
+}
+
 /** To split what the position disturbs most; edges before triangles. */
 void VolumeRefinement::Request(const Vec3& position, bool isSizeKept)
 {
@@ -717,6 +747,7 @@ Status VolumeRefinement::PerturbSlivers(
   // First moves, then new points as well; when neither helps any more, requests.
   bool mayInsert = false;
   bool isLast = false;
+  std::vector<TetrahedronIds> unmet;
   for (int pass = 0; pass < MaximumPasses; ++pass)
   {
     std::vector<Sliver> slivers;
@@ -762,11 +793,12 @@ Status VolumeRefinement::PerturbSlivers(
         continue;
       }
       this->Memory.SetHopeless(names, isBad && mayInsert);
-      if (isBad && isLast && mayRequest && !this->RequestEdge(ids))
+      if (isBad && isLast && mayRequest)
       {
+        unmet.push_back(ids);
         const std::array<Vec3, 4> v = this->GetVertices(ids);
         const Vec3 center = GetCircumcenter(v[0], v[1], v[2], v[3]);
-        if (IsFinite(center))
+        if (!this->RequestEdge(ids) && IsFinite(center))
         {
           this->Request(center, true);
         }
@@ -779,6 +811,13 @@ Status VolumeRefinement::PerturbSlivers(
     }
     isLast = mayInsert && !isMended;
     mayInsert = !isMoving;
+  }
+  // No edge or triangle of the boundary is at fault: another point at one of them gives a
+  // sliver beside it another chance.
+  for (std::size_t i = 0;
+       i < unmet.size() && this->RequestedEdges.empty() && this->RequestedTriangles.empty(); ++i)
+  {
+    this->RequestLargestTriangle(unmet[i]);
   }
   return Status();
 }

@@ -185,6 +185,7 @@ private:
   bool TouchesOpenFacet() const;
   void AddPoint(const Vec3& position);
   void Request(const Vec3& position, bool isSizeKept);
+  void RequestLargestTriangle(const TetrahedronIds& ids);
   bool Move(Id point, double target);
   bool InsertBest(Id tetrahedron, double target);
   TetrahedronIds GetNames(const TetrahedronIds& ids) const;
