@@ -16,7 +16,8 @@
  *  4. if little is requested any more: points of slivers are moved, taken out or added. Before
  *     that, where tetrahedra are flat because points lie on a circle but for rounding, new points of
  *     the surface are rounded in another way (PointRounding.h). The boundary is split for flat
- *     tetrahedra only if their points are all given.
+ *     tetrahedra only if their points are all given or few are left, and beside slivers that nothing
+ *     else helps.
  * It ends when a round requests nothing, or nothing that can be done.
  *
  * Guarantees: the mesh is Delaunay by the pulling rule and conforms to the same surface; facets on
