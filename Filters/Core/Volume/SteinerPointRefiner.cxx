@@ -93,8 +93,8 @@ private:
   std::vector<InteriorPoint> Interior;
   SliverMemory Memory;
   std::unique_ptr<VolumeRefinement> Round;
-  /** Flat tetrahedra at the last rounding of points. */
-  std::size_t LastFlat = std::numeric_limits<std::size_t>::max() / 4;
+  /** Flat tetrahedra when they were fewest, since there are others than those left. */
+  std::size_t FewestFlat = std::numeric_limits<std::size_t>::max() / 4;
   /** So many roundings in a row have not helped. */
   int FailedRoundings = 0;
   /** Points of flat tetrahedra that rounding has left, sorted. */
@@ -489,15 +489,15 @@ bool Refiner::RoundFlatTetrahedraAway()
   {
     return false;
   }
-  this->FailedRoundings = 4 * flat.size() > 3 * this->LastFlat ? this->FailedRoundings + 1 : 0;
+  this->FailedRoundings = 4 * flat.size() > 3 * this->FewestFlat ? this->FailedRoundings + 1 : 0;
   if (this->FailedRoundings > MaximumFailedRoundings)
   {
     this->LeftFlat = std::move(found);
     this->FailedRoundings = 0;
-    this->LastFlat = std::numeric_limits<std::size_t>::max() / 4;
+    this->FewestFlat = std::numeric_limits<std::size_t>::max() / 4;
     return false;
   }
-  this->LastFlat = flat.size();
+  this->FewestFlat = std::min(this->FewestFlat, flat.size());
   const PointRounding rounding(this->Round->GetMesh(), this->Surface, flat);
   return rounding.Move(static_cast<Id>(this->SurfaceSources.size()), this->Surface.Points);
 }
