@@ -66,6 +66,7 @@ private:
   Status PerturbSlivers(SliverMeans means);
   Status PerturbLastSlivers();
   bool RoundFlatTetrahedraAway();
+  bool IsInevitable(const TetrahedronIds& ids, Id region) const;
   std::size_t CountRequests() const
   {
     return this->Round->GetRequestedTriangles().size() + this->Round->GetRequestedEdges().size();
@@ -99,6 +100,8 @@ private:
   int FailedRoundings = 0;
   /** Points of flat tetrahedra that rounding has left, sorted. */
   std::vector<TetrahedronIds> LeftFlat;
+  /** Those of them that are not in thin layers or at sharp angles. */
+  std::size_t NumberOfLeftSlivers = 0;
   /** Whether the last round has split nothing of what was requested. */
   bool IsStuck = false;
 };
@@ -434,8 +437,8 @@ Status Refiner::PerturbSlivers(SliverMeans means)
 {
   // Rounding may leave a few flat tetrahedra, for which the boundary is split then; many are those of
   // a device that is turned, and splits would not end there.
-  const std::size_t fixed = this->LeftFlat.size() <= FewRequests ? this->Surface.Points.size()
-                                                                 : this->SurfaceSources.size();
+  const std::size_t fixed = this->NumberOfLeftSlivers <= FewRequests ? this->Surface.Points.size()
+                                                                     : this->SurfaceSources.size();
   return this->Round->PerturbSlivers(
     this->Options.DihedralAngleTarget, means, static_cast<Id>(fixed), this->GetRoundContext());
 }
@@ -493,6 +496,12 @@ bool Refiner::RoundFlatTetrahedraAway()
   if (this->FailedRoundings > MaximumFailedRoundings)
   {
     this->LeftFlat = std::move(found);
+    this->NumberOfLeftSlivers = static_cast<std::size_t>(std::count_if(flat.begin(), flat.end(),
+      [this](Id t)
+      {
+        const TetMesh& mesh = this->Round->GetMesh();
+        return !this->IsInevitable(mesh.Tetrahedra[t], mesh.Regions[t]);
+      }));
     this->FailedRoundings = 0;
     this->FewestFlat = std::numeric_limits<std::size_t>::max() / 4;
     return false;
@@ -502,10 +511,17 @@ bool Refiner::RoundFlatTetrahedraAway()
   return rounding.Move(static_cast<Id>(this->SurfaceSources.size()), this->Surface.Points);
 }
 
+/** Of a tetrahedron of surface and interior points: in a thin layer, or at a sharp angle. */
+bool Refiner::IsInevitable(const TetrahedronIds& ids, Id region) const
+{
+  const SharpAngles& sharp = this->Round->GetSharpAngles();
+  return this->Round->GetLayers().IsAcross(ids, region) || sharp.IsAtCorner(ids) ||
+    sharp.IsAcross(ids);
+}
+
 void Refiner::FindFaults()
 {
   const TetMesh& mesh = this->Output.Mesh;
-  const SharpAngles& sharp = this->Round->GetSharpAngles();
   SteinerPointRefinerReport& report = this->Output.Report;
   for (std::size_t t = 0; t < mesh.Tetrahedra.size(); ++t)
   {
@@ -522,9 +538,7 @@ void Refiner::FindFaults()
       : SteinerFault::None;
     if (found == SteinerFault::Shape || found == SteinerFault::Sliver)
     {
-      const bool isInevitable = this->Round->GetLayers().IsAcross(ids, mesh.Regions[t]) ||
-        sharp.IsAtCorner(ids) || sharp.IsAcross(ids);
-      found = isInevitable ? SteinerFault::Inevitable : found;
+      found = this->IsInevitable(ids, mesh.Regions[t]) ? SteinerFault::Inevitable : found;
     }
     report.TooLarge += found == SteinerFault::Size;
     report.BadlyShaped += found == SteinerFault::Shape;
