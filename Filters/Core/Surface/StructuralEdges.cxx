@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Surface/StructuralEdges.h"
 
+#include "Core/Geometry/WideVec3.h"
 #include "Core/Meshes/EdgeUses.h"
 
 #include <algorithm>
@@ -25,34 +26,6 @@ constexpr double SafeAngle = 1e-5;
 /** How many loop steps pass between two calls of ExecutionContext::Continue(). */
 constexpr std::size_t ContinueInterval = 1 << 14;
 
-/**
- * Vector in extended precision. The height of a needle triangle over its long edge is a difference
- * of almost equal products: the additional bits are what is left of it then. They also keep the
- * products of very small or large coordinates from leaving the range of the exponent.
- */
-struct WideVec3
-{
-  long double X;
-  long double Y;
-  long double Z;
-};
-
-WideVec3 Subtract(const Vec3& a, const Vec3& b)
-{
-  return { static_cast<long double>(a.X) - b.X, static_cast<long double>(a.Y) - b.Y,
-    static_cast<long double>(a.Z) - b.Z };
-}
-
-long double WideDot(const WideVec3& a, const WideVec3& b)
-{
-  return a.X * b.X + a.Y * b.Y + a.Z * b.Z;
-}
-
-WideVec3 WideCross(const WideVec3& a, const WideVec3& b)
-{
-  return { a.Y * b.Z - a.Z * b.Y, a.Z * b.X - a.X * b.Z, a.X * b.Y - a.Y * b.X };
-}
-
 /** The half plane that begins at the edge a-b and holds a third point. */
 struct HalfPlane
 {
@@ -64,10 +37,10 @@ struct HalfPlane
 
 HalfPlane MakeHalfPlane(const Vec3& a, const Vec3& b, const WideVec3& edge, const Vec3& point)
 {
-  const WideVec3 fromA = Subtract(point, a);
-  const WideVec3 fromB = Subtract(point, b);
-  const WideVec3& arm = WideDot(fromA, fromA) <= WideDot(fromB, fromB) ? fromA : fromB;
-  return { arm, WideCross(edge, arm) };
+  const WideVec3 fromA = WideVec3::FromDifference(point, a);
+  const WideVec3 fromB = WideVec3::FromDifference(point, b);
+  const WideVec3& arm = Dot(fromA, fromA) <= Dot(fromB, fromB) ? fromA : fromB;
+  return { arm, Cross(edge, arm) };
 }
 
 /**
@@ -77,8 +50,8 @@ HalfPlane MakeHalfPlane(const Vec3& a, const Vec3& b, const WideVec3& edge, cons
 long double GetTurn(const WideVec3& edge, const HalfPlane& first, const HalfPlane& second)
 {
   // (e x u) x (e x v) = e det(e, u, v): both arguments have the factor |e| |first| |second|.
-  const long double sine = WideDot(first.Normal, second.Arm) * std::sqrt(WideDot(edge, edge));
-  const long double cosine = WideDot(first.Normal, second.Normal);
+  const long double sine = Dot(first.Normal, second.Arm) * std::sqrt(Dot(edge, edge));
+  const long double cosine = Dot(first.Normal, second.Normal);
   return std::atan2(sine, cosine) * DegreesPerRadian;
 }
 
@@ -144,7 +117,7 @@ double GetSmallestAngle(
   const EdgeIds ids = begin->GetPoints();
   const Vec3& a = surface.Points[ids[0]];
   const Vec3& b = surface.Points[ids[1]];
-  const WideVec3 edge = Subtract(b, a);
+  const WideVec3 edge = WideVec3::FromDifference(b, a);
   const HalfPlane first = MakeHalfPlane(a, b, edge, GetOpposite(surface, begin->Use));
   turns.assign(1, 0.0);
   for (const EdgeUse* use = begin + 1; use != end; ++use)
@@ -289,7 +262,7 @@ bool IsSmoothEdge(
   {
     return false;
   }
-  const WideVec3 edge = Subtract(b, a);
+  const WideVec3 edge = WideVec3::FromDifference(b, a);
   const HalfPlane first = MakeHalfPlane(a, b, edge, c);
   const HalfPlane second = MakeHalfPlane(a, b, edge, d);
   if (IsZero(first.Normal) || IsZero(second.Normal))
@@ -297,9 +270,9 @@ bool IsSmoothEdge(
     return false;
   }
   // The normal of (b, a, d) is the opposite of the second half plane's.
-  const long double edgeLength = std::sqrt(WideDot(edge, edge));
-  const long double sine = std::abs(WideDot(first.Normal, second.Arm)) * edgeLength;
-  const long double cosine = -WideDot(first.Normal, second.Normal);
+  const long double edgeLength = std::sqrt(Dot(edge, edge));
+  const long double sine = std::abs(Dot(first.Normal, second.Arm)) * edgeLength;
+  const long double cosine = -Dot(first.Normal, second.Normal);
   const long double bend = std::atan2(sine, cosine) * DegreesPerRadian;
   if (bend <= accuracyAngle)
   {
@@ -311,8 +284,8 @@ bool IsSmoothEdge(
   }
   // The distance of a vertex from the other plane is its height over the edge times sin(bend);
   // |Normal| is that height times the length of the edge.
-  const long double largerHeight = std::sqrt(std::max(WideDot(first.Normal, first.Normal),
-                                     WideDot(second.Normal, second.Normal))) /
+  const long double largerHeight =
+    std::sqrt(std::max(Dot(first.Normal, first.Normal), Dot(second.Normal, second.Normal))) /
     edgeLength;
   return largerHeight * std::sin(bend / DegreesPerRadian) <= flatness;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Volume/PointRounding.h"
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
 
 #include <algorithm>
@@ -22,30 +23,6 @@ constexpr double SameCellRatio = 1e-3;
 constexpr int MaximumSteps = 4;
 /** Distance of a sphere's center from the span of the others, in lengths of it, that is enough. */
 constexpr double EnoughMargin = 1.0;
-
-/** What decides are the last digits of products of coordinates. */
-using Wide = std::array<long double, 3>;
-
-Wide GetWay(const Vec3& from, const Vec3& to)
-{
-  return { static_cast<long double>(to.X) - from.X, static_cast<long double>(to.Y) - from.Y,
-    static_cast<long double>(to.Z) - from.Z };
-}
-
-long double Dot(const Wide& a, const Wide& b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-Wide Cross(const Wide& a, const Wide& b)
-{
-  return { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0] };
-}
-
-Vec3 ToVec3(const Wide& a)
-{
-  return { static_cast<double>(a[0]), static_cast<double>(a[1]), static_cast<double>(a[2]) };
-}
 } // namespace
 
 PointRounding::PointRounding(
@@ -105,28 +82,25 @@ bool PointRounding::AddQuadrangle(const std::vector<Vec3>& points, const std::ar
 {
   Quadrangle quadrangle;
   quadrangle.Corner = points[others[0]];
-  const Wide u = GetWay(quadrangle.Corner, points[others[1]]);
-  const Wide v = GetWay(quadrangle.Corner, points[others[2]]);
-  const Wide normal = Cross(u, v);
+  const WideVec3 u = WideVec3::FromDifference(points[others[1]], quadrangle.Corner);
+  const WideVec3 v = WideVec3::FromDifference(points[others[2]], quadrangle.Corner);
+  const WideVec3 normal = Cross(u, v);
   const long double square = Dot(normal, normal);
-  const Wide first = Cross(normal, u);
-  const Wide second = Cross(v, normal);
-  for (int i = 0; i < 3; ++i)
-  {
-    quadrangle.Center[i] = (Dot(v, v) * first[i] + Dot(u, u) * second[i]) / (2.0L * square);
-    quadrangle.Normal[i] = normal[i] / std::sqrt(square);
-  }
-  const Vec3 center = quadrangle.Corner + ToVec3(quadrangle.Center);
+  const WideVec3 first = Cross(normal, u);
+  const WideVec3 second = Cross(v, normal);
+  quadrangle.Center = (Dot(v, v) * first + Dot(u, u) * second) / (2.0L * square);
+  quadrangle.Normal = normal / std::sqrt(square);
+  const Vec3 center = quadrangle.Corner + quadrangle.Center.Round();
   if (cells.empty() || !IsFinite(center))
   {
     return false;
   }
-  const double smallest = SameCellRatio * Norm(ToVec3(quadrangle.Center));
+  const double smallest = SameCellRatio * Norm(quadrangle.Center.Round());
   quadrangle.Low = std::numeric_limits<double>::infinity();
   quadrangle.High = -quadrangle.Low;
   for (Id cell : cells)
   {
-    const double height = cdm::Dot(this->GetCenter(cell) - center, ToVec3(quadrangle.Normal));
+    const double height = Dot(this->GetCenter(cell) - center, quadrangle.Normal.Round());
     quadrangle.Low = std::min(quadrangle.Low, height);
     quadrangle.High = std::max(quadrangle.High, height);
   }
@@ -158,8 +132,7 @@ std::vector<PointRounding::Quadrangle> PointRounding::FindQuadrangles(
       }
     }
   }
-  std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
+  SortUnique(around);
 
   std::vector<Quadrangle> quadrangles;
   std::set<std::array<Id, 3>> known;
@@ -204,15 +177,14 @@ std::vector<PointRounding::Quadrangle> PointRounding::FindQuadrangles(
       }
       cells.assign(1, t);
       addCell(neighbors[(place + 1 + (i + 2) % 3) % 4]);
-      const Vec3 normal =
-        cdm::Cross(points[ends[0]] - points[point], points[ends[1]] - points[point]);
+      const Vec3 normal = Cross(points[ends[0]] - points[point], points[ends[1]] - points[point]);
       const Vec3 center = GetCircumcenter(points[point], points[ends[0]], points[ends[1]]);
       const double radius = Distance(center, points[point]);
       for (Id other : around)
       {
         const Vec3 way = points[other] - center;
         if (other != ends[0] && other != ends[1] &&
-          std::abs(cdm::Dot(way, normal)) < RoundingRatio * radius * Norm(normal) &&
+          std::abs(Dot(way, normal)) < RoundingRatio * radius * Norm(normal) &&
           std::abs(Norm(way) - radius) < RoundingRatio * radius)
         {
           add({ ends[0], ends[1], other }, cells, cells.size() == 2);
@@ -249,7 +221,7 @@ double PointRounding::Rate(const Vec3& position, const std::vector<Quadrangle>& 
   double smallest = EnoughMargin;
   for (const Quadrangle& quadrangle : quadrangles)
   {
-    const Wide way = GetWay(quadrangle.Corner, position);
+    const WideVec3 way = WideVec3::FromDifference(position, quadrangle.Corner);
     const long double power = 0.5L * Dot(way, way) - Dot(way, quadrangle.Center);
     const long double height = Dot(way, quadrangle.Normal);
     if (height == 0.0L && power != 0.0L)

@@ -20,6 +20,7 @@
 #define cdmPointRounding_h
 
 #include "Core/Basics/IdLists.h"
+#include "Core/Geometry/WideVec3.h"
 #include "Core/Meshes/TetMesh.h"
 #include "Core/Meshes/TriangleMesh.h"
 
@@ -51,8 +52,8 @@ private:
   {
     Vec3 Corner;
     /** From the corner to the center of the circle; of length one and across the plane. */
-    std::array<long double, 3> Center;
-    std::array<long double, 3> Normal;
+    WideVec3 Center;
+    WideVec3 Normal;
     /** Where along the normal, from the circle's center on, the centers of the adjacent cells lie. */
     double Low = 0.0;
     double High = 0.0;

@@ -385,6 +385,15 @@ bool VolumeRefinement::RequestEdge(const TetrahedronIds& ids)
   return false;
 }
 
+void VolumeRefinement::RequestTriangle(Id triangle)
+{
+  if (triangle != NoId)
+  {
+    this->IsTriangleRequested[triangle] = 1;
+    this->RequestedTriangles.push_back(triangle);
+  }
+}
+
 /** To split the largest triangle at the tetrahedron's points on the boundary, if sizes allow it. */
 void VolumeRefinement::RequestLargestTriangle(const TetrahedronIds& ids)
 {
@@ -408,11 +417,7 @@ void VolumeRefinement::RequestLargestTriangle(const TetrahedronIds& ids)
       }
     }
   }
-  if (best != NoId)
-  {
-    this->IsTriangleRequested[best] = 1;
-    this->RequestedTriangles.push_back(best);
-  }
+  this->RequestTriangle(best);
 }
 
 /** To split what the position disturbs most; edges before triangles. */
@@ -463,11 +468,7 @@ void VolumeRefinement::Request(const Vec3& position, bool isSizeKept)
       best = t;
     }
   }
-  if (best != NoId)
-  {
-    this->IsTriangleRequested[best] = 1;
-    this->RequestedTriangles.push_back(best);
-  }
+  this->RequestTriangle(best);
 }
 
 void VolumeRefinement::SetSizes(const std::vector<double>& sizes)

@@ -185,6 +185,8 @@ private:
   bool TouchesOpenFacet() const;
   void AddPoint(const Vec3& position);
   void Request(const Vec3& position, bool isSizeKept);
+  /** NoId: nothing. */
+  void RequestTriangle(Id triangle);
   void RequestLargestTriangle(const TetrahedronIds& ids);
   bool Move(Id point, double target);
   bool InsertBest(Id tetrahedron, double target);
