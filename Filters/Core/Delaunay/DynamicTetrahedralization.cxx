@@ -2,7 +2,6 @@
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 
 #include "Core/Basics/SortedIds.h"
-#include "Core/Delaunay/DelaunayTetrahedralization.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Geometry/PulledSphere.h"
 
@@ -11,15 +10,6 @@
 
 namespace cdm
 {
-namespace
-{
-TriangleIds Sorted(TriangleIds ids)
-{
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
-} // namespace
-
 DynamicTetrahedralization::DynamicTetrahedralization(TetMesh mesh)
   : Mesh(std::move(mesh)), Stamps(this->Mesh.Tetrahedra.size(), 0),
     PointTetrahedra(this->Mesh.Points.size(), NoId), Marks(this->Mesh.Tetrahedra.size(), 0)
@@ -277,7 +267,8 @@ bool DynamicTetrahedralization::Remove(Id point)
   Hole& hole = this->RemovedStar;
   hole.Facets.clear();
   hole.Outer.clear();
-  std::vector<Id> ids;
+  const Id region = this->Mesh.Regions[this->Star.front()];
+  Cavity cavity;
   for (Id t : this->Star)
   {
     const TetrahedronIds& vertices = this->Mesh.Tetrahedra[t];
@@ -286,118 +277,43 @@ bool DynamicTetrahedralization::Remove(Id point)
     const TriangleIds facet = GetFacet(vertices, i);
     hole.Facets.push_back({ facet[0], facet[2], facet[1] });
     hole.Outer.push_back(this->Mesh.Neighbors[t][i]);
-    ids.insert(ids.end(), facet.begin(), facet.end());
+    cavity.Numbers.insert(cavity.Numbers.end(), facet.begin(), facet.end());
   }
-  SortUnique(ids);
-  RawVector<Vec3> points;
-  points.reserve(ids.size());
-  for (Id id : ids)
+  SortUnique(cavity.Numbers);
+  cavity.Points.reserve(cavity.Numbers.size());
+  for (Id id : cavity.Numbers)
   {
-    points.push_back(this->Mesh.Points[id]);
+    cavity.Points.push_back(this->Mesh.Points[id]);
   }
-  DelaunayTetrahedralization local;
-  if (!BuildDelaunayTetrahedralization(points, ids, GridBlock(), 1, ExecutionContext(), local)
-         .IsOk())
+  cavity.Border = hole.Facets;
+  cavity.Regions.assign(hole.Facets.size(), region);
+  if (!this->Filling.Run(cavity))
   {
     return false;
   }
-  const Id infinite = static_cast<Id>(ids.size());
 
-  // Those of its tetrahedra within the hole: from the hole's facets inwards.
-  this->Facets.clear();
-  const auto toGlobal = [&](const TriangleIds& facet) {
-    return TriangleIds{ ids[facet[0]], ids[facet[1]], ids[facet[2]] };
-  };
-  for (Id t = 0; t < static_cast<Id>(local.Tetrahedra.size()); ++t)
-  {
-    const TetrahedronIds& vertices = local.Tetrahedra[t];
-    if (vertices[0] == NoId ||
-      std::find(vertices.begin(), vertices.end(), infinite) != vertices.end())
-    {
-      continue;
-    }
-    for (int i = 0; i < 4; ++i)
-    {
-      this->Facets.push_back({ Sorted(toGlobal(GetFacet(vertices, i))), 4 * t + i });
-    }
-  }
-  std::sort(this->Facets.begin(), this->Facets.end());
-  constexpr Id Unseen = -2;
-  // For each facet within the hole that lies on its border, the number of that border's facet.
-  std::vector<Id> border(4 * local.Tetrahedra.size(), NoId);
-  std::vector<Id> made(local.Tetrahedra.size(), Unseen);
-  std::vector<Id> fill;
-  for (std::size_t k = 0; k < hole.Facets.size(); ++k)
-  {
-    const TriangleIds key = Sorted(hole.Facets[k]);
-    auto found = std::lower_bound(
-      this->Facets.begin(), this->Facets.end(), std::pair<TriangleIds, Id>(key, 0));
-    Id inner = NoId;
-    for (; found != this->Facets.end() && found->first == key; ++found)
-    {
-      const Id apex = local.Tetrahedra[found->second / 4][found->second % 4];
-      if (Orientation(this->Mesh.Points[hole.Facets[k][0]], this->Mesh.Points[hole.Facets[k][1]],
-            this->Mesh.Points[hole.Facets[k][2]], points[apex]) > 0)
-      {
-        inner = found->second;
-      }
-    }
-    if (inner == NoId)
-    {
-      return false;
-    }
-    border[inner] = static_cast<Id>(k);
-    if (made[inner / 4] == Unseen)
-    {
-      made[inner / 4] = NoId;
-      fill.push_back(inner / 4);
-    }
-  }
-  for (std::size_t k = 0; k < fill.size(); ++k)
-  {
-    for (int i = 0; i < 4; ++i)
-    {
-      if (border[4 * fill[k] + i] != NoId)
-      {
-        continue;
-      }
-      const Id next = local.Neighbors[fill[k]][i] / 4;
-      const TetrahedronIds& vertices = local.Tetrahedra[next];
-      if (std::find(vertices.begin(), vertices.end(), infinite) != vertices.end())
-      {
-        return false;
-      }
-      if (made[next] == Unseen)
-      {
-        made[next] = NoId;
-        fill.push_back(next);
-      }
-    }
-  }
-
-  const Id region = this->Mesh.Regions[this->Star.front()];
   for (auto t = this->Star.rbegin(); t != this->Star.rend(); ++t)
   {
     this->Kill(*t);
   }
   this->Changed.clear();
-  for (Id t : fill)
+  for (const CavityFilling::Cell& cell : this->Filling.GetCells())
   {
-    const TetrahedronIds& vertices = local.Tetrahedra[t];
-    made[t] = this->Make(
-      { ids[vertices[0]], ids[vertices[1]], ids[vertices[2]], ids[vertices[3]] }, region);
+    this->Make(cell.Ids, region);
   }
-  for (Id t : fill)
+  for (std::size_t k = 0; k < this->Changed.size(); ++k)
   {
+    const Id made = this->Changed[k];
     for (int i = 0; i < 4; ++i)
     {
-      const Id k = border[4 * t + i];
-      const Id inner = local.Neighbors[t][i];
-      const Id outer = k != NoId ? hole.Outer[k] : 4 * made[inner / 4] + inner % 4;
-      this->Mesh.Neighbors[made[t]][i] = outer;
-      if (k != NoId && outer != NoId)
+      const Id neighbor = this->Filling.GetCells()[k].Neighbors[i];
+      const Id facet = CavityFilling::GetBorderFacet(neighbor);
+      const Id outer =
+        facet >= 0 ? hole.Outer[facet] : 4 * this->Changed[neighbor / 4] + neighbor % 4;
+      this->Mesh.Neighbors[made][i] = outer;
+      if (facet >= 0 && outer != NoId)
       {
-        this->Mesh.Neighbors[outer / 4][outer % 4] = 4 * made[t] + i;
+        this->Mesh.Neighbors[outer / 4][outer % 4] = 4 * made + i;
       }
     }
   }

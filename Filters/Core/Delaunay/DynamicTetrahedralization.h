@@ -28,6 +28,7 @@
 #ifndef cdmDynamicTetrahedralization_h
 #define cdmDynamicTetrahedralization_h
 
+#include "Core/Delaunay/CavityFilling.h"
 #include "Core/Meshes/TetMesh.h"
 
 #include <array>
@@ -115,6 +116,7 @@ private:
   std::vector<Id> Star;
   Hole RemovedStar;
   std::vector<std::pair<TriangleIds, Id>> Facets;
+  CavityFilling Filling;
 };
 } // namespace cdm
 

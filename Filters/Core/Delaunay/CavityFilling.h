@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file CavityFilling.h
+ * @brief The Delaunay tetrahedra of a few points that lie within a polyhedron of their facets.
+ *
+ * Where a point of a Delaunay mesh is taken out or moved, the tetrahedra around leave a cavity. What
+ * fills it are tetrahedra of the points at the cavity alone.
+ *
+ * Method: all points are tetrahedralized. From each facet of the border a flood goes inwards, from
+ * tetrahedron to tetrahedron, to walls (facets between two regions, which have to be there) and the
+ * border.
+ *
+ * Exact; points on one sphere are told apart by the pulling rule of their numbers. Cost: some ten
+ * microseconds, and about two for each tetrahedron.
+ */
+#ifndef cdmCavityFilling_h
+#define cdmCavityFilling_h
+
+#include "Core/Basics/RawVector.h"
+#include "Core/Basics/Types.h"
+#include "Core/Basics/Vec3.h"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace cdm
+{
+struct Cavity
+{
+  /** Numbers of the points, ascending, and where they are. */
+  std::vector<Id> Numbers;
+  RawVector<Vec3> Points;
+  /** The border, by numbers; the inside is in front of each. */
+  std::vector<TriangleIds> Border;
+  /** One for each facet of the border: the region in front of it. */
+  std::vector<Id> Regions;
+  /** By numbers; what is behind a wall need not be inside. */
+  std::vector<TriangleIds> Walls;
+};
+
+class CavityFilling
+{
+public:
+  struct Cell
+  {
+    /** Numbers of points. */
+    TetrahedronIds Ids;
+    Id Region;
+    /** 4 * cell + facet, or OutOf(k) behind facet k of the border, or NoId behind a wall without cell. */
+    std::array<Id, 4> Neighbors;
+  };
+  static Id OutOf(Id facet) { return -2 - facet; }
+  /** The inverse of OutOf(), or negative. */
+  static Id GetBorderFacet(Id neighbor) { return -2 - neighbor; }
+
+  /**
+   * False if the tetrahedra of the points do not have all facets of the border and all walls, or
+   * if these do not separate the regions from each other and from the outside.
+   */
+  bool Run(const Cavity& cavity);
+  const std::vector<Cell>& GetCells() const { return this->Cells; }
+
+private:
+  std::vector<Cell> Cells;
+  /** Work space: facets of local tetrahedra, by their sorted numbers. */
+  std::vector<std::pair<TriangleIds, Id>> Facets;
+};
+} // namespace cdm
+
+#endif

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Basics/SortedIds.h"
+#include "Core/Delaunay/CavityFilling.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Surface/DelaunaySurfaceRefiner.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
+#include "RandomComplexes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+
+using namespace cdm;
+
+namespace
+{
+/** A box of two layers with random points inside. */
+AdvancingFrontTetrahedralizerOutput MakeMesh(std::mt19937_64& generator)
+{
+  CellComplex complex({ 1.0, 1.0, 1.0 });
+  EXPECT_TRUE(complex.Cut({ 0.0, 0.0, 1.0 }, 0.5, 1e-6));
+  BoundaryTriangulatorOutput boundary;
+  EXPECT_TRUE(TriangulateBoundary(complex.GetSoup(), {}, {}, boundary).IsOk());
+  std::uniform_real_distribution<double> uniform(0.1, 0.9);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 60; ++i)
+  {
+    const double z = uniform(generator);
+    points.push_back({ uniform(generator), uniform(generator), z + (z < 0.5 ? -0.05 : 0.05) });
+  }
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &boundary.Surface;
+  input.MeshPoints = &points;
+  DelaunaySurfaceRefinerOptions options;
+  options.MaximumEdgeLength = 0.3;
+  DelaunaySurfaceRefinerOutput refined;
+  EXPECT_TRUE(RefineDelaunaySurface(input, options, {}, refined).IsOk());
+  AdvancingFrontTetrahedralizerInput front;
+  front.Surface = &refined.Surface;
+  front.MeshPoints = &points;
+  AdvancingFrontTetrahedralizerOutput output;
+  EXPECT_TRUE(TetrahedralizeByAdvancingFront(front, {}, {}, output).IsOk());
+  return output;
+}
+
+/** Tetrahedra around one, across facets, whatever region they are in. */
+std::vector<Id> Grow(const TetMesh& mesh, Id start, std::size_t count)
+{
+  std::vector<Id> chosen(1, start);
+  for (std::size_t k = 0; k < chosen.size() && chosen.size() < count; ++k)
+  {
+    for (Id neighbor : mesh.Neighbors[chosen[k]])
+    {
+      if (neighbor != NoId && std::find(chosen.begin(), chosen.end(), neighbor / 4) == chosen.end())
+      {
+        chosen.push_back(neighbor / 4);
+      }
+    }
+  }
+  return chosen;
+}
+
+/** The cavity that is left without them; interfaces are walls. */
+Cavity TakeOut(const TetMesh& mesh, const std::vector<Id>& chosen)
+{
+  Cavity cavity;
+  for (Id t : chosen)
+  {
+    const TetrahedronIds& ids = mesh.Tetrahedra[t];
+    cavity.Numbers.insert(cavity.Numbers.end(), ids.begin(), ids.end());
+    for (int i = 0; i < 4; ++i)
+    {
+      const Id neighbor = mesh.Neighbors[t][i];
+      const TriangleIds facet = GetFacet(ids, i);
+      if (neighbor == NoId || std::find(chosen.begin(), chosen.end(), neighbor / 4) == chosen.end())
+      {
+        cavity.Border.push_back({ facet[0], facet[2], facet[1] });
+        cavity.Regions.push_back(mesh.Regions[t]);
+      }
+      else if (mesh.Regions[neighbor / 4] != mesh.Regions[t] && neighbor / 4 > t)
+      {
+        cavity.Walls.push_back(facet);
+      }
+    }
+  }
+  SortUnique(cavity.Numbers);
+  for (Id id : cavity.Numbers)
+  {
+    cavity.Points.push_back(mesh.Points[id]);
+  }
+  return cavity;
+}
+
+std::map<TetrahedronIds, Id> GetRegions(const TetMesh& mesh, const std::vector<Id>& chosen)
+{
+  std::map<TetrahedronIds, Id> regions;
+  for (Id t : chosen)
+  {
+    TetrahedronIds ids = mesh.Tetrahedra[t];
+    std::sort(ids.begin(), ids.end());
+    regions[ids] = mesh.Regions[t];
+  }
+  return regions;
+}
+
+void ExpectFilledBy(
+  const CavityFilling& filling, const Cavity& cavity, const std::map<TetrahedronIds, Id>& expected)
+{
+  const std::vector<CavityFilling::Cell>& cells = filling.GetCells();
+  std::map<TetrahedronIds, Id> regions;
+  std::vector<int> uses(cavity.Border.size(), 0);
+  for (std::size_t k = 0; k < cells.size(); ++k)
+  {
+    TetrahedronIds ids = cells[k].Ids;
+    std::sort(ids.begin(), ids.end());
+    regions[ids] = cells[k].Region;
+    for (int i = 0; i < 4; ++i)
+    {
+      const Id neighbor = cells[k].Neighbors[i];
+      ASSERT_NE(neighbor, NoId);
+      if (neighbor >= 0)
+      {
+        EXPECT_EQ(cells[neighbor / 4].Neighbors[neighbor % 4], static_cast<Id>(4 * k) + i);
+      }
+      else
+      {
+        const Id border = CavityFilling::GetBorderFacet(neighbor);
+        ++uses[border];
+        const TriangleIds facet = GetFacet(cells[k].Ids, i);
+        EXPECT_TRUE(std::is_permutation(facet.begin(), facet.end(), cavity.Border[border].begin()));
+      }
+    }
+  }
+  EXPECT_EQ(regions, expected);
+  EXPECT_EQ(static_cast<std::size_t>(std::count(uses.begin(), uses.end(), 1)), uses.size());
+}
+} // namespace
+
+TEST(CavityFilling, PutsBackWhatWasTakenOut)
+{
+  std::size_t withWalls = 0;
+  for (unsigned int seed = 1; seed <= 5; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 generator(seed);
+    const TetMesh mesh = MakeMesh(generator).Mesh;
+    CavityFilling filling;
+    for (int i = 0; i < 50; ++i)
+    {
+      const std::vector<Id> chosen =
+        Grow(mesh, static_cast<Id>(generator() % mesh.Tetrahedra.size()), 1 + generator() % 30);
+      const Cavity cavity = TakeOut(mesh, chosen);
+      withWalls += cavity.Walls.empty() ? 0 : 1;
+      ASSERT_TRUE(filling.Run(cavity));
+      ExpectFilledBy(filling, cavity, GetRegions(mesh, chosen));
+    }
+  }
+  EXPECT_GT(withWalls, 20u);
+}
+
+TEST(CavityFilling, RefusesWhatHasNoBorderAllAround)
+{
+  std::mt19937_64 generator(1);
+  const TetMesh mesh = MakeMesh(generator).Mesh;
+  CavityFilling filling;
+  for (int i = 0; i < 50; ++i)
+  {
+    const std::vector<Id> chosen =
+      Grow(mesh, static_cast<Id>(generator() % mesh.Tetrahedra.size()), 12);
+    const Cavity cavity = TakeOut(mesh, chosen);
+
+    // A wall that is no facet: two points of the border and one that is nowhere near.
+    Cavity other = cavity;
+    other.Walls.push_back({ cavity.Border[0][0], cavity.Border[0][1], 1000000 });
+    EXPECT_FALSE(filling.Run(other));
+
+    // A region on the wrong side of a wall.
+    if (!cavity.Walls.empty())
+    {
+      other = cavity;
+      other.Walls.clear();
+      EXPECT_FALSE(filling.Run(other));
+    }
+
+    // A facet of the border that is missing is a way out, or to the points of a dent.
+    other = cavity;
+    other.Border.pop_back();
+    other.Regions.pop_back();
+    if (filling.Run(other))
+    {
+      EXPECT_GT(filling.GetCells().size(), chosen.size());
+    }
+  }
+}
