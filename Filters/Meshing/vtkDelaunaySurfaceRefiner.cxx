@@ -6,6 +6,7 @@
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 
 #include <vtkCellData.h>
+#include <vtkDataArray.h>
 #include <vtkDataSet.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
@@ -148,6 +149,13 @@ int vtkDelaunaySurfaceRefiner::RequestData(
   std::iota(inputPoints.begin(), inputPoints.end(), 0);
   vtkCoreBridge::InterpolateTuples(input->GetPointData(), inputPoints, result.NewPoints,
     vtkCoreBridge::ParentIds::Output, output->GetPointData());
+  if (vtkDataArray* isFree = output->GetPointData()->GetArray(vtkCoreBridge::FreePointName))
+  {
+    for (vtkIdType p = input->GetNumberOfPoints(); p < output->GetNumberOfPoints(); ++p)
+    {
+      isFree->SetComponent(p, 0, 1.0);
+    }
+  }
   vtkCoreBridge::FromStructuralEdges(
     result.StructuralEdges, output, vtkPolyData::GetData(outputVector, 1));
   vtkCoreBridge::FromKeptPoints(

@@ -19,7 +19,8 @@
  *
  * Outputs: port 0: the Delaunay surface: input points with their ids, new points after them.
  * Point data are interpolated at new points (id arrays excepted: they are dropped), cell data are
- * those of the input triangle. Only if triangles are left that do not fulfil the criterion: cell
+ * those of the input triangle. An array FreePoint is 1 at new points: vtkSteinerPointRefiner may
+ * move them. Only if triangles are left that do not fulfil the criterion: cell
  * array Unresolved (unsigned char), 1 for them and 0 for the others.
  * Port 1: its structural edges, with the arrays of vtkStructuralEdgeExtractor; ChainId is that of
  * the input surface. Port 2: the mesh points kept, as vertices, with their point data. Mesh points

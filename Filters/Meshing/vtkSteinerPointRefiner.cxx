@@ -134,10 +134,7 @@ int vtkSteinerPointRefiner::RequestData(
       {
         return step;
       }
-      if (this->FreeInteriorPoints)
-      {
-        engineInput.IsFree.assign(mesh.Points.size(), 1);
-      }
+      engineInput.AreInteriorPointsFree = this->FreeInteriorPoints;
       cdm::SteinerPointRefinerOptions options;
       options.RadiusEdgeRatio = this->RadiusEdgeRatio;
       options.DihedralAngleTarget = this->DihedralAngleTarget;

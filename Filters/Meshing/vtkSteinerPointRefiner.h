@@ -11,12 +11,14 @@
  *     on the way there; where it disturbs the boundary, the boundary is split instead;
  *  3. points of slivers are moved, inside of their region, each move with a local update of the
  *     Delaunay mesh, and only if the smallest dihedral angle around it grows; where that does not
- *     help points are taken out or added, at last the boundary is split.
+ *     help points are taken out or added, then points of the boundary moved in their facet or along
+ *     their edge, at last the boundary is split.
  *
  * Inputs: port 0: vtkUnstructuredGrid of VTK_TETRA only, as it comes from
  * vtkAdvancingFrontTetrahedralizer or any other source; cell array RegionId (whole numbers from 0 on)
  * where there are several regions. Point array FreePoint (optional, one component): points inside
- * with a value other than 0 may be moved and taken out. Point array RemovePoint (optional, one
+ * with a value other than 0 may be moved and taken out, points on the boundary moved in their flat
+ * facet or along their straight edge. Point array RemovePoint (optional, one
  * component): points inside with a value other than 0 are taken out first. Port 1, optional:
  * vtkDataSet with the point array Sizing, see vtkDelaunaySurfaceRefiner; edges longer than the sizing
  * in their direction are too long. Port 2, optional: vtkPolyData, the boundary that belongs to the
@@ -26,15 +28,15 @@
  * Outputs: port 0: the tetrahedra, with the cell array RegionId (int). Other cell data are dropped.
  * Points that stay where they are come first, in their order, with their data; at new and moved ones
  * point data are interpolated in the input mesh (arrays of ids excepted: they are dropped). Point
- * array FreePoint (unsigned char): 1 for points inside that were made here or were free before. Only
+ * array FreePoint (unsigned char): 1 for points that were made here or were free before. Only
  * if there are tetrahedra that miss what was asked for: cell array RefinementFault (unsigned char), 1
  * too large, 2 radius-edge ratio, 3 dihedral angle, 4 the latter two at a sharp angle of the input
  * or across a thin layer, 0 for all others. Port 1: the refined boundary as triangles, with
  * BoundaryLabels (int, 2 components) and the cell data of port 2.
  *
  * Guarantees: the mesh is Delaunay and keeps the shape of the boundary; each boundary triangle
- * fulfils the criterion. Points on the boundary, and those inside that are not free, keep their
- * coordinates. It ends for every bound. Deterministic.
+ * fulfils the criterion. Points that are not free keep their coordinates. It ends for every bound.
+ * Deterministic.
  *
  * Failure: an error that names the cells, and empty outputs, for an empty input, cells of another
  * type, tetrahedra that are inverted or flat, a boundary that does not belong to the mesh. An aborted

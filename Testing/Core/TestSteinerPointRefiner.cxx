@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <random>
 
@@ -443,6 +444,72 @@ TEST(SteinerPointRefiner, GivenPointsStayUnlessTheyAreFree)
       EXPECT_GE(Distance(coarse.Mesh.Points[ids[edge[0]]], coarse.Mesh.Points[ids[edge[1]]]), 0.1);
     }
   }
+}
+
+TEST(SteinerPointRefiner, MovesFreePointsOfTheSurfaceInTheirFacetsOnly)
+{
+  // Points on facets and edges, close to the middle of the box: slivers have surface points only.
+  std::size_t splits[2] = { 0, 0 };
+  for (unsigned int seed = 1; seed <= 10; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 generator(seed);
+    std::uniform_real_distribution<double> uniform(0.2, 0.5);
+    const Vec3 size{ 1.0, 1.0, uniform(generator) };
+    const Stage3 box = MakeMesh(MakeBox(size));
+    SteinerPointRefinerInput input;
+    input.Mesh = &box.Output.Mesh;
+    SteinerPointRefinerOptions options;
+    options.RadiusEdgeRatio = 0.0;
+    options.DihedralAngleTarget = 0.0;
+    options.MaximumEdgeLength = uniform(generator);
+    const SteinerPointRefinerOutput coarse = Refine(input, options);
+    EXPECT_TRUE(std::all_of(
+      coarse.IsFree.begin(), coarse.IsFree.begin() + 8, [](char isFree) { return isFree == 0; }));
+    EXPECT_TRUE(std::all_of(
+      coarse.IsFree.begin() + 8, coarse.IsFree.end(), [](char isFree) { return isFree != 0; }));
+
+    input.Mesh = &coarse.Mesh;
+    options.MaximumEdgeLength = 0.0;
+    options.DihedralAngleTarget = 15.0;
+    for (bool isFree : { false, true })
+    {
+      input.IsFree = coarse.IsFree;
+      if (!isFree)
+      {
+        input.IsFree.clear();
+        input.AreInteriorPointsFree = true;
+      }
+      const SteinerPointRefinerOutput output = Refine(input, options);
+      splits[isFree] += static_cast<std::size_t>(output.Report.BoundaryPoints);
+      EXPECT_EQ(output.Report.Slivers, 0);
+      const auto isKept = [&](std::size_t p)
+      { return output.PointSources[p] == static_cast<Id>(p); };
+      for (std::size_t p = 0; p < 8; ++p)
+      {
+        EXPECT_TRUE(isKept(p));
+      }
+      // Exactly in the box's facets: each point of the boundary has a coordinate of theirs.
+      std::vector<char> isOnSurface(output.Mesh.Points.size(), 0);
+      for (const TriangleIds& ids : output.Boundary.Triangles)
+      {
+        for (Id id : ids)
+        {
+          isOnSurface[id] = 1;
+        }
+      }
+      for (std::size_t p = 0; p < output.Mesh.Points.size(); ++p)
+      {
+        const Vec3& x = output.Mesh.Points[p];
+        const bool isOnBox =
+          x.X == 0.0 || x.X == size.X || x.Y == 0.0 || x.Y == size.Y || x.Z == 0.0 || x.Z == size.Z;
+        EXPECT_EQ(isOnSurface[p] != 0, isOnBox);
+      }
+    }
+  }
+  EXPECT_LT(splits[1], splits[0]);
+  std::printf("points added to the boundary: %zu if all are fixed, %zu if they are free\n",
+    splits[0], splits[1]);
 }
 
 TEST(SteinerPointRefiner, KeepsSheetsOfTheBoundaryGiven)

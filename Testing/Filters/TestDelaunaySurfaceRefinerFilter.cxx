@@ -114,6 +114,36 @@ TEST(DelaunaySurfaceRefinerFilter, RefinesToAnEdgeLength)
   ExpectLinear(edges);
 }
 
+TEST(DelaunaySurfaceRefinerFilter, MarksNewPointsAsFree)
+{
+  Pipeline run(MakeCube(true));
+  run.Refiner->SetMaximumEdgeLength(0.3);
+  run.Refiner->Update();
+  EXPECT_FALSE(run.GetOutput(0)->GetPointData()->HasArray("FreePoint"));
+
+  // Only if it is known which of the points before are.
+  vtkNew<vtkPolyData> cube;
+  cube->ShallowCopy(MakeCube(true));
+  vtkNew<vtkUnsignedCharArray> flags;
+  flags->SetName("FreePoint");
+  for (int i = 0; i < 8; ++i)
+  {
+    flags->InsertNextValue(i == 5);
+  }
+  cube->GetPointData()->AddArray(flags);
+  Pipeline marked(cube);
+  marked.Refiner->SetMaximumEdgeLength(0.3);
+  marked.Refiner->Update();
+  vtkDataArray* isFree =
+    FindArray(marked.GetOutput(0)->GetPointData(), "FreePoint", 1, VTK_UNSIGNED_CHAR);
+  ASSERT_NE(isFree, nullptr);
+  ASSERT_GT(isFree->GetNumberOfTuples(), 8);
+  for (vtkIdType i = 0; i < isFree->GetNumberOfTuples(); ++i)
+  {
+    EXPECT_EQ(isFree->GetComponent(i, 0), i == 5 || i >= 8 ? 1.0 : 0.0);
+  }
+}
+
 TEST(DelaunaySurfaceRefinerFilter, RefinesToAnArea)
 {
   Pipeline run(MakeTwoBoxes(true));

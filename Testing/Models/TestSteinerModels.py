@@ -26,7 +26,7 @@ TARGET = 15.0
 INEVITABLE = 4
 CLEAN = ("InvertedTetrahedra", "FlatTetrahedra", "NonDelaunayTetrahedra", "FacetSphereViolations")
 # Slivers that are left.
-KNOWN = {"vm_simple_bnd": 2, "gm_compsolid2": 1, "prusa_sloping_hole": 6}
+KNOWN = {"gm_compsolid2": 1}
 LEFT_OUT = ("cgal_step", "mf_havocglass8_left")
 
 

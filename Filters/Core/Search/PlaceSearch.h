@@ -3,8 +3,8 @@
  * @file PlaceSearch.h
  * @brief A better place for a point: the one that makes the smallest dihedral angle largest.
  *
- * Method: pattern search, in the 26 directions of a cube around the best place so far, in steps that
- * become shorter where none helps. A moved point first tries the mean of its neighbors (Laplacian
+ * Method: pattern search, in given directions (of a cube, where a point may go anywhere) around the best
+ * place so far, in steps that become shorter where none helps. A moved point first tries the mean of its neighbors (Laplacian
  * smoothing, thesis 3.4.6), and half the way there.
  *
  * Deterministic. Cost: about a hundred ratings.
@@ -13,6 +13,8 @@
 #define cdmPlaceSearch_h
 
 #include "Core/Basics/Vec3.h"
+
+#include <vector>
 
 namespace cdm
 {
@@ -39,9 +41,30 @@ void TryPlace(const Vec3& position, Rate&& rate, Place& best)
   }
 }
 
-/** Until the angle reaches the target, or the steps are too short. */
+/** First step of a point that moves, in distances to its nearest neighbor. */
+constexpr double FirstMove = 0.3;
+
+/** To the 26 other places of a cube of 27. */
+inline std::vector<Vec3> MakeCubeDirections()
+{
+  std::vector<Vec3> directions;
+  for (int i = 0; i < 27; ++i)
+  {
+    if (i != 13)
+    {
+      directions.push_back({ i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0 });
+    }
+  }
+  return directions;
+}
+
+/**
+ * Until the angle reaches the target, or the steps are too short.
+ * @param directions of any length but 0
+ */
 template <typename Rate>
-void SearchPlace(const Vec3& start, double step, double target, Rate&& rate, Place& best)
+void SearchPlace(const Vec3& start, double step, const std::vector<Vec3>& directions, double target,
+  Rate&& rate, Place& best)
 {
   /** How often the step is taken, or halved. */
   constexpr int numberOfSteps = 5;
@@ -49,31 +72,25 @@ void SearchPlace(const Vec3& start, double step, double target, Rate&& rate, Pla
   {
     const Vec3 base = best.IsFound ? best.Position : start;
     const double angle = best.Angle;
-    for (int direction = 0; direction < 27; ++direction)
+    for (const Vec3& direction : directions)
     {
-      const Vec3 offset{ direction % 3 - 1.0, direction / 3 % 3 - 1.0, direction / 9 - 1.0 };
-      if (direction != 13)
-      {
-        TryPlace(base + (step / Norm(offset)) * offset, rate, best);
-      }
+      TryPlace(base + (step / Norm(direction)) * direction, rate, best);
     }
     step *= best.Angle > angle ? 1.0 : 0.5;
   }
 }
 
 /**
- * A place for a point that moves.
+ * A place for a point that moves in any direction.
  * @param nearest distance to its nearest neighbor
  */
 template <typename Rate>
 void SearchMove(
   const Vec3& old, const Vec3& mean, double nearest, double target, Rate&& rate, Place& best)
 {
-  /** First step, in distances to the nearest neighbor. */
-  constexpr double firstStep = 0.3;
   TryPlace(mean, rate, best);
   TryPlace(0.5 * (old + mean), rate, best);
-  SearchPlace(old, firstStep * nearest, target, rate, best);
+  SearchPlace(old, FirstMove * nearest, MakeCubeDirections(), target, rate, best);
 }
 } // namespace cdm
 

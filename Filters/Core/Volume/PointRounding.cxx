@@ -243,7 +243,7 @@ double PointRounding::Rate(const Vec3& position, const std::vector<Quadrangle>& 
   return smallest;
 }
 
-bool PointRounding::Move(Id first, std::vector<Vec3>& points) const
+void PointRounding::Move(const std::vector<char>& isFree, std::vector<Vec3>& points) const
 {
   double largest = 0.0;
   for (const Vec3& point : points)
@@ -253,7 +253,6 @@ bool PointRounding::Move(Id first, std::vector<Vec3>& points) const
   const double step =
     std::ldexp(std::numeric_limits<double>::epsilon(), largest > 0.0 ? std::ilogb(largest) : 0);
   std::vector<char> isMoved(points.size(), 0);
-  bool isAnyMoved = false;
   for (Id t : this->Flat)
   {
     const TetrahedronIds& ids = this->Mesh.Tetrahedra[t];
@@ -266,17 +265,17 @@ bool PointRounding::Move(Id first, std::vector<Vec3>& points) const
     double margin = 0.0;
     for (Id point : ids)
     {
-      if (point < first)
+      if (!isFree[point])
       {
         continue;
       }
       const std::vector<Quadrangle> quadrangles = this->FindQuadrangles(point, points);
-      const std::array<bool, 3> isFree = this->FindFreeAxes(point);
+      const std::array<bool, 3> isFreeAxis = this->FindFreeAxes(point);
       for (int shell = 1; shell <= MaximumSteps && margin < EnoughMargin; ++shell)
       {
-        const int x = isFree[0] ? shell : 0;
-        const int y = isFree[1] ? shell : 0;
-        const int z = isFree[2] ? shell : 0;
+        const int x = isFreeAxis[0] ? shell : 0;
+        const int y = isFreeAxis[1] ? shell : 0;
+        const int z = isFreeAxis[2] ? shell : 0;
         for (int i = -x; i <= x; ++i)
         {
           for (int j = -y; j <= y; ++j)
@@ -304,9 +303,7 @@ bool PointRounding::Move(Id first, std::vector<Vec3>& points) const
     {
       points[moved] = best;
       isMoved[moved] = 1;
-      isAnyMoved = true;
     }
   }
-  return isAnyMoved;
 }
 } // namespace cdm

@@ -40,11 +40,10 @@ public:
 
   /**
    * Moves at most one point of each flat tetrahedron.
-   * @param first points from this one on may be moved
+   * @param isFree one for each point of the surface: whether it may be moved
    * @param points of the surface, which get their new places
-   * @return false if all stay
    */
-  bool Move(Id first, std::vector<Vec3>& points) const;
+  void Move(const std::vector<char>& isFree, std::vector<Vec3>& points) const;
 
 private:
   /** Three other points of a plane and a circle that a point lies on, too, but for rounding. */

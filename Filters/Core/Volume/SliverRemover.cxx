@@ -887,7 +887,7 @@ bool Remover::MovePoints(const ExecutionContext& context)
   const TetrahedronLimits limits;
   VolumeRefinement refinement(std::move(mesh), surface, edges, {}, interior, limits, 0, memory);
   const Status status =
-    refinement.PerturbSlivers(this->Target, SliverMeans::Moves, 0, context.Part(0.1, 1.0));
+    refinement.PerturbSlivers(this->Target, SliverMeans::Moves, {}, context.Part(0.1, 1.0));
   const TetMesh& moved = refinement.GetMesh();
   for (std::size_t i = 0; i < sources.size(); ++i)
   {

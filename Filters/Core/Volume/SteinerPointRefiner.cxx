@@ -25,10 +25,12 @@ namespace
 {
 /** Rounds without end would be an error of the rules; so many have never been seen. */
 constexpr Id MaximumRounds = 200;
-/** Rounds that split the boundary for slivers. */
+/** Rounds that move points of the boundary for slivers, or split it. */
 constexpr int MaximumSliverRounds = 40;
 /** Roundings of points in a row that do not help. */
 constexpr int MaximumFailedRoundings = 2;
+/** Rounds in a row whose moves of the boundary's points leave as many slivers as before. */
+constexpr int MaximumFailedMoves = 3;
 /** Passes over slivers and shapes in turn, when the boundary stays as it is. */
 constexpr int MaximumLastPasses = 5;
 /** Slivers wait until no more requests than these are left from badly shaped tetrahedra. */
@@ -66,6 +68,8 @@ private:
   Status PerturbSlivers(SliverMeans means);
   Status PerturbLastSlivers();
   bool RoundFlatTetrahedraAway();
+  bool MoveSurfacePoints();
+  bool MoveSurface(const std::vector<Vec3>& places);
   bool IsInevitable(const TetrahedronIds& ids, Id region) const;
   std::size_t CountRequests() const
   {
@@ -94,8 +98,16 @@ private:
   std::vector<InteriorPoint> Interior;
   SliverMemory Memory;
   std::unique_ptr<VolumeRefinement> Round;
+  /** One for each point of the surface: whether it was made or moved since the mesh was made. */
+  std::vector<char> IsNew;
+  /** One for each point of the surface: whether it may be moved in its facet or along its edge. */
+  std::vector<char> IsSurfaceFree;
   /** Flat tetrahedra when they were fewest, since there are others than those left. */
   std::size_t FewestFlat = std::numeric_limits<std::size_t>::max() / 4;
+  /** Slivers when they were fewest since the boundary was last split for them. */
+  std::size_t FewestSlivers = std::numeric_limits<std::size_t>::max();
+  /** So many moves of the surface's points in a row have not helped. */
+  int FailedMoves = 0;
   /** So many roundings in a row have not helped. */
   int FailedRoundings = 0;
   /** Points of flat tetrahedra that rounding has left, sorted. */
@@ -243,7 +255,13 @@ void Refiner::ExtractSurface()
     this->Surface.SourceCells.resize(this->Surface.Triangles.size());
     std::iota(this->Surface.SourceCells.begin(), this->Surface.SourceCells.end(), 0);
   }
+  const auto isMarkedFree = [this](Id p)
+  { return !this->Input.IsFree.empty() && this->Input.IsFree[p] != 0; };
   this->SurfaceSources = RemoveUnusedPoints(this->Surface);
+  for (Id p : this->SurfaceSources)
+  {
+    this->IsSurfaceFree.push_back(isMarkedFree(p));
+  }
   for (Id p : FindPointsInside(mesh, this->SurfaceSources))
   {
     if (!this->Input.IsRemoved.empty() && this->Input.IsRemoved[p])
@@ -251,7 +269,7 @@ void Refiner::ExtractSurface()
       ++this->Output.Report.RemovedPoints;
       continue;
     }
-    const bool isFree = !this->Input.IsFree.empty() && this->Input.IsFree[p];
+    const bool isFree = this->Input.AreInteriorPointsFree || isMarkedFree(p);
     this->Interior.push_back({ mesh.Points[p], 0.0, isFree, p, this->Memory.MakeName() });
   }
   for (const Vec3& position : this->Input.NewPoints)
@@ -377,7 +395,10 @@ Status Refiner::StartRound()
     this->MaximumNewPoints - this->Output.Report.BoundaryPoints -
       this->Output.Report.InteriorPoints,
     this->Memory);
-  this->Round->NoteNewPoints(oldPoints);
+  this->IsSurfaceFree.resize(this->Surface.Points.size(), 1);
+  this->IsNew.resize(this->Surface.Points.size(), 1);
+  this->Round->NoteNewPoints(this->IsNew);
+  std::fill(this->IsNew.begin(), this->IsNew.end(), 0);
   return status;
 }
 
@@ -437,10 +458,9 @@ Status Refiner::PerturbSlivers(SliverMeans means)
 {
   // Rounding may leave a few flat tetrahedra, for which the boundary is split then; many are those of
   // a device that is turned, and splits would not end there.
-  const std::size_t fixed = this->NumberOfLeftSlivers <= FewRequests ? this->Surface.Points.size()
-                                                                     : this->SurfaceSources.size();
-  return this->Round->PerturbSlivers(
-    this->Options.DihedralAngleTarget, means, static_cast<Id>(fixed), this->GetRoundContext());
+  return this->Round->PerturbSlivers(this->Options.DihedralAngleTarget, means,
+    this->NumberOfLeftSlivers <= FewRequests ? std::vector<char>() : this->IsSurfaceFree,
+    this->GetRoundContext());
 }
 
 /** Points that were put in for shapes after the slivers' points were moved leave slivers, too. */
@@ -508,7 +528,51 @@ bool Refiner::RoundFlatTetrahedraAway()
   }
   this->FewestFlat = std::min(this->FewestFlat, flat.size());
   const PointRounding rounding(this->Round->GetMesh(), this->Surface, flat);
-  return rounding.Move(static_cast<Id>(this->SurfaceSources.size()), this->Surface.Points);
+  std::vector<Vec3> places = this->Surface.Points;
+  rounding.Move(this->IsSurfaceFree, places);
+  return this->MoveSurface(places);
+}
+
+/**
+ * Points of slivers, but for those that have to stay. False if there is nothing to be done, or if a few
+ * times in a row have not made slivers fewer: a move may turn facets that the mesh does not show.
+ */
+bool Refiner::MoveSurfacePoints()
+{
+  const std::size_t slivers = this->Round->CountSlivers(this->Options.DihedralAngleTarget);
+  this->FailedMoves = slivers < this->FewestSlivers ? 0 : this->FailedMoves + 1;
+  this->FewestSlivers = std::min(this->FewestSlivers, slivers);
+  if (this->FailedMoves > MaximumFailedMoves)
+  {
+    this->FailedMoves = 0;
+    this->FewestSlivers = std::numeric_limits<std::size_t>::max();
+    return false;
+  }
+  std::vector<Vec3> places = this->Surface.Points;
+  this->Round->FindSurfaceMoves(this->Options.DihedralAngleTarget, this->IsSurfaceFree,
+    this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges, places);
+  return this->MoveSurface(places);
+}
+
+/** False if all points stay where they are. */
+bool Refiner::MoveSurface(const std::vector<Vec3>& places)
+{
+  bool isAnyMoved = false;
+  for (std::size_t p = 0; p < places.size(); ++p)
+  {
+    if (places[p] != this->Surface.Points[p])
+    {
+      this->Surface.Points[p] = places[p];
+      this->IsNew[p] = 1;
+      isAnyMoved = true;
+      ++this->Output.Report.MovedPoints;
+      if (p < this->SurfaceSources.size())
+      {
+        this->SurfaceSources[p] = NoId;
+      }
+    }
+  }
+  return isAnyMoved;
 }
 
 /** Of a tetrahedron of surface and interior points: in a thin layer, or at a sharp angle. */
@@ -574,7 +638,8 @@ void Refiner::MakeOutput()
     points.push_back(this->Output.Mesh.Points[p]);
     this->Output.PointSources.push_back(sources[p]);
     const Id inside = p - static_cast<Id>(this->Surface.Points.size());
-    this->Output.IsFree.push_back(inside >= 0 && this->Interior[inside].IsFree);
+    this->Output.IsFree.push_back(
+      inside >= 0 ? this->Interior[inside].IsFree : this->IsSurfaceFree[p]);
   }
   this->Output.Mesh.Points = std::move(points);
   this->Output.Boundary = std::move(this->Surface);
@@ -614,7 +679,8 @@ Status Refiner::Run()
   bool isDone = false;
   while (status.IsOk() && !isDone)
   {
-    bool isRounded = false;
+    // Whether points of the surface have got other places.
+    bool areMoved = false;
     if (!areSizesDone)
     {
       status = this->RefineRound(false);
@@ -634,17 +700,20 @@ Status Refiner::Run()
       {
         const Id inserted = this->Round->GetReport().InsertedPoints;
         const bool areMeant = this->Options.DihedralAngleTarget > 0.0;
-        isRounded = areMeant && !isFull && sliverRounds < MaximumSliverRounds &&
+        areMoved = areMeant && !isFull && sliverRounds < MaximumSliverRounds &&
           this->RoundFlatTetrahedraAway();
-        if (areMeant && !isRounded)
+        if (areMeant && !areMoved)
         {
           ++sliverRounds;
-          status = this->PerturbSlivers(isFull     ? SliverMeans::Moves
-              : sliverRounds < MaximumSliverRounds ? SliverMeans::Requests
-                                                   : SliverMeans::Points);
-          status = status.IsOk() ? this->RefineRound(true) : status;
+          status = this->PerturbSlivers(isFull ? SliverMeans::Moves : SliverMeans::Points);
+          if (status.IsOk() && !isFull && sliverRounds < MaximumSliverRounds)
+          {
+            areMoved = this->MoveSurfacePoints();
+            status = areMoved ? status : this->PerturbSlivers(SliverMeans::Requests);
+          }
+          status = status.IsOk() && !areMoved ? this->RefineRound(true) : status;
         }
-        isDone = !isRounded &&
+        isDone = !areMoved &&
           (this->IsStuck || isFull || sliverRounds >= MaximumSliverRounds ||
             (!this->HasRequests() && this->Round->GetReport().InsertedPoints == inserted));
         if (isDone && areMeant && status.IsOk())
@@ -657,7 +726,7 @@ Status Refiner::Run()
     {
       isDone = isDone || this->Output.Report.Rounds >= MaximumRounds;
       status = this->StartRound();
-      this->IsStuck = this->IsStuck && !isRounded;
+      this->IsStuck = this->IsStuck && !areMoved;
     }
   }
   if (status.IsOk())

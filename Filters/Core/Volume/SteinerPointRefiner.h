@@ -13,16 +13,18 @@
  *     are too large, then also in badly shaped ones, where each comes no closer to others than a
  *     fifth of the shortest edge that was there before; what disturbs the boundary is requested to
  *     be split instead;
- *  4. if little is requested any more: points of slivers are moved, taken out or added. Before
- *     that, where tetrahedra are flat because points lie on a circle but for rounding, new points of
- *     the surface are rounded in another way (PointRounding.h). The boundary is split for flat
- *     tetrahedra only if their points are all given or few are left, and beside slivers that nothing
- *     else helps.
+ *  4. if little is requested any more: points of slivers are moved, taken out or added, first those
+ *     inside. Then new and free points of the surface are moved within their facets and along their edges,
+ *     where that makes the smallest angle larger (SurfacePointMoves.h), and what has been moved is
+ *     tetrahedralized anew. Before that, where tetrahedra are flat because points lie on a circle but
+ *     for rounding, such points are rounded in another way (PointRounding.h). The boundary is split for
+ *     slivers that nothing else helps, and for flat tetrahedra only if their points are all given or
+ *     few are left.
  * It ends when a round requests nothing, or nothing that can be done.
  *
  * Guarantees: the mesh is Delaunay by the pulling rule and conforms to the same surface; facets on
- * it fulfil criterion 3.1 at least. Points of the surface, and those inside that are not free, keep
- * their coordinates. Deterministic, whatever the number of threads. Tetrahedra across thin layers
+ * it fulfil criterion 3.1 at least. Points of the mesh that are not free keep their coordinates;
+ * those of the surface that are stay in their facets and on their edges. Deterministic, whatever the number of threads. Tetrahedra across thin layers
  * (ThinLayers.h) and across sharp angles (SharpAngles.h), which would be refined for ever, are not
  * refined for their shape: Faults tells which tetrahedra miss what was asked for, the report counts them.
  * Failure: InvalidInput names tetrahedra without a region, inverted or flat ones, triangles that are
@@ -76,8 +78,13 @@ struct SteinerPointRefinerInput
   const TriangleMesh* Boundary = nullptr;
   /** Edges longer than the sizing are too long. May be empty. */
   SizingField Sizing;
-  /** Empty, or one for each point of the mesh: whether it may be moved and removed if inside. */
+  /**
+   * Empty, or one for each point of the mesh: whether it may be moved and removed if inside, or moved
+   * in its facet or along its edge if on the surface.
+   */
   std::vector<char> IsFree;
+  /** Whether all points inside may be moved and removed. */
+  bool AreInteriorPointsFree = false;
   /** Empty, or one for each point of the mesh: whether it is to be taken out if inside. */
   std::vector<char> IsRemoved;
   /** Points to be put in; those outside of all regions or on the boundary are left out. */
@@ -121,7 +128,7 @@ struct SteinerPointRefinerOutput
   TetMesh Mesh;
   /** Input point of each point; NoId for new and moved ones. */
   std::vector<Id> PointSources;
-  /** One for each point: whether it is inside and may be moved or removed later on. */
+  /** One for each point, as in the input: those that were free, and those made here. */
   std::vector<char> IsFree;
   /**
    * The refined boundary, on the points of the mesh, with labels. SourceCells: triangles of the

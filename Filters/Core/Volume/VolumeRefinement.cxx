@@ -3,6 +3,7 @@
 
 #include "Core/Geometry/Measures.h"
 #include "Core/Search/PlaceSearch.h"
+#include "Core/Volume/SurfacePointMoves.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,15 +41,15 @@ void SliverMemory::SetChanged(const TetrahedronIds& names)
   }
 }
 
-void SliverMemory::SetHopeless(const TetrahedronIds& names, bool hasTriedInsertion)
+void SliverMemory::SetHopeless(const TetrahedronIds& names, SliverAttempt last)
 {
-  this->Failures[names] = { this->Time, hasTriedInsertion };
+  this->Failures[names] = { this->Time, last };
 }
 
-bool SliverMemory::IsHopeless(const TetrahedronIds& names, bool mayInsert) const
+bool SliverMemory::IsHopeless(const TetrahedronIds& names, SliverAttempt last) const
 {
   const auto failure = this->Failures.find(names);
-  return failure != this->Failures.end() && (failure->second.HasTriedInsertion || !mayInsert) &&
+  return failure != this->Failures.end() && failure->second.Last >= last &&
     std::none_of(names.begin(), names.end(),
       [&](Id name)
       {
@@ -296,12 +297,12 @@ void VolumeRefinement::NoteChanges()
   }
 }
 
-void VolumeRefinement::NoteNewPoints(Id first)
+void VolumeRefinement::NoteNewPoints(const std::vector<char>& isNew)
 {
   for (const TetrahedronIds& ids : this->GetMesh().Tetrahedra)
   {
     if (std::any_of(ids.begin(), ids.end(),
-          [&](Id id) { return id >= first && id < this->NumberOfSurfacePoints; }))
+          [&](Id id) { return id < this->NumberOfSurfacePoints && isNew[id] != 0; }))
     {
       this->Memory.SetChanged(this->GetNames(ids));
     }
@@ -689,7 +690,8 @@ bool VolumeRefinement::InsertBest(Id tetrahedron, double target)
   };
   Place best{ center, this->GetAngle(tetrahedron) + SmallestGain, false };
   TryPlace(center, rate, best);
-  SearchPlace(center, FirstInsertion * Distance(center, vertices[0]), target, rate, best);
+  SearchPlace(center, FirstInsertion * Distance(center, vertices[0]), MakeCubeDirections(), target,
+    rate, best);
   if (!best.IsFound || !this->Mesh.FindHole(best.Position, number, tetrahedron, this->Hole))
   {
     return false;
@@ -735,35 +737,96 @@ bool VolumeRefinement::Mend(
   return left == NoId || (mayInsert && this->InsertBest(left, target));
 }
 
-Status VolumeRefinement::PerturbSlivers(
-  double target, SliverMeans means, Id numberOfFixedPoints, const ExecutionContext& context)
+std::vector<VolumeRefinement::Sliver> VolumeRefinement::FindSlivers(double target) const
+{
+  std::vector<Sliver> slivers;
+  for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
+  {
+    const double angle = this->Mesh.IsDead(t) ? 180.0 : this->GetAngle(t);
+    if (angle < target &&
+      !this->Layers.IsAcross(this->GetMesh().Tetrahedra[t], this->GetMesh().Regions[t]))
+    {
+      slivers.push_back({ angle, t, this->Mesh.GetStamp(t) });
+    }
+  }
+  std::sort(slivers.begin(), slivers.end(),
+    [](const Sliver& a, const Sliver& b)
+    { return a.Angle != b.Angle ? a.Angle < b.Angle : a.Tetrahedron < b.Tetrahedron; });
+  return slivers;
+}
+
+std::size_t VolumeRefinement::CountSlivers(double target) const
+{
+  const std::vector<Sliver> slivers = this->FindSlivers(target);
+  return static_cast<std::size_t>(std::count_if(slivers.begin(), slivers.end(),
+    [this](const Sliver& sliver)
+    { return !this->Sharp.IsAcross(this->GetMesh().Tetrahedra[sliver.Tetrahedron]); }));
+}
+
+void VolumeRefinement::FindSurfaceMoves(
+  double target, const std::vector<char>& isFree, bool areEdgesKept, std::vector<Vec3>& places)
+{
+  SurfacePointMoves::Rules rules;
+  rules.HasAngle = [this](const TetrahedronIds& ids, Id region)
+  { return !this->Layers.IsAcross(ids, region) && !this->Sharp.IsAcross(ids); };
+  rules.BreaksLimit = [this](const TetrahedronIds& ids, const std::array<Vec3, 4>& vertices)
+  { return this->BreaksLimit(ids, vertices); };
+  rules.GetClearance = [this](Id point) { return SizeRatio * this->Points[point].Size; };
+  rules.DoEdgesCount = areEdgesKept;
+  SurfacePointMoves moves(this->Mesh, this->Surface, this->PointTriangles, this->Edges, rules);
+
+  std::vector<char> isTouched(this->Points.size(), 0);
+  for (const Sliver& sliver : this->FindSlivers(target))
+  {
+    const TetrahedronIds ids = this->GetMesh().Tetrahedra[sliver.Tetrahedron];
+    const TetrahedronIds names = this->GetNames(ids);
+    if (this->Sharp.IsAcross(ids) || this->Memory.IsHopeless(names, SliverAttempt::SurfaceMove))
+    {
+      continue;
+    }
+    const auto isAnyTouched = [&](const auto& points)
+    { return std::any_of(points.begin(), points.end(), [&](Id p) { return isTouched[p] != 0; }); };
+    bool isMended = false;
+    bool isPutOff = isAnyTouched(ids);
+    for (std::size_t i = 0; i < ids.size() && !isMended && !isPutOff; ++i)
+    {
+      Vec3 place;
+      if (ids[i] >= this->NumberOfSurfacePoints || !isFree[ids[i]] ||
+        !moves.Find(ids[i], ids, MoveRatio * target, place))
+      {
+        continue;
+      }
+      const std::vector<Id>& touched = moves.GetTouched();
+      isPutOff = isAnyTouched(touched);
+      if (isPutOff)
+      {
+        break;
+      }
+      for (Id point : touched)
+      {
+        isTouched[point] = 1;
+      }
+      places[ids[i]] = place;
+      isMended = true;
+    }
+    if (!isMended && !isPutOff)
+    {
+      this->Memory.SetHopeless(names, SliverAttempt::SurfaceMove);
+    }
+  }
+}
+
+Status VolumeRefinement::PerturbSlivers(double target, SliverMeans means,
+  const std::vector<char>& isFree, const ExecutionContext& context)
 {
   this->Means = means;
-  struct Sliver
-  {
-    double Angle;
-    Id Tetrahedron;
-    Id Stamp;
-  };
   // First moves, then new points as well; when neither helps any more, requests.
   bool mayInsert = false;
   bool isLast = false;
   std::vector<TetrahedronIds> unmet;
   for (int pass = 0; pass < MaximumPasses; ++pass)
   {
-    std::vector<Sliver> slivers;
-    for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
-    {
-      const double angle = this->Mesh.IsDead(t) ? 180.0 : this->GetAngle(t);
-      if (angle < MoveRatio * target &&
-        !this->Layers.IsAcross(this->GetMesh().Tetrahedra[t], this->GetMesh().Regions[t]))
-      {
-        slivers.push_back({ angle, t, this->Mesh.GetStamp(t) });
-      }
-    }
-    std::sort(slivers.begin(), slivers.end(),
-      [](const Sliver& a, const Sliver& b)
-      { return a.Angle != b.Angle ? a.Angle < b.Angle : a.Tetrahedron < b.Tetrahedron; });
+    const std::vector<Sliver> slivers = this->FindSlivers(MoveRatio * target);
     bool isMended = false;
     for (std::size_t i = 0; i < slivers.size(); ++i)
     {
@@ -783,17 +846,21 @@ Status VolumeRefinement::PerturbSlivers(
       Id left = NoId;
       const bool isBad = sliver.Angle < target && !this->Sharp.IsAcross(ids);
       const bool mayRequest = means == SliverMeans::Requests &&
-        (!this->IsFlat(sliver.Tetrahedron) ||
-          *std::max_element(ids.begin(), ids.end()) < numberOfFixedPoints);
-      const bool isHopeless = this->Memory.IsHopeless(names, isBad && mayInsert);
-      if (!isHopeless &&
-        this->Mend(
-          ids, sliver.Tetrahedron, sliver.Stamp, MoveRatio * target, isBad && mayInsert, left))
+        (isFree.empty() || !this->IsFlat(sliver.Tetrahedron) ||
+          std::none_of(ids.begin(), ids.end(),
+            [&](Id id) { return id >= this->NumberOfSurfacePoints || isFree[id] != 0; }));
+      const SliverAttempt last =
+        isBad && mayInsert ? SliverAttempt::Insertion : SliverAttempt::Move;
+      if (!this->Memory.IsHopeless(names, last))
       {
-        isMended = isMended || isBad;
-        continue;
+        if (this->Mend(ids, sliver.Tetrahedron, sliver.Stamp, MoveRatio * target,
+              last == SliverAttempt::Insertion, left))
+        {
+          isMended = isMended || isBad;
+          continue;
+        }
+        this->Memory.SetHopeless(names, last);
       }
-      this->Memory.SetHopeless(names, isBad && mayInsert);
       if (isBad && isLast && mayRequest)
       {
         unmet.push_back(ids);

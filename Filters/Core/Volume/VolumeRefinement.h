@@ -61,6 +61,17 @@ struct InteriorPoint
   Id Name = NoId;
 };
 
+/** What is tried for a sliver, in this order. */
+enum class SliverAttempt
+{
+  /** To move or take out one of its free points inside. */
+  Move,
+  /** To put in a point. */
+  Insertion,
+  /** To move one of its points on the surface. */
+  SurfaceMove
+};
+
 /** What has been tried in vain, so that it is not tried again before something has changed there. */
 class SliverMemory
 {
@@ -72,15 +83,15 @@ public:
 
   /** That the points of a tetrahedron have got other neighbors. */
   void SetChanged(const TetrahedronIds& names);
-  /** That nothing helps the tetrahedron, or nothing but a new point. */
-  void SetHopeless(const TetrahedronIds& names, bool hasTriedInsertion);
-  bool IsHopeless(const TetrahedronIds& names, bool mayInsert) const;
+  /** That nothing up to this has helped the tetrahedron. */
+  void SetHopeless(const TetrahedronIds& names, SliverAttempt last);
+  bool IsHopeless(const TetrahedronIds& names, SliverAttempt last) const;
 
 private:
   struct Failure
   {
     std::int64_t Time = 0;
-    bool HasTriedInsertion = false;
+    SliverAttempt Last = SliverAttempt::Move;
   };
   Id NextName = FirstName;
   std::int64_t Time = 0;
@@ -122,8 +133,8 @@ public:
     const std::vector<InteriorPoint>& interior, const TetrahedronLimits& limits,
     Id maximumNewPoints, SliverMemory& memory);
 
-  /** That the points of the surface from this one on have not been there before. */
-  void NoteNewPoints(Id first);
+  /** One for each point of the surface: whether it has not been there, or has been elsewhere. */
+  void NoteNewPoints(const std::vector<char>& isNew);
   /** As InteriorPoint::Size, one for each point of the mesh. */
   void SetSizes(const std::vector<double>& sizes);
   /** Free points closer to another one than this, or than 0.3 of the sizing, which may be empty. */
@@ -132,11 +143,24 @@ public:
   Status RefineByLimits(bool isShapeTested, const ExecutionContext& context);
   /**
    * Until nothing of what may be done makes angles below the target (degrees) larger.
-   * @param numberOfFixedPoints of the surface, which come first; the boundary is split for a
-   *   tetrahedron that is flat by rounding only if its points are all among them
+   * @param isFree one for each point of the surface, or empty if none is; the boundary is not split
+   *   for a tetrahedron that is flat by rounding if one of its points is
    */
-  Status PerturbSlivers(
-    double target, SliverMeans means, Id numberOfFixedPoints, const ExecutionContext& context);
+  Status PerturbSlivers(double target, SliverMeans means, const std::vector<char>& isFree,
+    const ExecutionContext& context);
+
+  /** Tetrahedra with a smaller angle, but for those across thin layers and sharp angles. */
+  std::size_t CountSlivers(double target) const;
+
+  /**
+   * Better places for points of the surface that are corners of slivers, no two of them next to each
+   * other. The mesh stays as it is: it has to be made anew of the points.
+   * @param isFree one for each point of the surface, whether it may be moved
+   * @param areEdgesKept whether smallest spheres of structural edges stay empty, too
+   * @param places of the surface's points
+   */
+  void FindSurfaceMoves(
+    double target, const std::vector<char>& isFree, bool areEdgesKept, std::vector<Vec3>& places);
 
   /** What is to be split in the boundary. */
   const std::vector<Id>& GetRequestedTriangles() const { return this->RequestedTriangles; }
@@ -196,6 +220,14 @@ private:
   bool RequestEdge(Id edge, bool isSizeKept);
   template <typename Ids>
   bool KeepsSizes(double distance, const Ids& ids) const;
+  struct Sliver
+  {
+    double Angle;
+    Id Tetrahedron;
+    Id Stamp;
+  };
+  /** Worst first; without those across thin layers. */
+  std::vector<Sliver> FindSlivers(double target) const;
   bool Mend(
     const TetrahedronIds& ids, Id tetrahedron, Id stamp, double target, bool mayInsert, Id& left);
 
