@@ -291,34 +291,48 @@ bool DynamicTetrahedralization::Remove(Id point)
   {
     return false;
   }
+  this->Refill(this->Star, hole.Outer, this->Filling.GetCells());
+  this->PointTetrahedra[point] = NoId;
+  hole.Tetrahedra = this->Changed;
+  return true;
+}
 
-  for (auto t = this->Star.rbegin(); t != this->Star.rend(); ++t)
+void DynamicTetrahedralization::Refill(const std::vector<Id>& tetrahedra,
+  const std::vector<Id>& outer, const std::vector<CavityFilling::Cell>& cells)
+{
+  for (auto t = tetrahedra.rbegin(); t != tetrahedra.rend(); ++t)
   {
     this->Kill(*t);
   }
   this->Changed.clear();
-  for (const CavityFilling::Cell& cell : this->Filling.GetCells())
+  for (const CavityFilling::Cell& cell : cells)
   {
-    this->Make(cell.Ids, region);
+    this->Make(cell.Ids, cell.Region);
   }
   for (std::size_t k = 0; k < this->Changed.size(); ++k)
   {
     const Id made = this->Changed[k];
     for (int i = 0; i < 4; ++i)
     {
-      const Id neighbor = this->Filling.GetCells()[k].Neighbors[i];
-      const Id facet = CavityFilling::GetBorderFacet(neighbor);
-      const Id outer =
-        facet >= 0 ? hole.Outer[facet] : 4 * this->Changed[neighbor / 4] + neighbor % 4;
-      this->Mesh.Neighbors[made][i] = outer;
-      if (facet >= 0 && outer != NoId)
+      const Id inner = cells[k].Neighbors[i];
+      const Id facet = CavityFilling::GetBorderFacet(inner);
+      Id& neighbor = this->Mesh.Neighbors[made][i];
+      neighbor = facet >= 0 ? outer[facet]
+        : inner == NoId     ? NoId
+                            : 4 * this->Changed[inner / 4] + inner % 4;
+      if (facet >= 0 && neighbor != NoId)
       {
-        this->Mesh.Neighbors[outer / 4][outer % 4] = 4 * made + i;
+        this->Mesh.Neighbors[neighbor / 4][neighbor % 4] = 4 * made + i;
       }
     }
   }
-  this->PointTetrahedra[point] = NoId;
-  hole.Tetrahedra = this->Changed;
-  return true;
+}
+
+void DynamicTetrahedralization::Move(Id point, const Vec3& position,
+  const std::vector<Id>& tetrahedra, const std::vector<Id>& outer,
+  const std::vector<CavityFilling::Cell>& cells)
+{
+  this->Mesh.Points[point] = position;
+  this->Refill(tetrahedra, outer, cells);
 }
 } // namespace cdm

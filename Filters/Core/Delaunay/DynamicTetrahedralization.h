@@ -18,7 +18,8 @@
  * Requires: a Delaunay mesh with the invariants of TetMesh.h. Where a hole ends at an outer facet, the
  * smallest sphere of that has to be empty (Crit. 3.1), also of the point: then nothing beyond it,
  * which the mesh does not have, is in conflict with a point on this side.
- * Guarantees: these invariants; only points inside of a region are inserted, removed or moved.
+ * Guarantees: these invariants; only points inside of a region are inserted, removed or moved, but
+ * for Move(), whose caller has to know that the cells fit.
  * Cost: microseconds for an insertion, a few hundred for a removal; 44 bytes per tetrahedron and 32
  * per point beside the mesh.
  *
@@ -93,6 +94,14 @@ public:
   /** The hole that undoes the last removal, as long as nothing else has been changed. */
   const Hole& GetRemovedStar() const { return this->RemovedStar; }
 
+  /**
+   * Moves a point of a boundary, and puts cells in the place of all tetrahedra that this changes.
+   * @param outer one for each facet of the border that the cells were found in: the facet id of the
+   *   tetrahedron beyond, NoId at the outer boundary
+   */
+  void Move(Id point, const Vec3& position, const std::vector<Id>& tetrahedra,
+    const std::vector<Id>& outer, const std::vector<CavityFilling::Cell>& cells);
+
   /** The tetrahedra made by the last change. */
   const std::vector<Id>& GetChanged() const { return this->Changed; }
 
@@ -101,6 +110,8 @@ private:
   Id Make(const TetrahedronIds& ids, Id region);
   void Kill(Id tetrahedron);
   void Fill(Id point, const Hole& hole);
+  void Refill(const std::vector<Id>& tetrahedra, const std::vector<Id>& outer,
+    const std::vector<CavityFilling::Cell>& cells);
   /** Stamp of a new search; marks of older ones do not count. */
   std::uint32_t StartSearch();
 

@@ -548,10 +548,8 @@ bool Refiner::MoveSurfacePoints()
     this->FewestSlivers = std::numeric_limits<std::size_t>::max();
     return false;
   }
-  std::vector<Vec3> places = this->Surface.Points;
-  this->Round->FindSurfaceMoves(this->Options.DihedralAngleTarget, this->IsSurfaceFree,
-    this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges, places);
-  return this->MoveSurface(places);
+  return this->MoveSurface(this->Round->MoveSurfacePoints(this->Options.DihedralAngleTarget,
+    this->IsSurfaceFree, this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges));
 }
 
 /** False if all points stay where they are. */
@@ -709,7 +707,11 @@ Status Refiner::Run()
           if (status.IsOk() && !isFull && sliverRounds < MaximumSliverRounds)
           {
             areMoved = this->MoveSurfacePoints();
-            status = areMoved ? status : this->PerturbSlivers(SliverMeans::Requests);
+            // Splits for shapes do away with slivers, too.
+            if (!areMoved && (this->IsStuck || this->CountRequests() == 0))
+            {
+              status = this->PerturbSlivers(SliverMeans::Requests);
+            }
           }
           status = status.IsOk() && !areMoved ? this->RefineRound(true) : status;
         }

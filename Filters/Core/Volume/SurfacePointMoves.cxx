@@ -72,11 +72,10 @@ Vec3 Project(const Vec3& position, const Vec3& origin, const Vec3& axis, bool is
 }
 } // namespace
 
-SurfacePointMoves::SurfacePointMoves(const DynamicTetrahedralization& mesh,
-  const TriangleMesh& surface, const IdLists& pointTriangles,
-  const std::vector<StructuralEdge>& edges, Rules rules)
-  : Mesh(mesh), Surface(surface), PointTriangles(pointTriangles), Edges(edges),
-    Given(std::move(rules))
+SurfacePointMoves::SurfacePointMoves(DynamicTetrahedralization& mesh, const TriangleMesh& surface,
+  const IdLists& pointTriangles, const std::vector<StructuralEdge>& edges, Rules rules)
+  : Mesh(mesh), Surface(surface), Points(surface.Points), PointTriangles(pointTriangles),
+    Edges(edges), Given(std::move(rules))
 {
   Box box;
   for (const Vec3& point : surface.Points)
@@ -110,7 +109,7 @@ std::vector<Id> SurfacePointMoves::FindEdgeEnds(Id point) const
 /** Whether triangles at a point that are connected across its smooth edges lie in one plane. */
 bool SurfacePointMoves::ArePlanar(Id point, const std::vector<Id>& ends) const
 {
-  const std::vector<Vec3>& points = this->Surface.Points;
+  const std::vector<Vec3>& points = this->Points;
   for (Id t : this->PointTriangles[point])
   {
     const TriangleIds& ids = this->Surface.Triangles[t];
@@ -141,12 +140,12 @@ bool SurfacePointMoves::ArePlanar(Id point, const std::vector<Id>& ends) const
 bool SurfacePointMoves::FindSupport(Id point, Support& support) const
 {
   const std::vector<Id>& ends = this->EdgeEnds;
-  const Vec3& origin = this->Surface.Points[point];
+  const Vec3& origin = this->Points[point];
   support.IsLine = ends.size() == 2;
   if (support.IsLine)
   {
-    const Vec3 u = this->Surface.Points[ends[0]] - origin;
-    const Vec3 v = this->Surface.Points[ends[1]] - origin;
+    const Vec3 u = this->Points[ends[0]] - origin;
+    const Vec3 v = this->Points[ends[1]] - origin;
     if (Dot(u, v) > 0.0 || Norm(Cross(u, v)) > LineAngle * Norm(u) * Norm(v))
     {
       return false;
@@ -159,8 +158,8 @@ bool SurfacePointMoves::FindSupport(Id point, Support& support) const
     for (Id t : this->PointTriangles[point])
     {
       const TriangleIds& ids = this->Surface.Triangles[t];
-      const Vec3 normal = Cross(this->Surface.Points[ids[1]] - this->Surface.Points[ids[0]],
-        this->Surface.Points[ids[2]] - this->Surface.Points[ids[0]]);
+      const Vec3 normal = Cross(
+        this->Points[ids[1]] - this->Points[ids[0]], this->Points[ids[2]] - this->Points[ids[0]]);
       if (Norm(normal) > largest)
       {
         largest = Norm(normal);
@@ -231,11 +230,11 @@ bool SurfacePointMoves::KeepsTurns(Id point, const Vec3& position) const
       std::array<Vec3, 3> v;
       for (int i = 0; i < 3; ++i)
       {
-        v[i] = ids[i] == point ? moved : this->Surface.Points[ids[i]];
+        v[i] = ids[i] == point ? moved : this->Points[ids[i]];
       }
       return Cross(v[1] - v[0], v[2] - v[0]);
     };
-    return Dot(getNormal(this->Surface.Points[point]), getNormal(position)) > 0.0;
+    return Dot(getNormal(this->Points[point]), getNormal(position)) > 0.0;
   };
   const IdLists::Range triangles = this->PointTriangles[point];
   return std::all_of(triangles.begin(), triangles.end(), isKept);
@@ -243,7 +242,7 @@ bool SurfacePointMoves::KeepsTurns(Id point, const Vec3& position) const
 
 bool SurfacePointMoves::IsTriangle(const TriangleIds& ids) const
 {
-  const Id count = static_cast<Id>(this->Surface.Points.size());
+  const Id count = static_cast<Id>(this->Points.size());
   if (std::max({ ids[0], ids[1], ids[2] }) >= count)
   {
     return false;
@@ -289,6 +288,7 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
 
   Cavity& cavity = this->Around;
   cavity = Cavity();
+  this->Outer.clear();
   const auto isAtPoint = [&](const TriangleIds& ids)
   { return std::find(ids.begin(), ids.end(), point) != ids.end(); };
   for (Id t : this->Tetrahedra)
@@ -304,6 +304,7 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
       {
         cavity.Border.push_back({ facet[0], facet[2], facet[1] });
         cavity.Regions.push_back(mesh.Regions[t]);
+        this->Outer.push_back(neighbor);
       }
       else if ((!isInside || neighbor / 4 > t) && this->IsTriangle(facet))
       {
@@ -329,7 +330,7 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
 /** Of the triangles at the cavity and, where they count, of its structural edges. */
 bool SurfacePointMoves::AreSpheresEmpty(Id point, const Vec3& position) const
 {
-  const auto getPoint = [&](Id id) { return id == point ? position : this->Surface.Points[id]; };
+  const auto getPoint = [&](Id id) { return id == point ? position : this->Points[id]; };
   const auto isEmpty = [&](const auto& ids, const auto& isInside)
   {
     if (std::find(ids.begin(), ids.end(), point) == ids.end())
@@ -427,7 +428,7 @@ double SurfacePointMoves::Rate(Id point, const Vec3& position, double required)
   return broken > 0 ? 0.0 : smallest;
 }
 
-bool SurfacePointMoves::Find(Id point, const TetrahedronIds& sliver, double target, Vec3& place)
+bool SurfacePointMoves::Move(Id point, const TetrahedronIds& sliver, double target)
 {
   Support support;
   this->EdgeEnds = this->FindEdgeEnds(point);
@@ -437,17 +438,10 @@ bool SurfacePointMoves::Find(Id point, const TetrahedronIds& sliver, double targ
   }
   this->CollectStar(point);
   double nearest = 0.0;
-  const Vec3& old = this->Surface.Points[point];
+  const Vec3& old = this->Points[point];
   Place best{ old, this->MeasureStar(point, nearest) + SmallestGain, false };
   const auto rate = [&](const Vec3& position, double required)
-  {
-    const double angle = this->Rate(point, position, required);
-    if (angle > required)
-    {
-      this->Touched = this->Around.Numbers;
-    }
-    return angle;
-  };
+  { return this->Rate(point, position, required); };
   for (Id other : sliver)
   {
     if (other != point)
@@ -456,7 +450,15 @@ bool SurfacePointMoves::Find(Id point, const TetrahedronIds& sliver, double targ
     }
   }
   SearchPlace(old, FirstMove * nearest, support.Directions, target, rate, best);
-  place = best.Position;
-  return best.IsFound;
+  if (!best.IsFound)
+  {
+    return false;
+  }
+  // The place that was tried last need not be the best one.
+  this->CollectCavity(point, best.Position);
+  this->Filling.Run(this->Around);
+  this->Mesh.Move(point, best.Position, this->Tetrahedra, this->Outer, this->Filling.GetCells());
+  this->Points[point] = best.Position;
+  return true;
 }
 } // namespace cdm

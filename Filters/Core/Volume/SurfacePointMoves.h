@@ -14,8 +14,8 @@
  * triangle is not there, if the smallest sphere of a triangle, or of an edge where these count, is not
  * empty, if the point comes too close to others, or if more tetrahedra than before break a limit.
  *
- * Nothing is changed here. What lies beyond outer facets is not looked at: the surface has to be
- * checked again with the new places (DelaunaySurfaceRefiner.h).
+ * What lies beyond outer facets is not looked at: the surface has to be checked again with the new places
+ * (DelaunaySurfaceRefiner.h).
  *
  * Floating point, but for the cavity. Deterministic. Cost: about 200 microseconds for each place tried.
  */
@@ -49,16 +49,16 @@ public:
   };
 
   /** The mesh has the surface's points first. All have to outlive the object. */
-  SurfacePointMoves(const DynamicTetrahedralization& mesh, const TriangleMesh& surface,
+  SurfacePointMoves(DynamicTetrahedralization& mesh, const TriangleMesh& surface,
     const IdLists& pointTriangles, const std::vector<StructuralEdge>& edges, Rules rules);
 
   /**
-   * The best place for a point of a tetrahedron; false if none makes the smallest angle larger.
+   * Moves a point of a tetrahedron to the best place; false if none makes the smallest angle larger.
    * @param target degrees that are enough
    */
-  bool Find(Id point, const TetrahedronIds& sliver, double target, Vec3& place);
-  /** The points whose tetrahedra the last place that was found would change. */
-  const std::vector<Id>& GetTouched() const { return this->Touched; }
+  bool Move(Id point, const TetrahedronIds& sliver, double target);
+  /** Where the surface's points are now; the surface itself stays as it is. */
+  const std::vector<Vec3>& GetPoints() const { return this->Points; }
 
 private:
   /** Where a point may go: along directions in a plane with a normal, or on a line. */
@@ -79,8 +79,9 @@ private:
   bool IsTriangle(const TriangleIds& ids) const;
   bool AreSpheresEmpty(Id point, const Vec3& position) const;
 
-  const DynamicTetrahedralization& Mesh;
+  DynamicTetrahedralization& Mesh;
   const TriangleMesh& Surface;
+  std::vector<Vec3> Points;
   const IdLists& PointTriangles;
   const std::vector<StructuralEdge>& Edges;
   const Rules Given;
@@ -89,10 +90,10 @@ private:
   /** Tetrahedra at the point that is moved, and other ends of its structural edges. */
   std::vector<Id> Star;
   std::vector<Id> EdgeEnds;
-  std::vector<Id> Touched;
-  /** Work space of one place. */
+  /** Work space of one place: the tetrahedra that it changes, and facets around these. */
   std::vector<Id> Tetrahedra;
   Cavity Around;
+  std::vector<Id> Outer;
   CavityFilling Filling;
 };
 } // namespace cdm

@@ -763,8 +763,8 @@ std::size_t VolumeRefinement::CountSlivers(double target) const
     { return !this->Sharp.IsAcross(this->GetMesh().Tetrahedra[sliver.Tetrahedron]); }));
 }
 
-void VolumeRefinement::FindSurfaceMoves(
-  double target, const std::vector<char>& isFree, bool areEdgesKept, std::vector<Vec3>& places)
+std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(
+  double target, const std::vector<char>& isFree, bool areEdgesKept)
 {
   SurfacePointMoves::Rules rules;
   rules.HasAngle = [this](const TetrahedronIds& ids, Id region)
@@ -775,45 +775,40 @@ void VolumeRefinement::FindSurfaceMoves(
   rules.DoEdgesCount = areEdgesKept;
   SurfacePointMoves moves(this->Mesh, this->Surface, this->PointTriangles, this->Edges, rules);
 
-  std::vector<char> isTouched(this->Points.size(), 0);
-  for (const Sliver& sliver : this->FindSlivers(target))
+  bool isMended = true;
+  for (int pass = 0; pass < MaximumPasses && isMended; ++pass)
   {
-    const TetrahedronIds ids = this->GetMesh().Tetrahedra[sliver.Tetrahedron];
-    const TetrahedronIds names = this->GetNames(ids);
-    if (this->Sharp.IsAcross(ids) || this->Memory.IsHopeless(names, SliverAttempt::SurfaceMove))
+    isMended = false;
+    for (const Sliver& sliver : this->FindSlivers(target))
     {
-      continue;
-    }
-    const auto isAnyTouched = [&](const auto& points)
-    { return std::any_of(points.begin(), points.end(), [&](Id p) { return isTouched[p] != 0; }); };
-    bool isMended = false;
-    bool isPutOff = isAnyTouched(ids);
-    for (std::size_t i = 0; i < ids.size() && !isMended && !isPutOff; ++i)
-    {
-      Vec3 place;
-      if (ids[i] >= this->NumberOfSurfacePoints || !isFree[ids[i]] ||
-        !moves.Find(ids[i], ids, MoveRatio * target, place))
+      if (this->Mesh.GetStamp(sliver.Tetrahedron) != sliver.Stamp)
       {
         continue;
       }
-      const std::vector<Id>& touched = moves.GetTouched();
-      isPutOff = isAnyTouched(touched);
-      if (isPutOff)
+      const TetrahedronIds ids = this->GetMesh().Tetrahedra[sliver.Tetrahedron];
+      const TetrahedronIds names = this->GetNames(ids);
+      if (this->Sharp.IsAcross(ids) || this->Memory.IsHopeless(names, SliverAttempt::SurfaceMove))
       {
-        break;
+        continue;
       }
-      for (Id point : touched)
+      const bool isMoved = std::any_of(ids.begin(), ids.end(),
+        [&](Id id)
+        {
+          return id < this->NumberOfSurfacePoints && isFree[id] != 0 &&
+            moves.Move(id, ids, MoveRatio * target);
+        });
+      if (isMoved)
       {
-        isTouched[point] = 1;
+        this->NoteChanges();
+        isMended = true;
       }
-      places[ids[i]] = place;
-      isMended = true;
-    }
-    if (!isMended && !isPutOff)
-    {
-      this->Memory.SetHopeless(names, SliverAttempt::SurfaceMove);
+      else
+      {
+        this->Memory.SetHopeless(names, SliverAttempt::SurfaceMove);
+      }
     }
   }
+  return moves.GetPoints();
 }
 
 Status VolumeRefinement::PerturbSlivers(double target, SliverMeans means,

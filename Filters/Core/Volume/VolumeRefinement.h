@@ -153,14 +153,14 @@ public:
   std::size_t CountSlivers(double target) const;
 
   /**
-   * Better places for points of the surface that are corners of slivers, no two of them next to each
-   * other. The mesh stays as it is: it has to be made anew of the points.
+   * Moves points of the surface that are corners of slivers. The surface has to be checked, and the mesh to be
+   * made anew, before anything else is done.
    * @param isFree one for each point of the surface, whether it may be moved
    * @param areEdgesKept whether smallest spheres of structural edges stay empty, too
-   * @param places of the surface's points
+   * @return where the surface's points are now
    */
-  void FindSurfaceMoves(
-    double target, const std::vector<char>& isFree, bool areEdgesKept, std::vector<Vec3>& places);
+  std::vector<Vec3> MoveSurfacePoints(
+    double target, const std::vector<char>& isFree, bool areEdgesKept);
 
   /** What is to be split in the boundary. */
   const std::vector<Id>& GetRequestedTriangles() const { return this->RequestedTriangles; }
