@@ -120,6 +120,7 @@ int vtkSliverRemover::RequestData(
         {
           options.IsFree.assign(mesh.Points.size(), 1);
         }
+        options.AreBoundaryPointsFree = this->FreeBoundaryPoints;
         step = cdm::RemoveSlivers(mesh, options, vtkCoreBridge::MakeContext(this), report);
       }
       return step;
@@ -163,6 +164,7 @@ void vtkSliverRemover::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "DihedralAngleTarget: " << this->DihedralAngleTarget << "\n";
   os << indent << "FlatnessRatio: " << this->FlatnessRatio << "\n";
   os << indent << "FreeInteriorPoints: " << this->FreeInteriorPoints << "\n";
+  os << indent << "FreeBoundaryPoints: " << this->FreeBoundaryPoints << "\n";
   os << indent << "QualityBeforeDelaunay: " << this->QualityBeforeDelaunay << "\n";
   os << indent << "NumberOfPeeledTetrahedra: " << this->NumberOfPeeledTetrahedra << "\n";
   os << indent << "NumberOfFlips: " << this->NumberOfFlips << "\n";

@@ -9,7 +9,8 @@
  *  2. 2-3, 3-2 and 4-4 flips within exactly cospherical sets, where any tetrahedralization is
  *     Delaunay, as long as the smallest dihedral angle of the tetrahedra involved grows;
  *  3. free points of those that are left are moved, each with a local update of the Delaunay mesh,
- *     and only if the smallest dihedral angle around it grows.
+ *     and only if the smallest dihedral angle around it grows: those inside anywhere, those on the
+ *     boundary and on interfaces within their facet or along their structural edge.
  * With QualityBeforeDelaunay, 2. takes all flips that make the smallest dihedral angle larger, also
  * removals of edges with up to eight tetrahedra, and instead of 3. free points are moved within the
  * tetrahedra around them (smoothing), in turn with the flips. The mesh is then no longer Delaunay.
@@ -23,8 +24,8 @@
  * are those of the input, coordinates in double precision; at moved points point data but FreePoint
  * are interpolated in the input mesh (arrays of ids excepted: they are dropped if a point moves).
  *
- * Guarantees: no point is added or removed; those on the boundary and interfaces, and those inside
- * that are not free, keep their coordinates. No tetrahedron is inverted or flat. Unless
+ * Guarantees: no point is added or removed; those that are not free keep their coordinates, corners of the
+ * boundary always. No tetrahedron is inverted or flat. Unless
  * QualityBeforeDelaunay is on: a mesh that was Delaunay is so still, and boundary triangles that
  * fulfilled criterion 3.1 or 3.2 still do. Regions and boundaries keep their shape, but for what is
  * peeled off. Deterministic.
@@ -83,6 +84,17 @@ public:
 
   ///@{
   /**
+   * Whether points of the boundary and of interfaces may be moved, too, within the flat facet that they
+   * lie in or along their straight structural edge; corners stay. Not with quality before
+   * Delaunay. Default off.
+   */
+  vtkSetMacro(FreeBoundaryPoints, bool);
+  vtkGetMacro(FreeBoundaryPoints, bool);
+  vtkBooleanMacro(FreeBoundaryPoints, bool);
+  ///@}
+
+  ///@{
+  /**
    * Whether flips and smoothing may leave tetrahedra that are not Delaunay: for finite elements.
    * Control volumes and their coupling coefficients need a Delaunay mesh. Default off.
    */
@@ -110,6 +122,7 @@ protected:
   double DihedralAngleTarget = 15.0;
   double FlatnessRatio = 1e-9;
   bool FreeInteriorPoints = false;
+  bool FreeBoundaryPoints = false;
   bool QualityBeforeDelaunay = false;
 
   vtkIdType NumberOfPeeledTetrahedra = 0;

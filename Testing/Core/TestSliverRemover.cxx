@@ -3,6 +3,7 @@
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Meshes/MeshBoundary.h"
+#include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "Core/Volume/SliverRemover.h"
 #include "HullMeshes.h"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <random>
 
@@ -139,12 +141,14 @@ TetMesh MakeInterfaceSliver()
   return mesh;
 }
 /** All points are free; those of the boundary stay none the less. */
-SliverRemoverReport RemoveWithMoves(TetMesh& mesh, double target, bool isQualityFirst = false)
+SliverRemoverReport RemoveWithMoves(
+  TetMesh& mesh, double target, bool isQualityFirst = false, bool areBoundaryPointsFree = false)
 {
   SliverRemoverOptions options;
   options.DihedralAngleTarget = target;
   options.IsFree.assign(mesh.Points.size(), 1);
   options.QualityBeforeDelaunay = isQualityFirst;
+  options.AreBoundaryPointsFree = areBoundaryPointsFree;
   SliverRemoverReport report;
   const Status status = RemoveSlivers(mesh, options, {}, report);
   EXPECT_TRUE(status.IsOk()) << status.Message;
@@ -482,11 +486,12 @@ TEST(SliverRemover, SliversOfDisturbedGridsVanishByMoves)
 TEST(SliverRemover, MovesKeepAnyBoundaryAndTheDelaunayProperty)
 {
   std::array<Id, 2> moved{ 0, 0 };
-  for (unsigned int seed = 1; seed <= 4; ++seed)
+  for (unsigned int seed = 1; seed <= 8; ++seed)
   {
     // Whole coordinates: many cospherical sets, some of which have been flipped before.
     for (const bool isOnGrid : { false, true })
     {
+      const bool areAllFree = seed > 4;
       SCOPED_TRACE("seed " + std::to_string(seed) + (isOnGrid ? ", whole coordinates" : ""));
       std::mt19937 random(seed);
       TetMesh mesh = MakeRaggedMesh(random, 400, isOnGrid);
@@ -502,10 +507,12 @@ TEST(SliverRemover, MovesKeepAnyBoundaryAndTheDelaunayProperty)
       const std::vector<Vec3> points = mesh.Points;
 
       const double target = isOnGrid ? 25.0 : 15.0;
-      const SliverRemoverReport report = RemoveWithMoves(mesh, target);
+      const SliverRemoverReport report = RemoveWithMoves(mesh, target, false, areAllFree);
       moved[isOnGrid] += report.MovedPoints;
       EXPECT_EQ(0, report.PeeledTetrahedra);
-      const MeshCheckReport after = Check(mesh, &boundary);
+      const TriangleMesh now = ExtractBoundary(mesh);
+      const MeshCheckReport after = Check(mesh, areAllFree ? &now : &boundary);
+      EXPECT_EQ(boundary.Triangles.size(), now.Triangles.size());
       EXPECT_TRUE(after.IsValid()) << after.GetSummary();
       EXPECT_LE(after.SmallestSphereViolations, before.SmallestSphereViolations);
       EXPECT_LE(after.EdgeSphereViolations, before.EdgeSphereViolations);
@@ -514,11 +521,11 @@ TEST(SliverRemover, MovesKeepAnyBoundaryAndTheDelaunayProperty)
       const std::vector<char> isOnBoundary = FindBoundaryPoints(mesh, boundary);
       for (std::size_t p = 0; p < points.size(); ++p)
       {
-        EXPECT_TRUE(!isOnBoundary[p] || points[p] == mesh.Points[p]);
+        EXPECT_TRUE(!isOnBoundary[p] || areAllFree || points[p] == mesh.Points[p]);
       }
 
       // The same input gives the same mesh.
-      RemoveWithMoves(again, target);
+      RemoveWithMoves(again, target, false, areAllFree);
       EXPECT_EQ(again.Points, mesh.Points);
       EXPECT_EQ(again.Tetrahedra, mesh.Tetrahedra);
       EXPECT_EQ(again.Neighbors, mesh.Neighbors);
@@ -526,6 +533,91 @@ TEST(SliverRemover, MovesKeepAnyBoundaryAndTheDelaunayProperty)
   }
   EXPECT_GT(moved[0], 100);
   EXPECT_GT(moved[1], 10);
+}
+
+TEST(SliverRemover, PointsOfTheBoundaryAreMovedInTheirPlanesAndOnTheirLinesOnly)
+{
+  // Two layers of cubes, an interface between, whose points are off in their facets and on their edges.
+  constexpr int size = 2;
+  Id moved = 0;
+  std::ptrdiff_t slivers[2] = { 0, 0 };
+  for (unsigned int seed = 1; seed <= 40; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    TetMesh block = MakeGrid(size, Numbering::Parity);
+    const auto isFixed = [](double x) { return x == 0.0 || x == double(size); };
+    for (std::size_t t = 0; t < block.Tetrahedra.size(); ++t)
+    {
+      Vec3 center;
+      for (const Id id : block.Tetrahedra[t])
+      {
+        center = center + 0.25 * block.Points[id];
+      }
+      block.Regions[t] = center.Z < 0.5 * size ? 0 : 1;
+    }
+    TriangleMesh surface = ExtractBoundary(block);
+    RemoveUnusedPoints(surface);
+    for (Vec3& point : surface.Points)
+    {
+      const bool isInterface = point.Z == 0.5 * size;
+      for (int i = 0; i < 3; ++i)
+      {
+        const double draw = 0.25 * (double(random()) / 2147483648.0 - 1.0);
+        point[i] += isFixed(point[i]) || (i == 2 && isInterface) ? 0.0 : draw;
+      }
+    }
+    DelaunaySurfaceRefinerInput refinerInput;
+    refinerInput.Surface = &surface;
+    DelaunaySurfaceRefinerOptions refinerOptions;
+    refinerOptions.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
+    DelaunaySurfaceRefinerOutput refined;
+    ASSERT_TRUE(RefineDelaunaySurface(refinerInput, refinerOptions, {}, refined).IsOk());
+    AdvancingFrontTetrahedralizerInput input;
+    input.Surface = &refined.Surface;
+    AdvancingFrontTetrahedralizerOutput output;
+    ASSERT_TRUE(TetrahedralizeByAdvancingFront(input, {}, {}, output).IsOk());
+
+    const auto countSlivers = [](const TetMesh& mesh)
+    {
+      const std::vector<Vec3>& p = mesh.Points;
+      return std::count_if(mesh.Tetrahedra.begin(), mesh.Tetrahedra.end(),
+        [&](const TetrahedronIds& ids)
+        { return GetSmallestDihedralAngle(p[ids[0]], p[ids[1]], p[ids[2]], p[ids[3]]) < 15.0; });
+    };
+    TetMesh mesh = output.Mesh;
+    RemoveWithMoves(mesh, 15.0);
+    EXPECT_EQ(mesh.Points, output.Mesh.Points);
+    slivers[0] += countSlivers(mesh);
+    RemoveWithMoves(mesh, 15.0, false, true);
+    slivers[1] += countSlivers(mesh);
+
+    const TriangleMesh boundary = ExtractBoundary(mesh);
+    EXPECT_EQ(boundary.Triangles.size(), output.Boundary.Triangles.size());
+    const MeshCheckReport before = Check(output.Mesh, &output.Boundary);
+    const MeshCheckReport after = Check(mesh, &boundary);
+    EXPECT_TRUE(after.IsValid()) << after.GetSummary();
+    EXPECT_EQ(before.SmallestSphereViolations, 0);
+    EXPECT_EQ(after.SmallestSphereViolations, 0);
+    EXPECT_LE(after.EdgeSphereViolations, before.EdgeSphereViolations);
+    for (std::size_t i = 0; i < 2; ++i)
+    {
+      EXPECT_NEAR(before.Regions[i].Volume, after.Regions[i].Volume, 1e-12);
+    }
+    for (std::size_t p = 0; p < mesh.Points.size(); ++p)
+    {
+      const Vec3& old = output.Mesh.Points[p];
+      moved += mesh.Points[p] != old;
+      for (int i = 0; i < 3; ++i)
+      {
+        const bool isInterface = i == 2 && old.Z == 0.5 * size;
+        EXPECT_TRUE(mesh.Points[p][i] == old[i] || !(isFixed(old[i]) || isInterface));
+      }
+    }
+  }
+  std::printf("%td slivers, %td after %d moves\n", slivers[0], slivers[1], moved);
+  EXPECT_GT(moved, 20);
+  EXPECT_LT(slivers[1], slivers[0] / 2);
 }
 
 TEST(SliverRemover, OnlyFreePointsAreMoved)

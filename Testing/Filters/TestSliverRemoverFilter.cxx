@@ -3,6 +3,7 @@
 
 #include <vtkAdvancingFrontTetrahedralizer.h>
 #include <vtkBoundaryTriangulator.h>
+#include <vtkConformingDelaunayMesher.h>
 #include <vtkDelaunayMeshCriteria.h>
 #include <vtkDelaunaySurfaceRefiner.h>
 #include <vtkSliverRemover.h>
@@ -187,6 +188,59 @@ TEST(SliverRemoverFilter, MovesFreePoints)
       ASSERT_NE(faults, nullptr);
       EXPECT_EQ(faults->GetComponent(0, 0) > 0.0, isQualityFirst);
     }
+  }
+}
+
+TEST(SliverRemoverFilter, MovesBoundaryPointsInTheirFacets)
+{
+  // A plate without points inside: all tetrahedra have points of the boundary only.
+  SurfaceBuilder builder;
+  builder.AddBox({ 0, 0, 0 }, { 1, 1, 0.2 });
+  vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetInputData(builder.Build());
+  mesher->SetCriterionToSmallestSphereAndEdges();
+  mesher->SetMaximumEdgeLength(0.22);
+  mesher->RemoveSliversOff();
+  mesher->Update();
+  vtkUnstructuredGrid* input = mesher->GetOutput();
+
+  vtkNew<vtkSliverRemover> filter;
+  filter->SetInputData(input);
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfMovedPoints(), 0);
+  const double before = filter->GetSmallestDihedralAngleAfter();
+  filter->FreeBoundaryPointsOn();
+  filter->Update();
+  EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+  EXPECT_GT(filter->GetNumberOfMovedPoints(), 0);
+  EXPECT_GT(filter->GetSmallestDihedralAngleAfter(), before);
+  vtkUnstructuredGrid* output = filter->GetOutput();
+  ASSERT_EQ(output->GetNumberOfPoints(), input->GetNumberOfPoints());
+  EXPECT_NEAR(GetVolume(output, 0), 0.2, 1e-14);
+  ExpectLinear(output);
+  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
+  {
+    const double size[3] = { 1.0, 1.0, 0.2 };
+    double x[3];
+    double y[3];
+    input->GetPoint(i, x);
+    output->GetPoint(i, y);
+    for (int k = 0; k < 3; ++k)
+    {
+      EXPECT_TRUE(x[k] == y[k] || (x[k] != 0.0 && x[k] != size[k]));
+    }
+  }
+  vtkNew<vtkDelaunayMeshCriteria> criteria;
+  criteria->SetInputData(output);
+  criteria->Update();
+  for (const char* name : { "NonDelaunayTetrahedra", "FacetSphereViolations",
+         "EdgeSphereViolations", "NegativeCouplings" })
+  {
+    vtkDataArray* faults = criteria->GetOutput()->GetFieldData()->GetArray(name);
+    ASSERT_NE(faults, nullptr);
+    EXPECT_EQ(faults->GetComponent(0, 0), 0.0) << name;
   }
 }
 

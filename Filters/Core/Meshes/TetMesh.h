@@ -47,6 +47,9 @@ inline TriangleIds GetFacet(const TetrahedronIds& tetrahedron, int facet)
   return { tetrahedron[FacetVertices[facet][0]], tetrahedron[FacetVertices[facet][1]],
     tetrahedron[FacetVertices[facet][2]] };
 }
+
+/** Drops tetrahedra whose vertex 0 is NoId; the others keep their order. */
+void RemoveDeadTetrahedra(TetMesh& mesh);
 } // namespace cdm
 
 #endif

@@ -2,15 +2,12 @@
 #include "Core/Volume/SliverRemover.h"
 
 #include "Core/Basics/ParallelLoop.h"
-#include "Core/Basics/SortedIds.h"
 #include "Core/Certificate/MeshChecks.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
-#include "Core/Meshes/MeshBoundary.h"
 #include "Core/Search/PlaceSearch.h"
-#include "Core/Search/SphereCriteria.h"
 #include "Core/Surface/StructuralEdges.h"
-#include "Core/Volume/VolumeRefinement.h"
+#include "Core/Volume/SliverPointMoves.h"
 
 #include <algorithm>
 #include <array>
@@ -116,6 +113,7 @@ private:
   bool IsDead(Id tetrahedron) const { return this->Mesh.Tetrahedra[tetrahedron][0] == NoId; }
   const Vec3& GetPoint(Id point) const { return this->Mesh.Points[point]; }
   double MeasureAngle(const TetrahedronIds& ids) const;
+  void MeasureAngles();
   double MeasureSmallestAngle() const;
   void Schedule(Id tetrahedron);
   bool FindRing(Id tetrahedron, int edge, std::size_t maximumSize, Ring& ring) const;
@@ -145,9 +143,6 @@ private:
   bool Smooth(Id tetrahedron);
   bool PeelAndFlip(const ExecutionContext& context);
   bool HasMovableSlivers() const;
-  bool FindIntactBoundary(const ExecutionContext& context, const std::vector<Id>& sources,
-    TriangleMesh& surface, std::vector<StructuralEdge>& edges) const;
-  bool MovePoints(const ExecutionContext& context);
 
   TetMesh& Mesh;
   const SliverRemoverOptions& Options;
@@ -662,35 +657,16 @@ void Remover::Apply(const Flip& flip)
 /** Close the gaps that dead tetrahedra leave, without changing the order of the others. */
 void Remover::Compact()
 {
-  std::vector<Id> newIds(this->Mesh.Tetrahedra.size(), NoId);
-  Id count = 0;
-  for (Id tetrahedron = 0; tetrahedron < static_cast<Id>(newIds.size()); ++tetrahedron)
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < this->Angles.size(); ++t)
   {
-    if (this->IsDead(tetrahedron))
+    if (!this->IsDead(static_cast<Id>(t)))
     {
-      continue;
+      this->Angles[count++] = this->Angles[t];
     }
-    newIds[tetrahedron] = count;
-    this->Mesh.Tetrahedra[count] = this->Mesh.Tetrahedra[tetrahedron];
-    this->Mesh.Regions[count] = this->Mesh.Regions[tetrahedron];
-    this->Mesh.Neighbors[count] = this->Mesh.Neighbors[tetrahedron];
-    this->Angles[count] = this->Angles[tetrahedron];
-    ++count;
   }
-  this->Mesh.Tetrahedra.resize(count);
-  this->Mesh.Regions.resize(count);
-  this->Mesh.Neighbors.resize(count);
   this->Angles.resize(count);
-  for (TetrahedronIds& neighbors : this->Mesh.Neighbors)
-  {
-    for (Id& facet : neighbors)
-    {
-      if (facet != NoId)
-      {
-        facet = 4 * newIds[facet / 4] + facet % 4;
-      }
-    }
-  }
+  RemoveDeadTetrahedra(this->Mesh);
 }
 
 /** All tetrahedra at a point; false if it lies on a border. */
@@ -801,113 +777,13 @@ bool Remover::HasMovableSlivers() const
   {
     const TetrahedronIds& ids = this->Mesh.Tetrahedra[t];
     if (this->Angles[t] < this->Target &&
-      std::any_of(ids.begin(), ids.end(), [&](Id point) { return this->IsFree(point); }))
+      (this->Options.AreBoundaryPointsFree ||
+        std::any_of(ids.begin(), ids.end(), [&](Id point) { return this->IsFree(point); })))
     {
       return true;
     }
   }
   return false;
-}
-
-/**
- * Leave those triangles of the boundary, and find those edges, whose smallest spheres are empty of all
- * points. False if aborted.
- * @param sources the mesh's points of the boundary's
- */
-bool Remover::FindIntactBoundary(const ExecutionContext& context, const std::vector<Id>& sources,
-  TriangleMesh& surface, std::vector<StructuralEdge>& edges) const
-{
-  const SphereCriteria criteria(this->Mesh.Points);
-  std::vector<EdgeIds> all;
-  std::vector<TriangleIds> intact;
-  for (const TriangleIds& ids : surface.Triangles)
-  {
-    if (all.size() % ContinueInterval == 0 && !context.Continue(0.0, "Checking the boundary"))
-    {
-      return false;
-    }
-    if (criteria.HasEmptySmallestSphere(
-          TriangleIds{ sources[ids[0]], sources[ids[1]], sources[ids[2]] }))
-    {
-      intact.push_back(ids);
-    }
-    for (int i = 0; i < 3; ++i)
-    {
-      all.push_back({ std::min(ids[i], ids[(i + 1) % 3]), std::max(ids[i], ids[(i + 1) % 3]) });
-    }
-  }
-  surface.Triangles = std::move(intact);
-  SortUnique(all);
-  for (std::size_t e = 0; e < all.size(); ++e)
-  {
-    if (e % ContinueInterval == 0 && !context.Continue(0.5, "Checking the boundary"))
-    {
-      return false;
-    }
-    if (criteria.HasEmptySmallestSphere(EdgeIds{ sources[all[e][0]], sources[all[e][1]] }))
-    {
-      edges.emplace_back();
-      edges.back().Points = all[e];
-    }
-  }
-  return true;
-}
-
-/** Move free points, with the mesh around them made anew. False if aborted. */
-bool Remover::MovePoints(const ExecutionContext& context)
-{
-  TriangleMesh surface = ExtractBoundary(this->Mesh);
-  // The refinement wants the boundary's points first; points without tetrahedra are left out.
-  std::vector<Id> sources = RemoveUnusedPoints(surface);
-  std::vector<StructuralEdge> edges;
-  if (!this->FindIntactBoundary(context.Part(0.0, 0.1), sources, surface, edges))
-  {
-    return false;
-  }
-  TetMesh mesh = this->Mesh;
-  SliverMemory memory;
-  std::vector<InteriorPoint> interior;
-  for (const Id p : FindPointsInside(mesh, sources))
-  {
-    sources.push_back(p);
-    interior.push_back({ this->GetPoint(p), 0.0, this->IsFree(p), p, memory.MakeName() });
-  }
-  std::vector<Id> newIds(this->Mesh.Points.size(), NoId);
-  mesh.Points.clear();
-  for (const Id p : sources)
-  {
-    newIds[p] = static_cast<Id>(mesh.Points.size());
-    mesh.Points.push_back(this->GetPoint(p));
-  }
-  for (TetrahedronIds& ids : mesh.Tetrahedra)
-  {
-    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]], newIds[ids[3]] };
-  }
-
-  const TetrahedronLimits limits;
-  VolumeRefinement refinement(std::move(mesh), surface, edges, {}, interior, limits, 0, memory);
-  const Status status =
-    refinement.PerturbSlivers(this->Target, SliverMeans::Moves, {}, context.Part(0.1, 1.0));
-  const TetMesh& moved = refinement.GetMesh();
-  for (std::size_t i = 0; i < sources.size(); ++i)
-  {
-    this->Mesh.Points[sources[i]] = moved.Points[i];
-  }
-  this->Mesh.Tetrahedra = moved.Tetrahedra;
-  this->Mesh.Regions = moved.Regions;
-  this->Mesh.Neighbors = moved.Neighbors;
-  this->Angles.clear();
-  for (TetrahedronIds& ids : this->Mesh.Tetrahedra)
-  {
-    if (ids[0] != NoId)
-    {
-      ids = { sources[ids[0]], sources[ids[1]], sources[ids[2]], sources[ids[3]] };
-    }
-    this->Angles.push_back(ids[0] != NoId ? this->MeasureAngle(ids) : 180.0);
-  }
-  this->Compact();
-  this->Report.MovedPoints += refinement.GetReport().MovedPoints;
-  return status.IsOk();
 }
 
 /** Peel, flip and, if it need not stay Delaunay, smooth. False if aborted. */
@@ -955,11 +831,10 @@ bool Remover::PeelAndFlip(const ExecutionContext& context)
   return !isAborted;
 }
 
-Status Remover::Run(const ExecutionContext& context)
+void Remover::MeasureAngles()
 {
   const std::size_t count = this->Mesh.Tetrahedra.size();
   this->Angles.resize(count);
-  this->Stamps.assign(count, 0);
   ParallelLoop(count, { this->Options.NumberOfThreads }, {}, "",
     [this](std::size_t begin, std::size_t end, std::size_t)
     {
@@ -968,13 +843,24 @@ Status Remover::Run(const ExecutionContext& context)
         this->Angles[t] = this->MeasureAngle(this->Mesh.Tetrahedra[t]);
       }
     });
+}
+
+Status Remover::Run(const ExecutionContext& context)
+{
+  this->MeasureAngles();
+  this->Stamps.assign(this->Mesh.Tetrahedra.size(), 0);
   this->Report.SmallestDihedralAngleBefore = this->MeasureSmallestAngle();
-  const bool mayMove = !this->Options.IsFree.empty() && !this->Options.QualityBeforeDelaunay;
+  const bool mayMove = (!this->Options.IsFree.empty() || this->Options.AreBoundaryPointsFree) &&
+    !this->Options.QualityBeforeDelaunay;
   const double share = mayMove ? 0.2 : 1.0;
   bool isAborted = !this->PeelAndFlip(context.Part(0.0, share));
   if (mayMove && !isAborted && this->HasMovableSlivers())
   {
-    isAborted = !this->MovePoints(context.Part(share, 1.0));
+    const Status status =
+      MoveSliverPoints(this->Target, this->Options.IsFree, this->Options.AreBoundaryPointsFree,
+        context.Part(share, 1.0), this->Mesh, this->Report.MovedPoints);
+    isAborted = !status.IsOk();
+    this->MeasureAngles();
   }
   this->Report.SmallestDihedralAngleAfter = this->MeasureSmallestAngle();
   return isAborted ? Status::Aborted() : Status{};

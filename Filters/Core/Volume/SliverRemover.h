@@ -15,15 +15,17 @@
  *  3. one that is flat on an interface, like 1., is handed to the other region if a flip there
  *     makes it vanish;
  *  4. free points of those that are left are moved, with the Delaunay tetrahedra around them made
- *     anew (VolumeRefinement.h), so that the smallest dihedral angle of what is replaced grows; then
- *     also those of tetrahedra below 1.1 times the target, which leaves some room. Where cospherical
- *     sets are not split by the pulling rule, as after flips, points may have to stay.
+ *     anew, so that the smallest dihedral angle of what is replaced grows (SliverPointMoves.h); then
+ *     also those of tetrahedra below 1.1 times the target, which leaves some room. Points inside
+ *     go anywhere, those of the boundary and of interfaces along their facet or structural edge. Where
+ *     cospherical sets are not split by the pulling rule, as after flips, points may have to stay.
  * With quality before Delaunay, 2. takes any flip that improves, cospherical or not, and instead of
  * 4. free points are moved within the tetrahedra around them, which stay (smoothing), in turn with
  * the flips.
  *
- * Guarantees: points that are not free, and all on the boundary and interfaces, are not moved; none
- * is added, removed, or loses its last tetrahedron; no tetrahedron is inverted or flat. A mesh that
+ * Guarantees: points that are not free are not moved, and those of the boundary and of interfaces not out
+ * of their plane or line but for rounding; none is added, removed, or loses its last tetrahedron; no
+ * tetrahedron is inverted or flat. A mesh that
  * was Delaunay is so still, and triangles and edges of the boundary whose smallest spheres were
  * empty (Crit. 3.1 and 3.2) still have empty ones: neither is so with quality before Delaunay. The
  * boundary and the interfaces change where tetrahedra are peeled off or handed over, by less than
@@ -54,7 +56,9 @@ struct SliverRemoverOptions
   double FlatnessRatio = 1e-9;
   /** Empty, or one for each point of the mesh: whether it may be moved if inside of a region. */
   std::vector<char> IsFree;
-  /** Flips and smoothing need not keep the mesh Delaunay. */
+  /** Whether points of the boundary and of interfaces may be moved; corners never are. */
+  bool AreBoundaryPointsFree = false;
+  /** Flips and smoothing need not keep the mesh Delaunay; points of the boundary then stay. */
   bool QualityBeforeDelaunay = false;
   /** Threads to look at the mesh with, at least 1; the result does not depend on it. */
   int NumberOfThreads = 1;

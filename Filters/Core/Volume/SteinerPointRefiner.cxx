@@ -548,8 +548,9 @@ bool Refiner::MoveSurfacePoints()
     this->FewestSlivers = std::numeric_limits<std::size_t>::max();
     return false;
   }
-  return this->MoveSurface(this->Round->MoveSurfacePoints(this->Options.DihedralAngleTarget,
-    this->IsSurfaceFree, this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges));
+  return this->MoveSurface(
+    this->Round->MoveSurfacePoints(this->Options.DihedralAngleTarget, this->IsSurfaceFree,
+      this->Edges, this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges));
 }
 
 /** False if all points stay where they are. */

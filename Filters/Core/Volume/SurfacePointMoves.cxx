@@ -70,12 +70,19 @@ Vec3 Project(const Vec3& position, const Vec3& origin, const Vec3& axis, bool is
   }
   return projected;
 }
+bool IsAmong(const std::vector<StructuralEdge>& edges, const EdgeIds& ids)
+{
+  const auto edge = std::lower_bound(edges.begin(), edges.end(), ids,
+    [](const StructuralEdge& a, const EdgeIds& b) { return a.Points < b; });
+  return edge != edges.end() && edge->Points == ids;
+}
 } // namespace
 
 SurfacePointMoves::SurfacePointMoves(DynamicTetrahedralization& mesh, const TriangleMesh& surface,
-  const IdLists& pointTriangles, const std::vector<StructuralEdge>& edges, Rules rules)
+  const IdLists& pointTriangles, const std::vector<StructuralEdge>& edges,
+  const std::vector<StructuralEdge>& keptEdges, Rules rules)
   : Mesh(mesh), Surface(surface), Points(surface.Points), PointTriangles(pointTriangles),
-    Edges(edges), Given(std::move(rules))
+    Edges(edges), KeptEdges(keptEdges), Given(std::move(rules))
 {
   Box box;
   for (const Vec3& point : surface.Points)
@@ -93,10 +100,7 @@ std::vector<Id> SurfacePointMoves::FindEdgeEnds(Id point) const
   {
     for (Id other : this->Surface.Triangles[t])
     {
-      const EdgeIds ids = MakeEdge(point, other);
-      const auto edge = std::lower_bound(this->Edges.begin(), this->Edges.end(), ids,
-        [](const StructuralEdge& a, const EdgeIds& b) { return a.Points < b; });
-      if (other != point && edge != this->Edges.end() && edge->Points == ids)
+      if (other != point && IsAmong(this->Edges, MakeEdge(point, other)))
       {
         ends.push_back(other);
       }
@@ -300,13 +304,20 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
       const TriangleIds facet = GetFacet(ids, i);
       const Id neighbor = mesh.Neighbors[t][i];
       const bool isInside = neighbor != NoId && isIn(neighbor / 4);
+      const bool isTriangle = this->IsTriangle(facet);
+      if (!isInside && !isTriangle &&
+        (neighbor == NoId || mesh.Regions[neighbor / 4] != mesh.Regions[t]))
+      {
+        // What lies beyond may be in conflict with the new tetrahedra.
+        return false;
+      }
       if (!isInside && !isAtPoint(facet))
       {
         cavity.Border.push_back({ facet[0], facet[2], facet[1] });
         cavity.Regions.push_back(mesh.Regions[t]);
         this->Outer.push_back(neighbor);
       }
-      else if ((!isInside || neighbor / 4 > t) && this->IsTriangle(facet))
+      else if ((!isInside || neighbor / 4 > t) && isTriangle)
       {
         cavity.Walls.push_back(facet);
       }
@@ -355,14 +366,12 @@ bool SurfacePointMoves::AreSpheresEmpty(Id point, const Vec3& position) const
     {
       return false;
     }
-    for (int i = 0; i < 3 && this->Given.DoEdgesCount; ++i)
+    for (int i = 0; i < 3; ++i)
     {
       const EdgeIds edge = MakeEdge(ids[i], ids[(i + 1) % 3]);
-      const auto found = std::lower_bound(this->Edges.begin(), this->Edges.end(), edge,
-        [](const StructuralEdge& a, const EdgeIds& b) { return a.Points < b; });
       const Vec3& a = v[i];
       const Vec3& b = v[(i + 1) % 3];
-      if (found != this->Edges.end() && found->Points == edge &&
+      if (IsAmong(this->KeptEdges, edge) &&
         !isEmpty(edge, [&](const Vec3& other) { return InDiametralSphere(a, b, other) > 0; }))
       {
         return false;

@@ -44,13 +44,18 @@ public:
     std::function<bool(const TetrahedronIds&, const std::array<Vec3, 4>&)> BreaksLimit;
     /** How close another point may come to this one. */
     std::function<double(Id point)> GetClearance;
-    /** Whether smallest spheres of structural edges have to be empty. */
-    bool DoEdgesCount = false;
   };
 
-  /** The mesh has the surface's points first. All have to outlive the object. */
+  /**
+   * The mesh has the surface's points first. The surface's triangles are those of outer facets and
+   * interfaces whose smallest spheres are empty and stay so; at a point that is moved there are no
+   * others. All have to outlive the object.
+   * @param edges structural ones, sorted
+   * @param keptEdges those whose smallest spheres stay empty, sorted
+   */
   SurfacePointMoves(DynamicTetrahedralization& mesh, const TriangleMesh& surface,
-    const IdLists& pointTriangles, const std::vector<StructuralEdge>& edges, Rules rules);
+    const IdLists& pointTriangles, const std::vector<StructuralEdge>& edges,
+    const std::vector<StructuralEdge>& keptEdges, Rules rules);
 
   /**
    * Moves a point of a tetrahedron to the best place; false if none makes the smallest angle larger.
@@ -84,6 +89,7 @@ private:
   std::vector<Vec3> Points;
   const IdLists& PointTriangles;
   const std::vector<StructuralEdge>& Edges;
+  const std::vector<StructuralEdge>& KeptEdges;
   const Rules Given;
   /** Across which triangles count as lying in one plane. */
   double Flatness = 0.0;

@@ -763,8 +763,8 @@ std::size_t VolumeRefinement::CountSlivers(double target) const
     { return !this->Sharp.IsAcross(this->GetMesh().Tetrahedra[sliver.Tetrahedron]); }));
 }
 
-std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(
-  double target, const std::vector<char>& isFree, bool areEdgesKept)
+std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(double target,
+  const std::vector<char>& isFree, const std::vector<StructuralEdge>& structural, bool areEdgesKept)
 {
   SurfacePointMoves::Rules rules;
   rules.HasAngle = [this](const TetrahedronIds& ids, Id region)
@@ -772,8 +772,9 @@ std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(
   rules.BreaksLimit = [this](const TetrahedronIds& ids, const std::array<Vec3, 4>& vertices)
   { return this->BreaksLimit(ids, vertices); };
   rules.GetClearance = [this](Id point) { return SizeRatio * this->Points[point].Size; };
-  rules.DoEdgesCount = areEdgesKept;
-  SurfacePointMoves moves(this->Mesh, this->Surface, this->PointTriangles, this->Edges, rules);
+  const std::vector<StructuralEdge> none;
+  SurfacePointMoves moves(this->Mesh, this->Surface, this->PointTriangles, structural,
+    areEdgesKept ? this->Edges : none, rules);
 
   bool isMended = true;
   for (int pass = 0; pass < MaximumPasses && isMended; ++pass)

@@ -153,14 +153,15 @@ public:
   std::size_t CountSlivers(double target) const;
 
   /**
-   * Moves points of the surface that are corners of slivers. The surface has to be checked, and the mesh to be
-   * made anew, before anything else is done.
+   * Moves points of the surface that are corners of slivers. Afterwards it has to be seen whether they are
+   * in smallest spheres on the other side of outer facets; this object is good for nothing more.
    * @param isFree one for each point of the surface, whether it may be moved
-   * @param areEdgesKept whether smallest spheres of structural edges stay empty, too
+   * @param structural edges of the surface, sorted
+   * @param areEdgesKept whether smallest spheres of the object's edges stay empty, too
    * @return where the surface's points are now
    */
-  std::vector<Vec3> MoveSurfacePoints(
-    double target, const std::vector<char>& isFree, bool areEdgesKept);
+  std::vector<Vec3> MoveSurfacePoints(double target, const std::vector<char>& isFree,
+    const std::vector<StructuralEdge>& structural, bool areEdgesKept);
 
   /** What is to be split in the boundary. */
   const std::vector<Id>& GetRequestedTriangles() const { return this->RequestedTriangles; }
