@@ -1225,8 +1225,13 @@ void InterpolateTuplesInCells(
   to->CopyAllOn(vtkDataSetAttributes::INTERPOLATE);
   to->SetCopyGlobalIds(0, vtkDataSetAttributes::INTERPOLATE);
   to->SetCopyPedigreeIds(0, vtkDataSetAttributes::INTERPOLATE);
+  to->CopyFieldOff(FreePointName);
   const auto count = static_cast<vtkIdType>(sources.size());
   to->InterpolateAllocate(from, count);
+  if (to->GetNumberOfArrays() == 0)
+  {
+    return;
+  }
   // A copy of its own: locators build caches in the data set that they search.
   vtkNew<vtkUnstructuredGrid> cells;
   cells->ShallowCopy(input);

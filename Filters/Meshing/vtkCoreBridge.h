@@ -50,7 +50,7 @@ constexpr const char* BoundaryLabelsName = "BoundaryLabels";
 constexpr const char* RegionIdName = "RegionId";
 /** Point array of the sizing input: a length, one for each axis, or a tensor. */
 constexpr const char* SizingName = "Sizing";
-/** Point array of tetrahedra: not 0 for points inside that may be moved. */
+/** Point array: not 0 for points that may be moved. */
 constexpr const char* FreePointName = "FreePoint";
 /** Point array of structural edges: ids of the surface's points. */
 constexpr const char* SurfacePointIdName = "SurfacePointId";
@@ -229,7 +229,8 @@ void InterpolateTuples(vtkDataSetAttributes* from, const std::vector<vtkIdType>&
 
 /**
  * Point data of a mesh made from another one: of the input point sources[i], or interpolated where
- * the output's point i lies in the input's cells if there is none. Arrays of ids are left out.
+ * the output's point i lies in the input's cells if there is none. Arrays of ids are left out, and
+ * FreePoint, which is no property of a place.
  */
 void InterpolateTuplesInCells(
   vtkUnstructuredGrid* input, const std::vector<cdm::Id>& sources, vtkUnstructuredGrid* output);

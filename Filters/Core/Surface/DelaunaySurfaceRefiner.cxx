@@ -1103,11 +1103,6 @@ void SurfaceRefiner::ProcessEdge()
 Status SurfaceRefiner::Refine()
 {
   const ExecutionContext part = this->Context.Part(0.1, 0.95);
-  for (Id segment = 0; this->AreEdgesTested() && segment < this->Surface->GetNumberOfSegments();
-       ++segment)
-  {
-    this->EnqueueEdge(segment);
-  }
   for (std::size_t steps = 0; !this->EdgeQueue.empty() || !this->Queue.empty(); ++steps)
   {
     const double left = static_cast<double>(this->EdgeQueue.size() + this->Queue.size());
@@ -1233,6 +1228,11 @@ Status SurfaceRefiner::Run()
     return status;
   }
   this->Saturate();
+  for (Id segment = 0; this->AreEdgesTested() && segment < this->Surface->GetNumberOfSegments();
+       ++segment)
+  {
+    this->EnqueueEdge(segment);
+  }
   status = this->Refine();
   // One by one, so that points which match those are made before the next one.
   status = status.IsOk() ? this->SplitRequested() : status;

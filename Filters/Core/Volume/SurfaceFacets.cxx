@@ -173,31 +173,44 @@ Status SurfaceFacetFinder::TurnDiagonals(const std::vector<Id>& doubtful)
 
 void SurfaceFacetFinder::FindFacets()
 {
-  // The triangles by their first vertex.
+  // The triangles by their first vertex, with the other two in order.
   const std::size_t count = this->Input.Order.size();
   std::vector<Id> vertices(this->Input.Points.size(), NoId);
   for (std::size_t vertex = 0; vertex < count; ++vertex)
   {
     vertices[this->Input.Order[vertex]] = static_cast<Id>(vertex);
   }
+  struct Candidate
+  {
+    Id Second;
+    Id Third;
+    Id Triangle;
+  };
+  const auto getSorted = [](TriangleIds ids)
+  {
+    std::sort(ids.begin(), ids.end());
+    return ids;
+  };
+  const auto getVertices = [&](const TriangleIds& ids) {
+    return getSorted({ vertices[ids[0]], vertices[ids[1]], vertices[ids[2]] });
+  };
   std::vector<Id> starts(count + 2, 0);
   std::vector<char> isOnSurface(count + 1, 0);
-  const auto getFirst = [&vertices](const TriangleIds& ids) {
-    return std::min({ vertices[ids[0]], vertices[ids[1]], vertices[ids[2]] });
-  };
-  for (const TriangleIds& ids : this->Surface.Triangles)
+  for (const TriangleIds& triangle : this->Surface.Triangles)
   {
-    ++starts[getFirst(ids) + 2];
-    for (Id point : ids)
+    const TriangleIds ids = getVertices(triangle);
+    ++starts[ids[0] + 2];
+    for (Id vertex : ids)
     {
-      isOnSurface[vertices[point]] = 1;
+      isOnSurface[vertex] = 1;
     }
   }
   std::partial_sum(starts.begin(), starts.end(), starts.begin());
-  std::vector<Id> triangles(this->Surface.Triangles.size());
-  for (Id t = 0; t < static_cast<Id>(triangles.size()); ++t)
+  std::vector<Candidate> candidates(this->Surface.Triangles.size());
+  for (Id t = 0; t < static_cast<Id>(candidates.size()); ++t)
   {
-    triangles[starts[getFirst(this->Surface.Triangles[t]) + 1]++] = t;
+    const TriangleIds ids = getVertices(this->Surface.Triangles[t]);
+    candidates[starts[ids[0] + 1]++] = { ids[1], ids[2], t };
   }
 
   this->Output.Sides.assign(2 * this->Surface.Triangles.size(), NoId);
@@ -213,32 +226,32 @@ void SurfaceFacetFinder::FindFacets()
     }
     for (int i = 0; i < 4; ++i)
     {
-      const TriangleIds ids = GetFacet(tetrahedron, i);
-      if (!isOnSurface[ids[0]] || !isOnSurface[ids[1]] || !isOnSurface[ids[2]])
+      const TriangleIds facet = GetFacet(tetrahedron, i);
+      const Id neighbor = this->Input.All.Neighbors[t][i];
+      if (neighbor < static_cast<Id>(4 * t) || !isOnSurface[facet[0]] || !isOnSurface[facet[1]] ||
+        !isOnSurface[facet[2]])
       {
         continue;
       }
-      const Id first = std::min({ ids[0], ids[1], ids[2] });
-      TriangleIds points{ this->Input.Order[ids[0]], this->Input.Order[ids[1]],
-        this->Input.Order[ids[2]] };
-      const TriangleIds outward = points;
-      std::sort(points.begin(), points.end());
-      for (Id k = starts[first]; k < starts[first + 1]; ++k)
+      const TriangleIds ids = getSorted(facet);
+      for (Id k = starts[ids[0]]; k < starts[ids[0] + 1]; ++k)
       {
-        const TriangleIds& triangle = this->Surface.Triangles[triangles[k]];
-        TriangleIds sorted = triangle;
-        std::sort(sorted.begin(), sorted.end());
-        if (sorted == points)
+        const Candidate& candidate = candidates[k];
+        if (candidate.Second == ids[1] && candidate.Third == ids[2])
         {
           // The tetrahedron lies behind its outward facet.
-          const bool isInFront = GetRelativeTurn(triangle, outward) < 0;
-          this->Output.Sides[2 * triangles[k] + (isInFront ? 0 : 1)] = static_cast<Id>(4 * t + i);
+          const TriangleIds outward{ this->Input.Order[facet[0]], this->Input.Order[facet[1]],
+            this->Input.Order[facet[2]] };
+          const Id side =
+            GetRelativeTurn(this->Surface.Triangles[candidate.Triangle], outward) < 0 ? 0 : 1;
+          this->Output.Sides[2 * candidate.Triangle + side] = static_cast<Id>(4 * t + i);
+          this->Output.Sides[2 * candidate.Triangle + 1 - side] = neighbor;
           break;
         }
       }
     }
   };
-  // A side of a triangle is a facet of one tetrahedron: threads never write to the same place.
+  // A triangle is a facet of one tetrahedron before its neighbor: threads never write to the same place.
   ForEach(this->Input.All.Tetrahedra.size(), this->Input.NumberOfThreads, find);
 }
 

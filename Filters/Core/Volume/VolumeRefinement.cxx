@@ -157,8 +157,17 @@ std::array<Vec3, 4> VolumeRefinement::GetVertices(const TetrahedronIds& ids) con
 
 double VolumeRefinement::GetAngle(Id tetrahedron) const
 {
-  const std::array<Vec3, 4> v = this->GetVertices(this->GetMesh().Tetrahedra[tetrahedron]);
-  return GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]);
+  if (static_cast<std::size_t>(tetrahedron) >= this->Angles.size())
+  {
+    this->Angles.resize(this->GetMesh().Tetrahedra.size());
+  }
+  KnownAngle& known = this->Angles[tetrahedron];
+  if (known.Stamp != this->Mesh.GetStamp(tetrahedron))
+  {
+    const std::array<Vec3, 4> v = this->GetVertices(this->GetMesh().Tetrahedra[tetrahedron]);
+    known = { GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]), this->Mesh.GetStamp(tetrahedron) };
+  }
+  return known.Angle;
 }
 
 /** By rounding: its four points, which are all on the surface, would have no tetrahedron otherwise. */

@@ -199,6 +199,7 @@ private:
   void BoundSizes();
   bool IsFree(Id point) const;
   std::array<Vec3, 4> GetVertices(const TetrahedronIds& ids) const;
+  /** The smallest dihedral angle. */
   double GetAngle(Id tetrahedron) const;
   bool IsFlat(Id tetrahedron) const;
   double RateHole(const Vec3& position, double required) const;
@@ -253,6 +254,13 @@ private:
   std::vector<EdgeIds> RequestedEdges;
   std::vector<char> IsTriangleRequested;
   std::vector<char> IsEdgeRequested;
+  /** The smallest dihedral angle that a tetrahedron had when it was last asked for. */
+  struct KnownAngle
+  {
+    double Angle = 0.0;
+    Id Stamp = NoId;
+  };
+  mutable std::vector<KnownAngle> Angles;
   /** Work space. */
   DynamicTetrahedralization::Hole Hole;
   BoundarySpheres::Disturbed Disturbed;
