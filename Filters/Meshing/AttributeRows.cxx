@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AttributeRows.h"
 
-#include "vtkCoreBridge.h"
+#include "CoreBridge/Tuples.h"
 
 #include <vtkDataArray.h>
 #include <vtkDataSetAttributes.h>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BlockDistribution.h"
 
-#include "vtkCoreBridge.h"
-
 #include <vtkAppendFilter.h>
 #include <vtkAppendPolyData.h>
 #include <vtkCompositeDataSet.h>

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DistributedMesh.h"
 
-#include "vtkCoreBridge.h"
+#include "CoreBridge/ArrayNames.h"
+#include "CoreBridge/Outputs.h"
+#include "CoreBridge/Tuples.h"
 
 #include "Core/Basics/IdLimits.h"
 #include "Core/Certificate/MeshChecks.h"

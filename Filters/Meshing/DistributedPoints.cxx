@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DistributedPoints.h"
 
-#include "vtkCoreBridge.h"
+#include "CoreBridge/Inputs.h"
 
 #include <vtkDataSetAttributes.h>
 #include <vtkIdTypeArray.h>

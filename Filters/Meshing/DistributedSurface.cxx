@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DistributedSurface.h"
 
-#include "vtkCoreBridge.h"
+#include "CoreBridge/Inputs.h"
+#include "CoreBridge/Reports.h"
 
 #include "Core/Basics/IdLimits.h"
 #include "Core/Delaunay/PartRegions.h"

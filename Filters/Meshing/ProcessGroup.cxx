@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ProcessGroup.h"
 
-#include "vtkCoreBridge.h"
+#include "CoreBridge/Execution.h"
 
 #include <vtkCharArray.h>
 #include <vtkCommunicator.h>

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAdvancingFrontTetrahedralizer.h"
 
+#include "CoreBridge/Execution.h"
+#include "CoreBridge/Inputs.h"
+#include "CoreBridge/Outputs.h"
+#include "CoreBridge/Reports.h"
+#include "CoreBridge/Tuples.h"
 #include "vtkConformingDelaunayCompatibility.h"
-#include "vtkCoreBridge.h"
 
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkBoundaryTriangulator.h"
 
-#include "vtkCoreBridge.h"
+#include "CoreBridge/Execution.h"
+#include "CoreBridge/Inputs.h"
+#include "CoreBridge/Outputs.h"
+#include "CoreBridge/Reports.h"
+#include "CoreBridge/Tuples.h"
 
 #include "Core/Surface/BoundaryTriangulator.h"
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDistributedTetrahedralizer.h"
 
+#include "CoreBridge/Execution.h"
+#include "CoreBridge/Reports.h"
 #include "DistributedMesh.h"
 #include "ProcessGroup.h"
-#include "vtkCoreBridge.h"
 
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkGmshMeshWriter.h"
 
-#include "vtkCoreBridge.h"
+#include "CoreBridge/Execution.h"
+#include "CoreBridge/Inputs.h"
+#include "CoreBridge/Reports.h"
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>

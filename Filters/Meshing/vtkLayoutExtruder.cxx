@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLayoutExtruder.h"
 
+#include "CoreBridge/Execution.h"
+#include "CoreBridge/Inputs.h"
+#include "CoreBridge/Reports.h"
 #include "LayeredStructure.h"
 #include "LayoutOverlay.h"
-#include "vtkCoreBridge.h"
 #include "vtkStructureOutput.h"
 
 #include "Core/Geometry/Box.h"

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMaterialInterfaceExtractor.h"
 
-#include "vtkCoreBridge.h"
+#include "CoreBridge/Execution.h"
+#include "CoreBridge/Outputs.h"
+#include "CoreBridge/Reports.h"
 
 #include "Core/Interfaces/MaterialInterfaces.h"
 

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMeshPointGenerator.h"
 
-#include "vtkCoreBridge.h"
+#include "CoreBridge/ArrayNames.h"
+#include "CoreBridge/Execution.h"
+#include "CoreBridge/Inputs.h"
+#include "CoreBridge/Outputs.h"
+#include "CoreBridge/Reports.h"
+#include "CoreBridge/SizingInputs.h"
 
 #include "Core/Volume/MeshPointGenerator.h"
 

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMovingBoundaryRemesher.h"
 
-#include "vtkCoreBridge.h"
+#include "CoreBridge/ArrayNames.h"
+#include "CoreBridge/Execution.h"
+#include "CoreBridge/Inputs.h"
+#include "CoreBridge/Outputs.h"
+#include "CoreBridge/Reports.h"
+#include "CoreBridge/Tuples.h"
 
 #include "Core/Meshes/MeshBoundary.h"
 #include "Core/Volume/MovingBoundaryRemesher.h"

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSizingFromSolution.h"
 
-#include "vtkCoreBridge.h"
+#include "CoreBridge/ArrayNames.h"
+#include "CoreBridge/Execution.h"
+#include "CoreBridge/Reports.h"
+#include "CoreBridge/SizingInputs.h"
 
 #include "Core/Basics/IdLimits.h"
 #include "Core/Sizing/SizingField.h"

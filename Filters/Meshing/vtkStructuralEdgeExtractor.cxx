@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStructuralEdgeExtractor.h"
 
-#include "vtkCoreBridge.h"
+#include "CoreBridge/Execution.h"
+#include "CoreBridge/Inputs.h"
+#include "CoreBridge/Outputs.h"
+#include "CoreBridge/Reports.h"
 
 #include "Core/Surface/StructuralEdges.h"
 

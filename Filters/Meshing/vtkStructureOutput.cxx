@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStructureOutput.h"
 
-#include "vtkCoreBridge.h"
+#include "CoreBridge/ArrayNames.h"
+#include "CoreBridge/Outputs.h"
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>

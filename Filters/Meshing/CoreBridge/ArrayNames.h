@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file ArrayNames.h
+ * @brief Names of the arrays that stages hand to each other.
+ */
+#ifndef CoreBridge_ArrayNames_h
+#define CoreBridge_ArrayNames_h
+
+namespace vtkCoreBridge
+{
+/** Cell array: region ids on the front and on the back side of a polygon. */
+constexpr const char* BoundaryLabelsName = "BoundaryLabels";
+/** Cell array of tetrahedra, point array of seeds. */
+constexpr const char* RegionIdName = "RegionId";
+/** Point array of the sizing input: a length, one for each axis, or a tensor. */
+constexpr const char* SizingName = "Sizing";
+/** Point array: not 0 for points that may be moved. */
+constexpr const char* FreePointName = "FreePoint";
+/** Point array of structural edges: ids of the surface's points. */
+constexpr const char* SurfacePointIdName = "SurfacePointId";
+/**
+ * Cell array that vtkConformingDelaunayMesher adds inside of its pipeline: the cell of the user's
+ * input. Where a surface carries it, error messages name those cells.
+ */
+constexpr const char* InputCellName = "ConformingDelaunayInputCell";
+} // namespace vtkCoreBridge
+
+#endif

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CoreBridge/Execution.h"
+
+#include "vtkConformingDelaunayCompatibility.h"
+
+#include <vtkAlgorithm.h>
+#include <vtkDataSet.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkSMPTools.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+
+#include <chrono>
+#include <cmath>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+namespace vtkCoreBridge
+{
+//--------------------------------------------------------------------------------------------------
+cdm::ExecutionContext MakeContext(vtkAlgorithm* filter)
+{
+  // Stages may call in inner loops; observers (a GUI redraws) hear of steps that can be seen, and
+  // now and then of none: they may want to abort.
+  using Clock = std::chrono::steady_clock;
+  constexpr double smallestStep = 0.005;
+  static constexpr std::chrono::milliseconds longestSilence(200);
+  double last = -1.0;
+  std::string lastActivity;
+  Clock::time_point lastTime;
+  auto progress = [filter, last, lastActivity, lastTime](
+                    double fraction, const char* activity) mutable
+  {
+    const Clock::time_point now = Clock::now();
+    if (std::abs(fraction - last) >= smallestStep || lastActivity != activity ||
+      now - lastTime >= longestSilence)
+    {
+      last = fraction;
+      lastActivity = activity;
+      lastTime = now;
+      filter->SetProgressText(activity);
+      filter->UpdateProgress(fraction);
+    }
+  };
+  return { progress,
+    [filter]() { return vtkConformingDelaunayCompatibility::CheckAbort(filter); } };
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status Guard(const std::function<cdm::Status()>& function)
+{
+  try
+  {
+    return function();
+  }
+  catch (const std::bad_alloc&)
+  {
+    return cdm::Status::InvalidInput("There is not enough memory for this input.");
+  }
+  catch (const std::length_error&)
+  {
+    return cdm::Status::InvalidInput("There is not enough memory for this input.");
+  }
+}
+
+//--------------------------------------------------------------------------------------------------
+int GetNumberOfThreads()
+{
+  return vtkSMPTools::GetEstimatedNumberOfThreads();
+}
+
+//--------------------------------------------------------------------------------------------------
+bool IsIdleProcess(vtkDataSet* input, vtkInformationVector* outputs)
+{
+  vtkInformation* info = outputs->GetInformationObject(0);
+  const auto pieces = vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES();
+  return info->Has(pieces) && info->Get(pieces) > 1 && input->GetNumberOfCells() == 0;
+}
+} // namespace vtkCoreBridge

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Execution.h
+ * @brief How filters run the engine: progress and abort, failures of memory, threads.
+ */
+#ifndef CoreBridge_Execution_h
+#define CoreBridge_Execution_h
+
+#include "Core/Basics/ExecutionContext.h"
+#include "Core/Basics/ParallelLoop.h"
+#include "Core/Basics/Status.h"
+
+#include <cstddef>
+#include <functional>
+
+class vtkAlgorithm;
+class vtkDataSet;
+class vtkInformationVector;
+
+namespace vtkCoreBridge
+{
+/** Progress and abort of a filter for the engine. */
+cdm::ExecutionContext MakeContext(vtkAlgorithm* filter);
+
+/** Call an engine function; running out of memory becomes a Status. */
+cdm::Status Guard(const std::function<cdm::Status()>& function);
+
+/** For the engine: as many as vtkSMPTools is allowed. */
+int GetNumberOfThreads();
+
+/** body(i) for all items, on so many threads; for short work, without progress. */
+template <typename Body>
+void ForEach(std::size_t count, const Body& body)
+{
+  cdm::ParallelLoop(count, { GetNumberOfThreads(), std::size_t(1) << 14 }, {}, "",
+    [&body](std::size_t begin, std::size_t end, std::size_t)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        body(i);
+      }
+    });
+}
+
+/**
+ * True for an empty input on a process of a parallel run: readers that are not parallel fill the
+ * first process only, and the others have nothing to do and nothing to complain about.
+ */
+bool IsIdleProcess(vtkDataSet* input, vtkInformationVector* outputs);
+} // namespace vtkCoreBridge
+
+#endif

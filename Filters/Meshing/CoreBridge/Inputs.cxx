@@ -1,0 +1,497 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CoreBridge/Inputs.h"
+
+#include "CoreBridge/ArrayNames.h"
+#include "CoreBridge/Execution.h"
+#include "CoreBridge/Reports.h"
+
+#include "Core/Basics/IdLimits.h"
+#include "Core/Certificate/MeshChecks.h"
+
+#include <vtkAbstractArray.h>
+#include <vtkCell.h>
+#include <vtkCellArray.h>
+#include <vtkCellArrayIterator.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkDataSet.h>
+#include <vtkGenericCell.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPointSet.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace
+{
+/** A whole number from -1 on that fits into an id; otherwise false. */
+bool ToRegion(double value, cdm::Id& region)
+{
+  if (!(value >= cdm::OutsideRegion && value <= static_cast<double>(cdm::LargestId)) ||
+    value != std::floor(value))
+  {
+    return false;
+  }
+  region = static_cast<cdm::Id>(value);
+  return true;
+}
+
+cdm::Status ToVectors(vtkPoints* input, std::vector<cdm::Vec3>& points)
+{
+  const vtkIdType count = input ? input->GetNumberOfPoints() : 0;
+  const cdm::Status status = cdm::CheckIdRange(count, "points");
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  points.resize(count);
+  vtkCoreBridge::ForEach(points.size(),
+    [&](std::size_t i)
+    {
+      double x[3];
+      input->GetPoint(static_cast<vtkIdType>(i), x);
+      points[i] = { x[0], x[1], x[2] };
+    });
+  return status;
+}
+
+/** Labels of the given cells; empty without the array. */
+cdm::Status ToLabels(
+  vtkPolyData* input, const std::vector<vtkIdType>& cells, std::vector<cdm::RegionPair>& labels)
+{
+  vtkAbstractArray* any = input->GetCellData()->GetAbstractArray(vtkCoreBridge::BoundaryLabelsName);
+  labels.clear();
+  if (!any)
+  {
+    return {};
+  }
+  auto array = vtkDataArray::SafeDownCast(any);
+  if (!array || array->GetNumberOfComponents() != 2 ||
+    array->GetNumberOfTuples() != input->GetNumberOfCells())
+  {
+    return cdm::Status::InvalidInput(
+      "The cell array BoundaryLabels must hold two integers for each cell: the region ids on its "
+      "front and on its back side, -1 for outside. Correct, rename or remove it.");
+  }
+  labels.resize(cells.size());
+  std::vector<cdm::Id> wrong;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+  {
+    if (!ToRegion(array->GetComponent(cells[i], 0), labels[i].Front) ||
+      !ToRegion(array->GetComponent(cells[i], 1), labels[i].Back))
+    {
+      wrong.push_back(static_cast<cdm::Id>(cells[i]));
+    }
+  }
+  if (!wrong.empty())
+  {
+    wrong.erase(std::unique(wrong.begin(), wrong.end()), wrong.end());
+    return cdm::Status::InvalidInput(
+      "The cell array BoundaryLabels holds values that are no region ids: they are whole numbers "
+      "from 0 on, or -1 for outside.",
+      std::move(wrong));
+  }
+  return {};
+}
+
+cdm::Status NotTetrahedra(std::vector<cdm::Id> cells)
+{
+  return cdm::Status::InvalidInput(
+    "The input has cells that are not linear tetrahedra (VTK_TETRA). Remove or split them.",
+    std::move(cells));
+}
+
+int GetCellDimension(int type)
+{
+  const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
+  // Of a type that this VTK does not know nothing can be told.
+  return cell ? cell->GetCellDimension() : 3;
+}
+
+/** What both conversions of a surface check before they look at a cell. */
+cdm::Status CheckSurface(vtkPolyData* input)
+{
+  for (const cdm::Status& status : { cdm::CheckIdRange(input->GetNumberOfCells(), "cells"),
+         cdm::CheckNumberOfTriangles(input->GetNumberOfPolys() + input->GetNumberOfStrips()) })
+  {
+    if (!status.IsOk())
+    {
+      return status;
+    }
+  }
+  if (input->GetNumberOfPolys() + input->GetNumberOfStrips() == 0)
+  {
+    return cdm::Status::InvalidInput(
+      "The input is empty: it has no polygons. A closed polygonal surface is needed.");
+  }
+  return vtkCoreBridge::CheckArrays(input);
+}
+
+void AddPolygon(cdm::PolygonSoup& soup, vtkIdType size, const vtkIdType* ids)
+{
+  for (vtkIdType i = 0; i < size; ++i)
+  {
+    soup.Connectivity.push_back(static_cast<cdm::Id>(ids[i]));
+  }
+  soup.Offsets.push_back(static_cast<cdm::Id>(soup.Connectivity.size()));
+}
+} // namespace
+
+namespace vtkCoreBridge
+{
+//--------------------------------------------------------------------------------------------------
+bool UsesMissingPoints(vtkIdType size, const vtkIdType* ids, vtkIdType numberOfPoints)
+{
+  return std::any_of(ids, ids + size, [=](vtkIdType id) { return id < 0 || id >= numberOfPoints; });
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status MissingPoints(std::vector<cdm::Id> cells)
+{
+  return cdm::Status::InvalidInput(
+    "Cells of the input use points that do not exist.", std::move(cells));
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status CheckArrays(vtkDataSet* input)
+{
+  if (input->CheckAttributes())
+  {
+    return cdm::Status::InvalidInput(
+      "An array of the input has fewer tuples than the input has points or cells.");
+  }
+  return {};
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToPolygonSoup(vtkPolyData* input, cdm::PolygonSoup& soup, std::vector<vtkIdType>& cells)
+{
+  cdm::Status status = CheckSurface(input);
+  const vtkIdType corners = input->GetPolys()->GetNumberOfConnectivityIds() +
+    3 * input->GetStrips()->GetNumberOfConnectivityIds();
+  if (status.IsOk())
+  {
+    status = cdm::CheckIdRange(corners, "polygon corners");
+  }
+  if (status.IsOk())
+  {
+    status = ToVectors(input->GetPoints(), soup.Points);
+  }
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  std::vector<cdm::Id> wrong;
+  vtkIdType cell = GetFirstPolygon(input);
+  vtkNew<vtkIdList> ids;
+  auto addCells = [&](vtkCellArray* array, auto addCell)
+  {
+    auto iterator = vtk::TakeSmartPointer(array->NewIterator());
+    for (iterator->GoToFirstCell(); !iterator->IsDoneWithTraversal(); iterator->GoToNextCell())
+    {
+      iterator->GetCurrentCell(ids);
+      if (UsesMissingPoints(ids->GetNumberOfIds(), ids->GetPointer(0), input->GetNumberOfPoints()))
+      {
+        wrong.push_back(static_cast<cdm::Id>(cell));
+      }
+      addCell(ids->GetNumberOfIds(), ids->GetPointer(0));
+      ++cell;
+    }
+  };
+  addCells(input->GetPolys(),
+    [&](vtkIdType size, const vtkIdType* polygon)
+    {
+      AddPolygon(soup, size, polygon);
+      cells.push_back(cell);
+    });
+  addCells(input->GetStrips(),
+    [&](vtkIdType size, const vtkIdType* strip)
+    {
+      for (vtkIdType i = 0; i + 2 < size; ++i)
+      {
+        const vtkIdType odd = i % 2;
+        const vtkIdType triangle[3] = { strip[i], strip[i + 1 + odd], strip[i + 2 - odd] };
+        AddPolygon(soup, 3, triangle);
+        cells.push_back(cell);
+      }
+    });
+  if (!wrong.empty())
+  {
+    return MissingPoints(std::move(wrong));
+  }
+  return ToLabels(input, cells, soup.Labels);
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToTriangleMesh(vtkPolyData* input, cdm::TriangleMesh& surface)
+{
+  cdm::Status status = CheckSurface(input);
+  if (status.IsOk())
+  {
+    status = ToVectors(input->GetPoints(), surface.Points);
+  }
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  std::vector<cdm::Id> notTriangles;
+  std::vector<cdm::Id> missingPoints;
+  std::vector<vtkIdType> cells;
+  vtkIdType cell = GetFirstPolygon(input);
+  vtkNew<vtkIdList> ids;
+  auto iterator = vtk::TakeSmartPointer(input->GetPolys()->NewIterator());
+  for (iterator->GoToFirstCell(); !iterator->IsDoneWithTraversal(); iterator->GoToNextCell())
+  {
+    iterator->GetCurrentCell(ids);
+    const vtkIdType* corner = ids->GetPointer(0);
+    if (ids->GetNumberOfIds() != 3)
+    {
+      notTriangles.push_back(static_cast<cdm::Id>(cell));
+    }
+    else if (UsesMissingPoints(3, corner, input->GetNumberOfPoints()))
+    {
+      missingPoints.push_back(static_cast<cdm::Id>(cell));
+    }
+    else
+    {
+      surface.Triangles.push_back({ static_cast<cdm::Id>(corner[0]),
+        static_cast<cdm::Id>(corner[1]), static_cast<cdm::Id>(corner[2]) });
+    }
+    cells.push_back(cell++);
+  }
+  for (vtkIdType strip = 0; strip < input->GetNumberOfStrips(); ++strip)
+  {
+    notTriangles.push_back(static_cast<cdm::Id>(cell++));
+  }
+  if (!notTriangles.empty())
+  {
+    return cdm::Status::InvalidInput("The surface has cells that are not triangles. Run "
+                                     "vtkBoundaryTriangulator first.",
+      std::move(notTriangles));
+  }
+  if (!missingPoints.empty())
+  {
+    return MissingPoints(std::move(missingPoints));
+  }
+  return ToLabels(input, cells, surface.Labels);
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToPoints(vtkPointSet* input, const char* name, std::vector<cdm::Vec3>& points)
+{
+  cdm::Status status = CheckArrays(input);
+  if (status.IsOk())
+  {
+    status = ToVectors(input->GetPoints(), points);
+  }
+  const auto wrong = std::find_if_not(points.begin(), points.end(), cdm::IsFinite);
+  if (status.IsOk() && wrong != points.end())
+  {
+    // Not in Status::Points, which are points of the surface.
+    status = cdm::Status::InvalidInput("Point " + std::to_string(wrong - points.begin()) +
+      " of the " + name + " has coordinates that are not finite: remove or correct it.");
+  }
+  return status;
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToFlags(vtkUnstructuredGrid* input, const char* name, std::vector<char>& flags)
+{
+  vtkDataArray* array = input->GetPointData()->GetArray(name);
+  if (!array)
+  {
+    return {};
+  }
+  if (array->GetNumberOfComponents() != 1 ||
+    array->GetNumberOfTuples() != input->GetNumberOfPoints())
+  {
+    return cdm::Status::InvalidInput(std::string("The point array ") + name +
+      " needs one component and one value for each point: correct or remove it.");
+  }
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    flags.push_back(array->GetComponent(i, 0) != 0.0);
+  }
+  return {};
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToSeeds(vtkPointSet* input, std::vector<cdm::RegionSeed>& seeds)
+{
+  std::vector<cdm::Vec3> points;
+  cdm::Status status = ToPoints(input, "seeds", points);
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  vtkDataArray* regions = input->GetPointData()->GetArray(RegionIdName);
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    cdm::RegionSeed seed{ points[i], static_cast<cdm::Id>(i) };
+    const double region =
+      regions ? regions->GetComponent(static_cast<vtkIdType>(i), 0) : static_cast<double>(i);
+    if (!ToRegion(region, seed.Region) || seed.Region < 0)
+    {
+      return cdm::Status::InvalidInput("The point array RegionId of the seeds must hold whole "
+                                       "numbers from 0 on; its value at seed " +
+        std::to_string(i) + " is " + std::to_string(region) + ".");
+    }
+    seeds.push_back(seed);
+  }
+  return {};
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToTetrahedra(
+  vtkUnstructuredGrid* input, cdm::TetMesh& mesh, std::vector<vtkIdType>& cells)
+{
+  const vtkIdType count = input->GetNumberOfCells();
+  cdm::Status status = cdm::CheckNumberOfTetrahedra(count);
+  if (status.IsOk())
+  {
+    status = cdm::CheckIdRange(input->GetNumberOfPoints(), "points");
+  }
+  if (status.IsOk())
+  {
+    status = CheckArrays(input);
+  }
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  vtkDataArray* regions = input->GetCellData()->GetArray(RegionIdName);
+  mesh = {};
+  struct Block
+  {
+    std::size_t Begin = 0;
+    std::size_t Tetrahedra = 0;
+    std::vector<cdm::Id> NotTetrahedra;
+    std::vector<cdm::Id> MissingPoints;
+    std::vector<cdm::Id> WrongRegions;
+  };
+  const cdm::ParallelLoopOptions loop{ GetNumberOfThreads(), std::size_t(1) << 14 };
+  std::vector<Block> blocks(cdm::GetNumberOfBlocks(count, loop));
+  const auto countBlock = [&](std::size_t begin, std::size_t end, std::size_t block)
+  {
+    for (std::size_t cell = begin; cell < end; ++cell)
+    {
+      const int type = input->GetCellType(static_cast<vtkIdType>(cell));
+      blocks[block].Tetrahedra += type == VTK_TETRA;
+      if (type != VTK_TETRA && GetCellDimension(type) > 2)
+      {
+        blocks[block].NotTetrahedra.push_back(static_cast<cdm::Id>(cell));
+      }
+    }
+  };
+  cdm::ParallelLoop(count, loop, {}, "", countBlock);
+  std::size_t numberOfTetrahedra = 0;
+  for (Block& block : blocks)
+  {
+    block.Begin = numberOfTetrahedra;
+    numberOfTetrahedra += block.Tetrahedra;
+  }
+  mesh.Tetrahedra.resize(numberOfTetrahedra);
+  mesh.Regions.resize(numberOfTetrahedra, 0);
+  cells.resize(numberOfTetrahedra);
+  const auto convertBlock = [&](std::size_t begin, std::size_t end, std::size_t block)
+  {
+    vtkNew<vtkIdList> ids;
+    std::size_t tetrahedron = blocks[block].Begin;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const auto cell = static_cast<vtkIdType>(i);
+      if (input->GetCellType(cell) != VTK_TETRA)
+      {
+        continue;
+      }
+      input->GetCellPoints(cell, ids);
+      cells[tetrahedron] = cell;
+      std::copy_n(ids->GetPointer(0), 4, mesh.Tetrahedra[tetrahedron].begin());
+      if (UsesMissingPoints(4, ids->GetPointer(0), input->GetNumberOfPoints()))
+      {
+        blocks[block].MissingPoints.push_back(static_cast<cdm::Id>(cell));
+      }
+      cdm::Id& region = mesh.Regions[tetrahedron];
+      if (regions && (!ToRegion(regions->GetComponent(cell, 0), region) || region < 0))
+      {
+        blocks[block].WrongRegions.push_back(static_cast<cdm::Id>(cell));
+      }
+      ++tetrahedron;
+    }
+  };
+  cdm::ParallelLoop(count, loop, {}, "", convertBlock);
+  std::vector<cdm::Id> notTetrahedra;
+  std::vector<cdm::Id> missingPoints;
+  std::vector<cdm::Id> wrongRegions;
+  for (const Block& block : blocks)
+  {
+    const auto append = [](std::vector<cdm::Id>& all, const std::vector<cdm::Id>& some)
+    { all.insert(all.end(), some.begin(), some.end()); };
+    append(notTetrahedra, block.NotTetrahedra);
+    append(missingPoints, block.MissingPoints);
+    append(wrongRegions, block.WrongRegions);
+  }
+  if (!notTetrahedra.empty())
+  {
+    return NotTetrahedra(std::move(notTetrahedra));
+  }
+  if (!missingPoints.empty())
+  {
+    return MissingPoints(std::move(missingPoints));
+  }
+  if (!wrongRegions.empty())
+  {
+    return cdm::Status::InvalidInput(
+      "The cell array RegionId holds values that are no whole numbers from 0 on.",
+      std::move(wrongRegions));
+  }
+  if (cells.empty())
+  {
+    return cdm::Status::InvalidInput(count == 0
+        ? "The input is empty: it has no cells."
+        : "The input has no tetrahedra. Choose a tetrahedral mesh.");
+  }
+  status = ToVectors(input->GetPoints(), mesh.Points);
+  for (std::size_t i = 0; i < mesh.Points.size(); ++i)
+  {
+    if (!cdm::IsFinite(mesh.Points[i]))
+    {
+      status.Points.push_back(static_cast<cdm::Id>(i));
+    }
+  }
+  if (!status.Points.empty())
+  {
+    return cdm::Status::InvalidInput(
+      "Points have coordinates that are not finite: remove or correct them.", {}, status.Points);
+  }
+  return status;
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh)
+{
+  std::vector<vtkIdType> cells;
+  const cdm::Status status = ToTetrahedra(input, mesh, cells);
+  const vtkIdType count = input->GetNumberOfCells();
+  if (status.IsOk() && static_cast<vtkIdType>(cells.size()) == count)
+  {
+    return cdm::BuildNeighbors(mesh, GetNumberOfThreads());
+  }
+  std::vector<cdm::Id> others;
+  for (vtkIdType cell = 0; cell < std::min<vtkIdType>(count, cdm::LargestId); ++cell)
+  {
+    if (input->GetCellType(cell) != VTK_TETRA)
+    {
+      others.push_back(static_cast<cdm::Id>(cell));
+    }
+  }
+  return others.empty() ? status : NotTetrahedra(std::move(others));
+}
+} // namespace vtkCoreBridge

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Inputs.h
+ * @brief VTK's data sets as meshes of the engine.
+ *
+ * A conversion checks what the engine takes for granted (ids in range, 32 bits, array types), and says
+ * in its Status what is wrong, with the ids of VTK cells and points.
+ */
+#ifndef CoreBridge_Inputs_h
+#define CoreBridge_Inputs_h
+
+#include "Core/Basics/Status.h"
+#include "Core/Meshes/PolygonSoup.h"
+#include "Core/Meshes/TetMesh.h"
+#include "Core/Meshes/TriangleMesh.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
+
+#include <vtkType.h>
+
+#include <vector>
+
+class vtkDataSet;
+class vtkPointSet;
+class vtkPolyData;
+class vtkUnstructuredGrid;
+
+namespace vtkCoreBridge
+{
+/** Polygons and the triangles of strips; cells receives the VTK cell of each. */
+cdm::Status ToPolygonSoup(
+  vtkPolyData* input, cdm::PolygonSoup& soup, std::vector<vtkIdType>& cells);
+
+/** All polygons must be triangles. */
+cdm::Status ToTriangleMesh(vtkPolyData* input, cdm::TriangleMesh& surface);
+
+/** Finite points; name says in messages which input they are. */
+cdm::Status ToPoints(vtkPointSet* input, const char* name, std::vector<cdm::Vec3>& points);
+
+/** Where a point array is not zero; empty without the array. */
+cdm::Status ToFlags(vtkUnstructuredGrid* input, const char* name, std::vector<char>& flags);
+
+/** Points as seeds; regions from the point array RegionId, or from 0 on by order. */
+cdm::Status ToSeeds(vtkPointSet* input, std::vector<cdm::RegionSeed>& seeds);
+
+/**
+ * The tetrahedra among the cells, with the VTK cell of each; cells of up to two dimensions are
+ * passed over. Regions are 0 without the array RegionId; neighbors are left empty.
+ */
+cdm::Status ToTetrahedra(
+  vtkUnstructuredGrid* input, cdm::TetMesh& mesh, std::vector<vtkIdType>& cells);
+
+/** All cells must be tetrahedra. Regions are 0 without the array RegionId; makes neighbors. */
+cdm::Status ToTetMesh(vtkUnstructuredGrid* input, cdm::TetMesh& mesh);
+
+/** Arrays that are shorter than the data set would be read behind their end. */
+cdm::Status CheckArrays(vtkDataSet* input);
+
+/** The error of cells that use points which do not exist. */
+cdm::Status MissingPoints(std::vector<cdm::Id> cells);
+bool UsesMissingPoints(vtkIdType size, const vtkIdType* ids, vtkIdType numberOfPoints);
+} // namespace vtkCoreBridge
+
+#endif
