@@ -20,6 +20,9 @@
 
 namespace cdm
 {
+/** The square of a distance below this may be zero. */
+constexpr double SamePoint = 1e-150;
+
 /** The nearest point to a position other than one, if it is nearer than a distance. */
 class NearestPointVisitor
 {

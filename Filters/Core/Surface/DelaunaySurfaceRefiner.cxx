@@ -4,17 +4,17 @@
 #include "Core/Basics/IdLimits.h"
 #include "Core/Basics/ParallelLoop.h"
 #include "Core/Basics/SortedIds.h"
-#include "Core/Geometry/MatchingPoints.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Meshes/DuplicateTriangles.h"
 #include "Core/Search/BallIndex.h"
 #include "Core/Search/PointSearches.h"
-#include "Core/Search/SpatialSort.h"
 #include "Core/Sizing/TriangleLimits.h"
+#include "Core/Surface/FacetWalk.h"
 #include "Core/Surface/MeshPointClearance.h"
 #include "Core/Surface/PartnerPoints.h"
 #include "Core/Surface/RefinableSurface.h"
+#include "Core/Surface/SurfaceChecks.h"
 #include "Core/Surface/SurfaceDelaunayTest.h"
 #include "Core/Surface/SurfaceFlips.h"
 #include "Core/Surface/SurfaceIncidences.h"
@@ -25,7 +25,6 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <string>
 #include <utility>
 
@@ -41,13 +40,6 @@ constexpr double CrumplingRatio = 1.0 / 8.0;
 
 /** After so many attempts all edges of curved facets are structural. */
 constexpr int LargestNumberOfAttempts = 20;
-
-/** The square of a distance below this may be zero. */
-constexpr double SamePoint = 1e-150;
-/** So many triangles a walk may take. */
-constexpr int LongestWalk = 10000;
-/** Among the edges around so many triangles one is looked for that a new point would disturb. */
-constexpr std::size_t LargestCavity = 1000;
 
 class SurfaceRefiner
 {
@@ -69,15 +61,6 @@ public:
 
 private:
   Status Prepare();
-  /** Where a walk has ended: at a position in or on an edge of a triangle, or at a segment. */
-  struct Landing
-  {
-    Id Triangle = NoId;
-    Id Edge = NoId;
-    Vec3 Position;
-    Id Segment = NoId;
-  };
-
   /**
    * Unless all edges have been made fine enough before, triangles that only a point in their facet
    * would mend come last, when no edge is left to split: what edges need is needed anyway, and points
@@ -104,7 +87,6 @@ private:
     }
   };
 
-  Status CheckSurface();
   void AddMeshPoints();
   void CollectIncidences();
   void Saturate();
@@ -126,9 +108,6 @@ private:
   bool ResolveByFlip(Id t);
   bool ResolveByEdge(Id t);
   bool ResolveInFacet(Id t, Id disturbing, const Vec3& target, bool isMirrored);
-  Vec3 PutIntoPlane(Id t, const Vec3& position, const Vec3& normal) const;
-  bool Walk(Id t, Id mirrored, const Vec3& target, Landing& landing) const;
-  Id FindEncroachedSegment(Id t, const Vec3& position);
   bool SplitSegment(Id segment, Id disturbing);
   bool SplitLongestEdge(Id t);
 
@@ -170,9 +149,10 @@ private:
   std::unique_ptr<SurfaceFlips> Flips;
   TriangleLimits Limits;
 
-  /** Both are made when the first triangle has to be refined. */
+  /** These are made when the first triangle has to be refined. */
   std::unique_ptr<SurfaceIncidences> Incidences;
   std::unique_ptr<PartnerPoints> Partners;
+  std::unique_ptr<FacetWalk> Walk;
   /**
    * Empty, or marks triangles of the input in curved facets: points there come too close, or flips
    * have made two sheets the same.
@@ -189,79 +169,12 @@ private:
   bool AreAllTested = false;
   std::vector<char> IsUnresolved;
   std::vector<Id> Reached;
-  /** Marks of FindEncroachedSegment(), all zero outside of it. */
-  std::vector<char> IsInCavity;
   /** Length and number of segments to be looked at, a heap; diametral spheres of those that were. */
   std::vector<std::pair<double, Id>> EdgeQueue;
   BallIndex EmptyEdges;
   /** Segments that are disturbed and cannot be split. */
   std::vector<char> IsDisturbed;
 };
-
-Status SurfaceRefiner::CheckSurface()
-{
-  const TriangleMesh& surface = *this->Input.Surface;
-  if (surface.Triangles.empty())
-  {
-    return Status::InvalidInput("The surface has no triangles; there is nothing to refine.");
-  }
-  const Status range = CheckNumberOfPoints(
-    surface.Points.size(), this->Input.MeshPoints != nullptr ? this->Input.MeshPoints->size() : 0);
-  if (!range.IsOk())
-  {
-    return range;
-  }
-  const std::vector<Vec3>& points = surface.Points;
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    if (!IsFinite(points[i]))
-    {
-      return Status::InvalidInput(
-        "A point has a coordinate that is not a finite number; remove or repair it.", {},
-        { static_cast<Id>(i) });
-    }
-  }
-  std::vector<Id> order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  SortAlongHilbertCurve(points, order);
-  std::vector<Id> coincident;
-  for (std::size_t i = 1; i < order.size(); ++i)
-  {
-    if (points[order[i]] == points[order[i - 1]])
-    {
-      coincident.push_back(order[i - 1]);
-      coincident.push_back(order[i]);
-    }
-  }
-  if (!coincident.empty())
-  {
-    SortUnique(coincident);
-    return Status::InvalidInput("Points of the surface coincide; merge them with "
-                                "vtkBoundaryTriangulator first.",
-      {}, std::move(coincident));
-  }
-  std::vector<Id> degenerate;
-  for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
-  {
-    const TriangleIds& ids = surface.Triangles[t];
-    const Vec3& a = points[ids[0]];
-    const Vec3& b = points[ids[1]];
-    const Vec3& c = points[ids[2]];
-    // Far above the error of the cross product, and of products below the range of doubles.
-    const double certain = 1e-24 * SquaredNorm(b - a) * SquaredNorm(c - a);
-    if (!(certain > 1e-280 && SquaredNorm(Cross(b - a, c - a)) > certain) && AreCollinear(a, b, c))
-    {
-      degenerate.push_back(static_cast<Id>(t));
-    }
-  }
-  if (!degenerate.empty())
-  {
-    return Status::InvalidInput(
-      "Triangles without area; clean the surface with vtkBoundaryTriangulator first.",
-      std::move(degenerate));
-  }
-  return Status();
-}
 
 /** The surface's points are in place: mesh points that keep clear of it follow. */
 void SurfaceRefiner::AddMeshPoints()
@@ -283,7 +196,8 @@ void SurfaceRefiner::AddMeshPoints()
 
 Status SurfaceRefiner::Prepare()
 {
-  Status status = this->CheckSurface();
+  Status status = CheckRefinableSurface(
+    *this->Input.Surface, this->Input.MeshPoints != nullptr ? this->Input.MeshPoints->size() : 0);
   if (!status.IsOk())
   {
     return status;
@@ -333,6 +247,8 @@ void SurfaceRefiner::CollectIncidences()
     *this->Surface, this->Points, this->NumberOfSurfacePoints, flatness);
   this->Partners = std::make_unique<PartnerPoints>(
     *this->Surface, *this->Incidences, this->Points, this->Octree, this->Diagonal);
+  this->Walk = std::make_unique<FacetWalk>(
+    *this->Surface, *this->Partners, this->Points, this->Octree, this->Diagonal);
 }
 
 void SurfaceRefiner::Enqueue(Id t)
@@ -673,148 +589,12 @@ bool SurfaceRefiner::ResolveByEdge(Id t)
   return bestSegment != NoId && this->SplitSegment(bestSegment, bestPoint);
 }
 
-/**
- * A segment whose diametral sphere holds a position, among those around the triangles whose smallest
- * spheres hold it, too: these are the triangles that a point there would replace.
- */
-Id SurfaceRefiner::FindEncroachedSegment(Id t, const Vec3& position)
-{
-  const RefinableSurface& surface = *this->Surface;
-  this->IsInCavity.resize(surface.GetNumberOfTriangles(), 0);
-  std::vector<Id> cavity(1, t);
-  this->IsInCavity[t] = 1;
-  Id found = NoId;
-  for (std::size_t i = 0; i < cavity.size() && found == NoId && cavity.size() < LargestCavity; ++i)
-  {
-    for (Id adjacent : surface.GetTriangle(cavity[i]).Adjacent)
-    {
-      if (adjacent < 0)
-      {
-        const EdgeIds& ends = surface.GetSegment(-1 - adjacent).Points;
-        if (InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], position) >= 0)
-        {
-          found = -1 - adjacent;
-          break;
-        }
-        continue;
-      }
-      const TriangleIds& ids = surface.GetTriangle(adjacent / 3).Points;
-      if (!this->IsInCavity[adjacent / 3] &&
-        InEquatorialSphere(
-          this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]], position) >= 0)
-      {
-        this->IsInCavity[adjacent / 3] = 1;
-        cavity.push_back(adjacent / 3);
-      }
-    }
-  }
-  for (Id triangle : cavity)
-  {
-    this->IsInCavity[triangle] = 0;
-  }
-  return found;
-}
-
-/** Moves a position along a normal into the plane of a triangle. */
-Vec3 SurfaceRefiner::PutIntoPlane(Id t, const Vec3& position, const Vec3& normal) const
-{
-  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-  const Vec3& p = this->Points[ids[0]];
-  const Vec3 n = Cross(this->Points[ids[1]] - p, this->Points[ids[2]] - p);
-  const double slope = Dot(n, normal);
-  Vec3 result = slope != 0.0 ? position + (Dot(n, p - position) / slope) * normal : position;
-  // A plane across an axis is met exactly, and so are the coordinates of a matching point.
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double coordinate = p[axis];
-    if (this->Points[ids[1]][axis] == coordinate && this->Points[ids[2]][axis] == coordinate)
-    {
-      result[axis] = coordinate;
-    }
-  }
-  return result;
-}
-
-/**
- * Walks over a facet (thesis 6.3, "Locate Triangle"), always over the edge that faces the target most,
- * to the triangle above or below it, or to the segment that is in the way. False if that leads
- * nowhere, as it may on curved facets.
- * @param mirrored the point that the target is to match, or NoId
- */
-bool SurfaceRefiner::Walk(Id t, Id mirrored, const Vec3& target, Landing& landing) const
-{
-  const RefinableSurface& surface = *this->Surface;
-  const TriangleIds& start = surface.GetTriangle(t).Points;
-  const Vec3& a = this->Points[start[0]];
-  const Vec3& b = this->Points[start[1]];
-  const Vec3& c = this->Points[start[2]];
-  const Vec3 normal = Cross(b - a, c - a);
-  const double radius = Norm(GetCircumcenterOffset(a, b, c));
-  Id current = t;
-  Id previous = NoId;
-  for (int step = 0; step <= LongestWalk; ++step)
-  {
-    const TriangleIds& ids = surface.GetTriangle(current).Points;
-    Id worst = NoId;
-    double worstSide = 0.0;
-    for (int i = 0; i < 3; ++i)
-    {
-      const Vec3& p = this->Points[ids[i]];
-      const Vec3 edge = this->Points[ids[(i + 1) % 3]] - p;
-      const double side = Dot(normal, Cross(edge, target - p)) / Norm(edge);
-      const Id adjacent = surface.GetTriangle(current).Adjacent[i];
-      if (side < worstSide && !(adjacent >= 0 && adjacent / 3 == previous))
-      {
-        worst = i;
-        worstSide = side;
-      }
-    }
-    if (worst == NoId)
-    {
-      Vec3 position = this->PutIntoPlane(current, target, normal);
-      if (mirrored != NoId)
-      {
-        position = SnapToCoordinates(position, this->Points[mirrored], this->Diagonal);
-        position = this->Partners->MatchAcross(current, mirrored, position, radius);
-      }
-      else
-      {
-        // It may have been made before on the other side of a layer.
-        NearestPointVisitor visitor(
-          position, NoId, std::max(2.0 * Distance(position, this->Points[ids[0]]), SamePoint));
-        this->Octree.Visit(visitor, visitor.GetReach());
-        position = SnapToCoordinates(position, this->Points[visitor.Nearest], this->Diagonal);
-      }
-      const auto [edge, isInside] = surface.Locate(current, position);
-      const Id beyond = isInside ? NoId : surface.GetTriangle(current).Adjacent[edge];
-      // Rounded into the plane of either triangle it may lie in the other one: on the edge between.
-      if (isInside ||
-        (beyond >= 0 && beyond / 3 == previous &&
-          surface.CanSplitSmoothEdge(3 * current + edge, position)))
-      {
-        landing = { current, edge, position, NoId };
-        return true;
-      }
-      worst = edge;
-    }
-    const Id adjacent = surface.GetTriangle(current).Adjacent[worst];
-    if (adjacent < 0)
-    {
-      landing.Segment = -1 - adjacent;
-      return true;
-    }
-    previous = current;
-    current = adjacent / 3;
-  }
-  return false;
-}
-
 bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, const Vec3& target, bool isMirrored)
 {
   const RefinableSurface& surface = *this->Surface;
   const TriangleIds start = surface.GetTriangle(t).Points;
-  Landing landing;
-  if (!this->Walk(t, isMirrored ? disturbing : NoId, target, landing))
+  FacetWalk::Landing landing;
+  if (!this->Walk->Run(t, isMirrored ? disturbing : NoId, target, landing))
   {
     return false;
   }
@@ -846,7 +626,7 @@ bool SurfaceRefiner::ResolveInFacet(Id t, Id disturbing, const Vec3& target, boo
   }
 
   // A point that would disturb an edge of the facet must not be made: split the edge instead.
-  const Id encroached = this->FindEncroachedSegment(current, position);
+  const Id encroached = this->Walk->FindEncroachedSegment(current, position);
   if (encroached != NoId)
   {
     return this->SplitSegment(encroached, isMirrored ? disturbing : NoId);

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SurfaceChecks.h
+ * @brief What a surface has to be to be refined.
+ *
+ * Coordinates are finite, points do not coincide, triangles have an area; there are triangles, and as many
+ * points as ids reach. Exact. Cost: O(n log n).
+ */
+#ifndef cdmSurfaceChecks_h
+#define cdmSurfaceChecks_h
+
+#include "Core/Basics/Status.h"
+#include "Core/Meshes/TriangleMesh.h"
+
+#include <cstddef>
+
+namespace cdm
+{
+/** InvalidInput names points or triangles. @param numberOfMeshPoints beside those of the surface */
+Status CheckRefinableSurface(const TriangleMesh& surface, std::size_t numberOfMeshPoints);
+} // namespace cdm
+
+#endif
