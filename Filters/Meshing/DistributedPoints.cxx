@@ -61,7 +61,9 @@ cdm::Status DistributedPoints::Number(vtkPointSet* input, vtkPointSet* meshPoint
 }
 
 //--------------------------------------------------------------------------------------------------
-/** By their global ids if all of the input's points have them, otherwise one process after another. */
+/**
+ * By their global ids if all of the input's points have them, otherwise one process after another.
+ */
 cdm::Status DistributedPoints::NumberPoints(vtkPointSet* input, int port)
 {
   std::vector<cdm::NumberedPoint>& points = this->Pieces[port].Points;

@@ -161,8 +161,9 @@ bool AreSameRegions(const cdm::RegionPair& a, const cdm::RegionPair& b)
 }
 
 /**
- * The boundary of a mesh from which flat tetrahedra were peeled off: triangles of the boundary before
- * that are still there, then the new ones, with an old triangle of the same patch as their source.
+ * The boundary of a mesh from which flat tetrahedra were peeled off: triangles of the boundary
+ * before that are still there, then the new ones, with an old triangle of the same patch as their
+ * source.
  */
 cdm::TriangleMesh UpdateBoundary(const cdm::TetMesh& mesh, const cdm::TriangleMesh& before)
 {

@@ -7,15 +7,16 @@
  *  1. find the structural edges (Def. 6.2), flip the others to saturation (Def. 6.1);
  *  2. test each triangle by the chosen criterion, exactly;
  *  3. for a triangle that fails: flip, split a disturbed structural edge (type P or R), mirror the
- *     disturbing point (thin layers, sharp angles), or insert the projected circumcentre (Fig. 6.10);
+ *     disturbing point (thin layers, sharp angles), or insert the projected circumcentre (Fig.
+ *     6.10);
  *  4. test again the triangles that the new point disturbs.
  *
  * Inputs: port 0: vtkPolyData of triangles (run vtkBoundaryTriangulator first), optionally with the
  * two-component cell array BoundaryLabels. Port 1, optional: vtkPointSet, mesh points that the
  * tetrahedra are to use inside. Port 2, optional: vtkDataSet with the point array Sizing: target
  * edge length at a position, in model units, positive; between its points it is interpolated,
- * outside of it the nearest value holds. Of several lengths (3 components: along the axes; 6 or 9: a
- * tensor) the largest counts.
+ * outside of it the nearest value holds. Of several lengths (3 components: along the axes; 6 or 9:
+ * a tensor) the largest counts.
  *
  * Outputs: port 0: the Delaunay surface: input points with their ids, new points after them.
  * Point data are interpolated at new points (id arrays excepted: they are dropped), cell data are
@@ -28,14 +29,14 @@
  *
  * Guarantees: decisions are exact; input points keep their coordinates. Deterministic.
  *
- * Failure: an error that names the cells or points, and empty outputs, for an empty input, cells that
- * are not triangles, coordinates that are not finite, or a surface that intersects itself. Triangles
- * that a limit leaves unresolved give a warning and the array Unresolved.
+ * Failure: an error that names the cells or points, and empty outputs, for an empty input, cells
+ * that are not triangles, coordinates that are not finite, or a surface that intersects itself.
+ * Triangles that a limit leaves unresolved give a warning and the array Unresolved.
  *
  * Cost: about proportional to the points made, each with a search in an octree.
  *
- * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
- * the method. Filters/Core/Surface/DelaunaySurfaceRefiner.h is the engine.
+ * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
+ * 1999: the method. Filters/Core/Surface/DelaunaySurfaceRefiner.h is the engine.
  */
 #ifndef vtkDelaunaySurfaceRefiner_h
 #define vtkDelaunaySurfaceRefiner_h

@@ -4,8 +4,8 @@
  * @brief   Stage 4: better tetrahedra from the same points, with every tetrahedron still Delaunay.
  *
  * Method (Fleischmann 1999, sections 3.4.6, 3.4.7, 5.7 and 6.4.3):
- *  1. tetrahedra that are numerically flat on a boundary or interface are peeled off: removed at the
- *     outside, handed to the other region at an interface;
+ *  1. tetrahedra that are numerically flat on a boundary or interface are peeled off: removed at
+ *     the outside, handed to the other region at an interface;
  *  2. 2-3, 3-2 and 4-4 flips within exactly cospherical sets, where any tetrahedralization is
  *     Delaunay, as long as the smallest dihedral angle of the tetrahedra involved grows;
  *  3. free points of those that are left are moved, each with a local update of the Delaunay mesh,
@@ -16,19 +16,19 @@
  * tetrahedra around them (smoothing), in turn with the flips. The mesh is then no longer Delaunay.
  *
  * Inputs: port 0: vtkUnstructuredGrid of VTK_TETRA only, from any source. Cell array RegionId
- * (whole numbers from 0 on) where there are several regions; without it all is region 0. Point array
- * FreePoint (optional, one component): points inside with a value other than 0 may be moved.
+ * (whole numbers from 0 on) where there are several regions; without it all is region 0. Point
+ * array FreePoint (optional, one component): points inside with a value other than 0 may be moved.
  *
  * Outputs: port 0: the tetrahedra, with the cell array RegionId (int). Other cell data are kept
- * where a tetrahedron survives (the same four points), and zero for a new one. Points and point data
- * are those of the input, coordinates in double precision; at moved points point data but FreePoint
- * are interpolated in the input mesh (arrays of ids excepted: they are dropped if a point moves).
+ * where a tetrahedron survives (the same four points), and zero for a new one. Points and point
+ * data are those of the input, coordinates in double precision; at moved points point data but
+ * FreePoint are interpolated in the input mesh (arrays of ids excepted: they are dropped if a point
+ * moves).
  *
- * Guarantees: no point is added or removed; those that are not free keep their coordinates, corners of the
- * boundary always. No tetrahedron is inverted or flat. Unless
- * QualityBeforeDelaunay is on: a mesh that was Delaunay is so still, and boundary triangles that
- * fulfilled criterion 3.1 or 3.2 still do. Regions and boundaries keep their shape, but for what is
- * peeled off. Deterministic.
+ * Guarantees: no point is added or removed; those that are not free keep their coordinates, corners
+ * of the boundary always. No tetrahedron is inverted or flat. Unless QualityBeforeDelaunay is on: a
+ * mesh that was Delaunay is so still, and boundary triangles that fulfilled criterion 3.1 or 3.2
+ * still do. Regions and boundaries keep their shape, but for what is peeled off. Deterministic.
  *
  * Failure: an error that names the cells, and an empty output, for an empty input, cells of another
  * type, tetrahedra that are inverted, flat or overlap, an array FreePoint of the wrong size. An
@@ -37,9 +37,9 @@
  * Cost: O(n) for n tetrahedra and few flips; about a millisecond for a point that is tried to be
  * moved.
  *
- * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
- * local transformations; J. Tournois et al., "Perturbing slivers in 3D Delaunay meshes", 2009: moved
- * points. Filters/Core/Volume/SliverRemover.h is the engine.
+ * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
+ * 1999: local transformations; J. Tournois et al., "Perturbing slivers in 3D Delaunay meshes",
+ * 2009: moved points. Filters/Core/Volume/SliverRemover.h is the engine.
  */
 #ifndef vtkSliverRemover_h
 #define vtkSliverRemover_h
@@ -84,8 +84,8 @@ public:
 
   ///@{
   /**
-   * Whether points of the boundary and of interfaces may be moved, too, within the flat facet that they
-   * lie in or along their straight structural edge; corners stay. Not with quality before
+   * Whether points of the boundary and of interfaces may be moved, too, within the flat facet that
+   * they lie in or along their straight structural edge; corners stay. Not with quality before
    * Delaunay. Default off.
    */
   vtkSetMacro(FreeBoundaryPoints, bool);

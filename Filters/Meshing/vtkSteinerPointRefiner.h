@@ -7,31 +7,31 @@
  * Method (Fleischmann 1999, sections 5.6 and 6.5), in rounds:
  *  1. the boundary of the mesh is refined until its smallest spheres are empty and it is as fine as
  *     asked for, and tetrahedralized anew with the points inside;
- *  2. tetrahedra that are too large or badly shaped get a point at their circumcenter or, for shape,
- *     on the way there; where it disturbs the boundary, the boundary is split instead;
+ *  2. tetrahedra that are too large or badly shaped get a point at their circumcenter or, for
+ *     shape, on the way there; where it disturbs the boundary, the boundary is split instead;
  *  3. points of slivers are moved, inside of their region, each move with a local update of the
  *     Delaunay mesh, and only if the smallest dihedral angle around it grows; where that does not
  *     help points are taken out or added, then points of the boundary moved in their facet or along
  *     their edge, at last the boundary is split.
  *
  * Inputs: port 0: vtkUnstructuredGrid of VTK_TETRA only, as it comes from
- * vtkAdvancingFrontTetrahedralizer or any other source; cell array RegionId (whole numbers from 0 on)
- * where there are several regions. Point array FreePoint (optional, one component): points inside
- * with a value other than 0 may be moved and taken out, points on the boundary moved in their flat
- * facet or along their straight edge. Point array RemovePoint (optional, one
- * component): points inside with a value other than 0 are taken out first. Port 1, optional:
- * vtkDataSet with the point array Sizing, see vtkDelaunaySurfaceRefiner; edges longer than the sizing
- * in their direction are too long. Port 2, optional: vtkPolyData, the boundary that belongs to the
- * mesh (output 1 of vtkAdvancingFrontTetrahedralizer), which hands its cell data on and holds sheets
+ * vtkAdvancingFrontTetrahedralizer or any other source; cell array RegionId (whole numbers from 0
+ * on) where there are several regions. Point array FreePoint (optional, one component): points
+ * inside with a value other than 0 may be moved and taken out, points on the boundary moved in
+ * their flat facet or along their straight edge. Point array RemovePoint (optional, one component):
+ * points inside with a value other than 0 are taken out first. Port 1, optional: vtkDataSet with
+ * the point array Sizing, see vtkDelaunaySurfaceRefiner; edges longer than the sizing in their
+ * direction are too long. Port 2, optional: vtkPolyData, the boundary that belongs to the mesh
+ * (output 1 of vtkAdvancingFrontTetrahedralizer), which hands its cell data on and holds sheets
  * inside of regions. Port 3, optional: vtkPointSet, points to be put in.
  *
  * Outputs: port 0: the tetrahedra, with the cell array RegionId (int). Other cell data are dropped.
- * Points that stay where they are come first, in their order, with their data; at new and moved ones
- * point data are interpolated in the input mesh (arrays of ids excepted: they are dropped). Point
- * array FreePoint (unsigned char): 1 for points that were made here or were free before. Only
- * if there are tetrahedra that miss what was asked for: cell array RefinementFault (unsigned char), 1
- * too large, 2 radius-edge ratio, 3 dihedral angle, 4 the latter two at a sharp angle of the input
- * or across a thin layer, 0 for all others. Port 1: the refined boundary as triangles, with
+ * Points that stay where they are come first, in their order, with their data; at new and moved
+ * ones point data are interpolated in the input mesh (arrays of ids excepted: they are dropped).
+ * Point array FreePoint (unsigned char): 1 for points that were made here or were free before. Only
+ * if there are tetrahedra that miss what was asked for: cell array RefinementFault (unsigned char),
+ * 1 too large, 2 radius-edge ratio, 3 dihedral angle, 4 the latter two at a sharp angle of the
+ * input or across a thin layer, 0 for all others. Port 1: the refined boundary as triangles, with
  * BoundaryLabels (int, 2 components) and the cell data of port 2.
  *
  * Guarantees: the mesh is Delaunay and keeps the shape of the boundary; each boundary triangle
@@ -39,14 +39,15 @@
  * Deterministic.
  *
  * Failure: an error that names the cells, and empty outputs, for an empty input, cells of another
- * type, tetrahedra that are inverted or flat, a boundary that does not belong to the mesh. An aborted
- * run has empty outputs. A warning counts tetrahedra that miss what was asked for.
+ * type, tetrahedra that are inverted or flat, a boundary that does not belong to the mesh. An
+ * aborted run has empty outputs. A warning counts tetrahedra that miss what was asked for.
  *
  * Cost: about 25 microseconds for a tetrahedron of the result.
  *
- * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999;
- * J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998; J. Tournois et al.,
- * "Perturbing slivers in 3D Delaunay meshes", 2009. Filters/Core/Volume/SteinerPointRefiner.h is the engine.
+ * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
+ * 1999; J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998; J. Tournois et
+ * al., "Perturbing slivers in 3D Delaunay meshes", 2009. Filters/Core/Volume/SteinerPointRefiner.h
+ * is the engine.
  */
 #ifndef vtkSteinerPointRefiner_h
 #define vtkSteinerPointRefiner_h
@@ -88,8 +89,8 @@ public:
 
   ///@{
   /**
-   * Tetrahedra with a smaller dihedral angle are slivers, to be removed. Degrees; default 15; 0: off;
-   * range 0 to 40 (up to 20 are reached nearly everywhere).
+   * Tetrahedra with a smaller dihedral angle are slivers, to be removed. Degrees; default 15; 0:
+   * off; range 0 to 40 (up to 20 are reached nearly everywhere).
    */
   vtkSetClampMacro(DihedralAngleTarget, double, 0.0, 40.0);
   vtkGetMacro(DihedralAngleTarget, double);
@@ -133,7 +134,9 @@ public:
   ///@}
 
   ///@{
-  /** See vtkDelaunaySurfaceRefiner. Ratio of the bounding box diagonal; default 1e-9; range 0 to 1. */
+  /**
+   * See vtkDelaunaySurfaceRefiner. Ratio of the bounding box diagonal; default 1e-9; range 0 to 1.
+   */
   vtkSetClampMacro(FlatnessRatio, double, 0.0, 1.0);
   vtkGetMacro(FlatnessRatio, double);
   ///@}

@@ -537,7 +537,8 @@ TEST(SliverRemover, MovesKeepAnyBoundaryAndTheDelaunayProperty)
 
 TEST(SliverRemover, PointsOfTheBoundaryAreMovedInTheirPlanesAndOnTheirLinesOnly)
 {
-  // Two layers of cubes, an interface between, whose points are off in their facets and on their edges.
+  // Two layers of cubes, an interface between, whose points are off in their facets and on their
+  // edges.
   constexpr int size = 2;
   Id moved = 0;
   std::ptrdiff_t slivers[2] = { 0, 0 };

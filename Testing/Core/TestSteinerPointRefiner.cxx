@@ -247,7 +247,8 @@ TEST(SteinerPointRefiner, TurnedBoxesGetNoFlatTetrahedra)
 
 TEST(SteinerPointRefiner, TurnedLayersAreMeshedAsStraightOnes)
 {
-  // Points on both sides of a layer are corners of rectangles; turned, these are so but for rounding.
+  // Points on both sides of a layer are corners of rectangles; turned, these are so but for
+  // rounding.
   SteinerPointRefinerOptions options;
   options.MaximumEdgeLength = 0.2;
   std::size_t straight = 0;

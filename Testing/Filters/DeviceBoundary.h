@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file DeviceBoundary.h
- * @brief Judges the boundary of a device by itself: closed regions, volumes in closed form, and no point
- * where it does not belong, all by brute force.
+ * @brief Judges the boundary of a device by itself: closed regions, volumes in closed form, and no
+ * point where it does not belong, all by brute force.
  */
 #ifndef DeviceBoundary_h
 #define DeviceBoundary_h

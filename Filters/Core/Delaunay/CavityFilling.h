@@ -3,8 +3,8 @@
  * @file CavityFilling.h
  * @brief The Delaunay tetrahedra of a few points that lie within a polyhedron of their facets.
  *
- * Where a point of a Delaunay mesh is taken out or moved, the tetrahedra around leave a cavity. What
- * fills it are tetrahedra of the points at the cavity alone.
+ * Where a point of a Delaunay mesh is taken out or moved, the tetrahedra around leave a cavity.
+ * What fills it are tetrahedra of the points at the cavity alone.
  *
  * Method: all points are tetrahedralized. From each facet of the border a flood goes inwards, from
  * tetrahedron to tetrahedron, to walls (facets between two regions, which have to be there) and the
@@ -47,7 +47,10 @@ public:
     /** Numbers of points. */
     TetrahedronIds Ids;
     Id Region;
-    /** 4 * cell + facet, or OutOf(k) behind facet k of the border, or NoId behind a wall without cell. */
+    /**
+     * 4 * cell + facet, or OutOf(k) behind facet k of the border, or NoId behind a wall without
+     * cell.
+     */
     std::array<Id, 4> Neighbors;
   };
   static Id OutOf(Id facet) { return -2 - facet; }

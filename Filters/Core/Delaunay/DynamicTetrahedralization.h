@@ -15,9 +15,9 @@
  *    points in the same order. One whose cospherical sets are split in another way stays Delaunay
  *    too: a new tetrahedron's sphere lies within the spheres of those on both sides of its facet.
  *
- * Requires: a Delaunay mesh with the invariants of TetMesh.h. Where a hole ends at an outer facet, the
- * smallest sphere of that has to be empty (Crit. 3.1), also of the point: then nothing beyond it,
- * which the mesh does not have, is in conflict with a point on this side.
+ * Requires: a Delaunay mesh with the invariants of TetMesh.h. Where a hole ends at an outer facet,
+ * the smallest sphere of that has to be empty (Crit. 3.1), also of the point: then nothing beyond
+ * it, which the mesh does not have, is in conflict with a point on this side.
  * Guarantees: these invariants; only points inside of a region are inserted, removed or moved, but
  * for Move(), whose caller has to know that the cells fit.
  * Cost: microseconds for an insertion, a few hundred for a removal; 44 bytes per tetrahedron and 32
@@ -53,7 +53,9 @@ public:
 
   explicit DynamicTetrahedralization(TetMesh mesh);
 
-  /** Tetrahedra that are gone have the vertex NoId at place 0, points that are gone no tetrahedron. */
+  /**
+   * Tetrahedra that are gone have the vertex NoId at place 0, points that are gone no tetrahedron.
+   */
   const TetMesh& GetMesh() const { return this->Mesh; }
   const Vec3& GetPoint(Id point) const { return this->Mesh.Points[point]; }
   Id GetNumberOfPoints() const { return static_cast<Id>(this->Mesh.Points.size()); }
@@ -87,8 +89,8 @@ public:
   /** Puts a point back that was removed, to the same or another position. */
   void Restore(Id point, const Vec3& position, const Hole& hole);
   /**
-   * False, and nothing changed, if the point lies on a boundary, or if cospherical neighbors are not
-   * told apart by the pulling rule. The id stays reserved.
+   * False, and nothing changed, if the point lies on a boundary, or if cospherical neighbors are
+   * not told apart by the pulling rule. The id stays reserved.
    */
   bool Remove(Id point);
   /** The hole that undoes the last removal, as long as nothing else has been changed. */

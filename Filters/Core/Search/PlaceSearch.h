@@ -3,9 +3,9 @@
  * @file PlaceSearch.h
  * @brief A better place for a point: the one that makes the smallest dihedral angle largest.
  *
- * Method: pattern search, in given directions (of a cube, where a point may go anywhere) around the best
- * place so far, in steps that become shorter where none helps. A moved point first tries the mean of its neighbors (Laplacian
- * smoothing, thesis 3.4.6), and half the way there.
+ * Method: pattern search, in given directions (of a cube, where a point may go anywhere) around the
+ * best place so far, in steps that become shorter where none helps. A moved point first tries the
+ * mean of its neighbors (Laplacian smoothing, thesis 3.4.6), and half the way there.
  *
  * Deterministic. Cost: about a hundred ratings.
  */

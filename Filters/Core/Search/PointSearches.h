@@ -3,8 +3,8 @@
  * @file PointSearches.h
  * @brief Visitors of a PointOctree: what the surface refiner looks for among its points.
  *
- * Each is given to PointOctree::Visit() and holds what it has found afterwards. Order() says how near
- * a box is, infinity where nothing is to be found.
+ * Each is given to PointOctree::Visit() and holds what it has found afterwards. Order() says how
+ * near a box is, infinity where nothing is to be found.
  */
 #ifndef cdmPointSearches_h
 #define cdmPointSearches_h

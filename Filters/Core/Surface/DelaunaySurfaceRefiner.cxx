@@ -63,8 +63,8 @@ private:
   Status Prepare();
   /**
    * Unless all edges have been made fine enough before, triangles that only a point in their facet
-   * would mend come last, when no edge is left to split: what edges need is needed anyway, and points
-   * in facets match those on edges then. In thin parts that saves up to 40 % of the points.
+   * would mend come last, when no edge is left to split: what edges need is needed anyway, and
+   * points in facets match those on edges then. In thin parts that saves up to 40 % of the points.
    */
   enum class QueueState : char
   {
@@ -169,7 +169,9 @@ private:
   bool AreAllTested = false;
   std::vector<char> IsUnresolved;
   std::vector<Id> Reached;
-  /** Length and number of segments to be looked at, a heap; diametral spheres of those that were. */
+  /**
+   * Length and number of segments to be looked at, a heap; diametral spheres of those that were.
+   */
   std::vector<std::pair<double, Id>> EdgeQueue;
   BallIndex EmptyEdges;
   /** Segments that are disturbed and cannot be split. */
@@ -398,8 +400,8 @@ bool SurfaceRefiner::IsGood(Id t, SurfaceDelaunayTest::Result& found) const
 }
 
 /**
- * Tests all triangles on all threads before the first of them is refined: most are good and stay so.
- * False if aborted.
+ * Tests all triangles on all threads before the first of them is refined: most are good and stay
+ * so. False if aborted.
  */
 bool SurfaceRefiner::TestAll(const ExecutionContext& context)
 {
@@ -708,8 +710,9 @@ bool SurfaceRefiner::FindTooCoarse(Id t, Id& segment) const
 }
 
 /**
- * In a curved facet a point that mends one triangle may disturb its neighbors, which are bent against
- * it, and so on with ever smaller triangles. Points much closer than the input's are a sign of that.
+ * In a curved facet a point that mends one triangle may disturb its neighbors, which are bent
+ * against it, and so on with ever smaller triangles. Points much closer than the input's are a sign
+ * of that.
  */
 void SurfaceRefiner::NoteCrumpling(Id t, Id newPoint)
 {
@@ -848,9 +851,9 @@ void SurfaceRefiner::EnqueueEdge(Id segment)
 }
 
 /**
- * Edges whose diametral spheres have to be empty come before any triangle: facets are refined from a
- * fine enough outline. The shortest first: what it needs is given by the surface around it, and the
- * partners of its points are the points that longer edges need.
+ * Edges whose diametral spheres have to be empty come before any triangle: facets are refined from
+ * a fine enough outline. The shortest first: what it needs is given by the surface around it, and
+ * the partners of its points are the points that longer edges need.
  */
 void SurfaceRefiner::ProcessEdge()
 {

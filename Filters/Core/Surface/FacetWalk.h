@@ -3,9 +3,9 @@
  * @file FacetWalk.h
  * @brief Where in a facet a point is to be put that a triangle needs, and what would be in its way.
  *
- * Method (thesis 6.3, "Locate Triangle"): from triangle to triangle, always over the edge that faces the
- * target most, to the triangle above or below the target, or to a structural edge. In plane facets
- * that is the way to the target itself.
+ * Method (thesis 6.3, "Locate Triangle"): from triangle to triangle, always over the edge that
+ * faces the target most, to the triangle above or below the target, or to a structural edge. In
+ * plane facets that is the way to the target itself.
  *
  * Floating point, but for spheres. Deterministic. Cost: one step for each triangle on the way.
  */

@@ -3,8 +3,8 @@
  * @file SurfaceChecks.h
  * @brief What a surface has to be to be refined.
  *
- * Coordinates are finite, points do not coincide, triangles have an area; there are triangles, and as many
- * points as ids reach. Exact. Cost: O(n log n).
+ * Coordinates are finite, points do not coincide, triangles have an area; there are triangles, and
+ * as many points as ids reach. Exact. Cost: O(n log n).
  */
 #ifndef cdmSurfaceChecks_h
 #define cdmSurfaceChecks_h

@@ -15,7 +15,9 @@ namespace cdm
 {
 namespace
 {
-/** How far from the plane and the circle a fourth point may lie, in radii: far more than rounding. */
+/**
+ * How far from the plane and the circle a fourth point may lie, in radii: far more than rounding.
+ */
 constexpr double RoundingRatio = 1e-8;
 /** Cells whose centers are closer, in radii, are one degenerate cell. */
 constexpr double SameCellRatio = 1e-3;

@@ -33,7 +33,8 @@ class PointRounding
 {
 public:
   /**
-   * @param mesh has the surface's points first; places whose tetrahedron is gone have the vertex NoId
+   * @param mesh has the surface's points first; places whose tetrahedron is gone have the vertex
+   * NoId
    * @param flat tetrahedra that are flat but for rounding, of points of the surface
    */
   PointRounding(const TetMesh& mesh, const TriangleMesh& surface, const std::vector<Id>& flat);
@@ -53,7 +54,9 @@ private:
     /** From the corner to the center of the circle; of length one and across the plane. */
     WideVec3 Center;
     WideVec3 Normal;
-    /** Where along the normal, from the circle's center on, the centers of the adjacent cells lie. */
+    /**
+     * Where along the normal, from the circle's center on, the centers of the adjacent cells lie.
+     */
     double Low = 0.0;
     double High = 0.0;
   };

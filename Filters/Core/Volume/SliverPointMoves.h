@@ -9,9 +9,9 @@
  *     beyond could be in conflict;
  *  2. points inside are moved (VolumeRefinement.h);
  *  3. if points of the boundary are free, too, they are moved in their plane or on their line
- *     (SurfacePointMoves.h). This does not see what lies beyond outer facets: if one of those spheres is
- *     found to be filled afterwards, the moves that fill it are taken back, and 3. is begun anew
- *     without these points;
+ *     (SurfacePointMoves.h). This does not see what lies beyond outer facets: if one of those
+ *     spheres is found to be filled afterwards, the moves that fill it are taken back, and 3. is
+ *     begun anew without these points;
  *  4. what has been moved there is room for points inside: 2. again.
  *
  * Guarantees: a Delaunay mesh stays Delaunay. Deterministic.

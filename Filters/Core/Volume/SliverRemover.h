@@ -3,7 +3,8 @@
  * @file SliverRemover.h
  * @brief Stage 4: better tetrahedra from the same points, with every tetrahedron still Delaunay.
  *
- * Method (thesis 3.4.6, 3.4.7, 5.7 and 6.4.3), for tetrahedra with a dihedral angle below the target:
+ * Method (thesis 3.4.6, 3.4.7, 5.7 and 6.4.3), for tetrahedra with a dihedral angle below the
+ * target:
  *  1. one that is numerically flat and has exactly two facets on the outer boundary, which bend by
  *     less than a degree, is peeled off: a 2-2 flip of these two triangles;
  *  2. worst first, each tries to vanish by a 2-3 flip at one of its facets or by the removal of one
@@ -15,21 +16,22 @@
  *  3. one that is flat on an interface, like 1., is handed to the other region if a flip there
  *     makes it vanish;
  *  4. free points of those that are left are moved, with the Delaunay tetrahedra around them made
- *     anew, so that the smallest dihedral angle of what is replaced grows (SliverPointMoves.h); then
- *     also those of tetrahedra below 1.1 times the target, which leaves some room. Points inside
- *     go anywhere, those of the boundary and of interfaces along their facet or structural edge. Where
- *     cospherical sets are not split by the pulling rule, as after flips, points may have to stay.
+ *     anew, so that the smallest dihedral angle of what is replaced grows (SliverPointMoves.h);
+ *     then also those of tetrahedra below 1.1 times the target, which leaves some room. Points
+ *     inside go anywhere, those of the boundary and of interfaces along their facet or structural
+ *     edge. Where cospherical sets are not split by the pulling rule, as after flips, points may
+ *     have to stay.
  * With quality before Delaunay, 2. takes any flip that improves, cospherical or not, and instead of
  * 4. free points are moved within the tetrahedra around them, which stay (smoothing), in turn with
  * the flips.
  *
- * Guarantees: points that are not free are not moved, and those of the boundary and of interfaces not out
- * of their plane or line but for rounding; none is added, removed, or loses its last tetrahedron; no
- * tetrahedron is inverted or flat. A mesh that
- * was Delaunay is so still, and triangles and edges of the boundary whose smallest spheres were
- * empty (Crit. 3.1 and 3.2) still have empty ones: neither is so with quality before Delaunay. The
- * boundary and the interfaces change where tetrahedra are peeled off or handed over, by less than
- * the flatness, otherwise not at all. Deterministic.
+ * Guarantees: points that are not free are not moved, and those of the boundary and of interfaces
+ * not out of their plane or line but for rounding; none is added, removed, or loses its last
+ * tetrahedron; no tetrahedron is inverted or flat. A mesh that was Delaunay is so still, and
+ * triangles and edges of the boundary whose smallest spheres were empty (Crit. 3.1 and 3.2) still
+ * have empty ones: neither is so with quality before Delaunay. The boundary and the interfaces
+ * change where tetrahedra are peeled off or handed over, by less than the flatness, otherwise not
+ * at all. Deterministic.
  * Failure: InvalidInput names tetrahedra that are inverted, flat or have wrong neighbours; the mesh
  * is then left alone. Aborted leaves a valid mesh.
  * Cost: O(b log b) for b tetrahedra below the target, after one look at all of them; 20 bytes per

@@ -35,7 +35,9 @@ constexpr int MaximumFailedMoves = 3;
 constexpr int MaximumLastPasses = 5;
 /** Slivers wait until no more requests than these are left from badly shaped tetrahedra. */
 constexpr std::size_t FewRequests = 16;
-/** Edges of the boundary for a largest volume, in edges of the regular tetrahedron of that volume. */
+/**
+ * Edges of the boundary for a largest volume, in edges of the regular tetrahedron of that volume.
+ */
 constexpr double BoundaryEdgeRatio = 1.15;
 
 class Refiner
@@ -403,8 +405,8 @@ Status Refiner::StartRound()
 }
 
 /**
- * Sizes of the surface's points from the first new one on, which are negative: from those around them,
- * and from edges that come close to each other.
+ * Sizes of the surface's points from the first new one on, which are negative: from those around
+ * them, and from edges that come close to each other.
  */
 void Refiner::CollectSurfaceSizes(std::size_t first)
 {
@@ -456,8 +458,8 @@ Status Refiner::RefineRound(bool isShapeTested)
 
 Status Refiner::PerturbSlivers(SliverMeans means)
 {
-  // Rounding may leave a few flat tetrahedra, for which the boundary is split then; many are those of
-  // a device that is turned, and splits would not end there.
+  // Rounding may leave a few flat tetrahedra, for which the boundary is split then; many are those
+  // of a device that is turned, and splits would not end there.
   return this->Round->PerturbSlivers(this->Options.DihedralAngleTarget, means,
     this->NumberOfLeftSlivers <= FewRequests ? std::vector<char>() : this->IsSurfaceFree,
     this->GetRoundContext());
@@ -534,8 +536,9 @@ bool Refiner::RoundFlatTetrahedraAway()
 }
 
 /**
- * Points of slivers, but for those that have to stay. False if there is nothing to be done, or if a few
- * times in a row have not made slivers fewer: a move may turn facets that the mesh does not show.
+ * Points of slivers, but for those that have to stay. False if there is nothing to be done, or if a
+ * few times in a row have not made slivers fewer: a move may turn facets that the mesh does not
+ * show.
  */
 bool Refiner::MoveSurfacePoints()
 {
@@ -747,7 +750,8 @@ Status RefineBySteinerPoints(const SteinerPointRefinerInput& input,
   SteinerPointRefinerOutput& output)
 {
   output = SteinerPointRefinerOutput();
-  // How many rounds there will be nobody knows: a fraction counts where it is larger than those before.
+  // How many rounds there will be nobody knows: a fraction counts where it is larger than those
+  // before.
   double largest = 0.0;
   bool isGoingOn = true;
   const ExecutionContext ascending(

@@ -9,27 +9,29 @@
  *  2. the surface is refined (DelaunaySurfaceRefiner.h) until its smallest spheres are empty and it
  *     is as fine as the sizing asks for, and split where the round before requested it; then it is
  *     tetrahedralized with the mesh points (AdvancingFrontTetrahedralizer.h);
- *  3. for this boundary the inside is refined (VolumeRefinement.h): Steiner points in tetrahedra that
- *     are too large, then also in badly shaped ones, where each comes no closer to others than a
- *     fifth of the shortest edge that was there before; what disturbs the boundary is requested to
- *     be split instead;
+ *  3. for this boundary the inside is refined (VolumeRefinement.h): Steiner points in tetrahedra
+ *     that are too large, then also in badly shaped ones, where each comes no closer to others than
+ *     a fifth of the shortest edge that was there before; what disturbs the boundary is requested
+ *     to be split instead;
  *  4. if little is requested any more: points of slivers are moved, taken out or added, first those
- *     inside. Then new and free points of the surface are moved within their facets and along their edges,
- *     where that makes the smallest angle larger (SurfacePointMoves.h), and what has been moved is
- *     tetrahedralized anew. Before that, where tetrahedra are flat because points lie on a circle but
- *     for rounding, such points are rounded in another way (PointRounding.h). The boundary is split for
- *     slivers that nothing else helps, and for flat tetrahedra only if their points are all given or
- *     few are left.
+ *     inside. Then new and free points of the surface are moved within their facets and along their
+ *     edges, where that makes the smallest angle larger (SurfacePointMoves.h), and what has been
+ *     moved is tetrahedralized anew. Before that, where tetrahedra are flat because points lie on a
+ *     circle but for rounding, such points are rounded in another way (PointRounding.h). The
+ *     boundary is split for slivers that nothing else helps, and for flat tetrahedra only if their
+ *     points are all given or few are left.
  * It ends when a round requests nothing, or nothing that can be done.
  *
  * Guarantees: the mesh is Delaunay by the pulling rule and conforms to the same surface; facets on
  * it fulfil criterion 3.1 at least. Points of the mesh that are not free keep their coordinates;
- * those of the surface that are stay in their facets and on their edges. Deterministic, whatever the number of threads. Tetrahedra across thin layers
- * (ThinLayers.h) and across sharp angles (SharpAngles.h), which would be refined for ever, are not
- * refined for their shape: Faults tells which tetrahedra miss what was asked for, the report counts them.
- * Failure: InvalidInput names tetrahedra without a region, inverted or flat ones, triangles that are
- * no facets or facets that are missing among them, points that are not finite. Cells are tetrahedra
- * if no boundary is given, otherwise its triangles. The output is then empty, as after an abort.
+ * those of the surface that are stay in their facets and on their edges. Deterministic, whatever
+ * the number of threads. Tetrahedra across thin layers (ThinLayers.h) and across sharp angles
+ * (SharpAngles.h), which would be refined for ever, are not refined for their shape: Faults tells
+ * which tetrahedra miss what was asked for, the report counts them.
+ * Failure: InvalidInput names tetrahedra without a region, inverted or flat ones, triangles that
+ * are no facets or facets that are missing among them, points that are not finite. Cells are
+ * tetrahedra if no boundary is given, otherwise its triangles. The output is then empty, as after
+ * an abort.
  * Cost: about 15 microseconds for a tetrahedron of the result; 250 bytes at the peak.
  */
 #ifndef cdmSteinerPointRefiner_h
@@ -60,8 +62,9 @@ struct SteinerPointRefinerOptions
   /** What counts as flat, see StructuralEdges.h. */
   StructuralEdgeOptions StructuralEdges;
   /**
-   * The refinement stops when it has made about so many points. 0: no limit where sizes are asked for,
-   * otherwise 200 for each point of the mesh and 50000: shapes that need more are hardly to be had.
+   * The refinement stops when it has made about so many points. 0: no limit where sizes are asked
+   * for, otherwise 200 for each point of the mesh and 50000: shapes that need more are hardly to be
+   * had.
    */
   Id MaximumNewPoints = 0;
   /** Threads to use, at least 1; the result does not depend on it. */
@@ -79,8 +82,8 @@ struct SteinerPointRefinerInput
   /** Edges longer than the sizing are too long. May be empty. */
   SizingField Sizing;
   /**
-   * Empty, or one for each point of the mesh: whether it may be moved and removed if inside, or moved
-   * in its facet or along its edge if on the surface.
+   * Empty, or one for each point of the mesh: whether it may be moved and removed if inside, or
+   * moved in its facet or along its edge if on the surface.
    */
   std::vector<char> IsFree;
   /** Whether all points inside may be moved and removed. */

@@ -251,7 +251,8 @@ void SurfaceFacetFinder::FindFacets()
       }
     }
   };
-  // A triangle is a facet of one tetrahedron before its neighbor: threads never write to the same place.
+  // A triangle is a facet of one tetrahedron before its neighbor: threads never write to the same
+  // place.
   ForEach(this->Input.All.Tetrahedra.size(), this->Input.NumberOfThreads, find);
 }
 

@@ -16,7 +16,10 @@ namespace cdm
 {
 namespace
 {
-/** Triangles within this part of the surface's diagonal of a plane lie in it: far more than rounding. */
+/**
+ * Triangles within this part of the surface's diagonal of a plane lie in it: far more than
+ * rounding.
+ */
 constexpr double PlaneRatio = 1e-12;
 /** Edges that bend by less than this, in radians, are one line. */
 constexpr double LineAngle = 1e-9;

@@ -6,18 +6,20 @@
  * A sliver whose points all lie on the surface is not mended by points inside. Often two sides of a
  * layer match but for one point: where that is put opposite its partner, the sliver is gone.
  *
- * Method: a point moves in the plane that all triangles around it lie in, or along the two structural
- * edges that meet at it in a straight line. Places are tried opposite the sliver's other points, then in
- * a pattern search (PlaceSearch.h). For each, the tetrahedra around the point and those that it would
- * be in conflict with are a cavity, which is filled anew (CavityFilling.h), the moved triangles being
- * walls. The place is rated by the smallest dihedral angle of what fills it. It is no place at all if a
- * triangle is not there, if the smallest sphere of a triangle, or of an edge where these count, is not
- * empty, if the point comes too close to others, or if more tetrahedra than before break a limit.
+ * Method: a point moves in the plane that all triangles around it lie in, or along the two
+ * structural edges that meet at it in a straight line. Places are tried opposite the sliver's other
+ * points, then in a pattern search (PlaceSearch.h). For each, the tetrahedra around the point and
+ * those that it would be in conflict with are a cavity, which is filled anew (CavityFilling.h), the
+ * moved triangles being walls. The place is rated by the smallest dihedral angle of what fills it.
+ * It is no place at all if a triangle is not there, if the smallest sphere of a triangle, or of an
+ * edge where these count, is not empty, if the point comes too close to others, or if more
+ * tetrahedra than before break a limit.
  *
- * What lies beyond outer facets is not looked at: the surface has to be checked again with the new places
- * (DelaunaySurfaceRefiner.h).
+ * What lies beyond outer facets is not looked at: the surface has to be checked again with the new
+ * places (DelaunaySurfaceRefiner.h).
  *
- * Floating point, but for the cavity. Deterministic. Cost: about 200 microseconds for each place tried.
+ * Floating point, but for the cavity. Deterministic. Cost: about 200 microseconds for each place
+ * tried.
  */
 #ifndef cdmSurfacePointMoves_h
 #define cdmSurfacePointMoves_h
@@ -58,7 +60,8 @@ public:
     const std::vector<StructuralEdge>& keptEdges, Rules rules);
 
   /**
-   * Moves a point of a tetrahedron to the best place; false if none makes the smallest angle larger.
+   * Moves a point of a tetrahedron to the best place; false if none makes the smallest angle
+   * larger.
    * @param target degrees that are enough
    */
   bool Move(Id point, const TetrahedronIds& sliver, double target);

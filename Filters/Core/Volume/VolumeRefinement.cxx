@@ -170,7 +170,9 @@ double VolumeRefinement::GetAngle(Id tetrahedron) const
   return known.Angle;
 }
 
-/** By rounding: its four points, which are all on the surface, would have no tetrahedron otherwise. */
+/**
+ * By rounding: its four points, which are all on the surface, would have no tetrahedron otherwise.
+ */
 bool VolumeRefinement::IsFlat(Id tetrahedron) const
 {
   const TetrahedronIds& ids = this->GetMesh().Tetrahedra[tetrahedron];
@@ -256,9 +258,9 @@ bool VolumeRefinement::DisturbsBoundary(const Vec3& position)
 }
 
 /**
- * Whether the hole ends at an outer facet that is no triangle of the surface: its smallest sphere is
- * not known to be empty, so a point on this side may be in conflict with what lies beyond, which the
- * mesh does not have.
+ * Whether the hole ends at an outer facet that is no triangle of the surface: its smallest sphere
+ * is not known to be empty, so a point on this side may be in conflict with what lies beyond, which
+ * the mesh does not have.
  */
 bool VolumeRefinement::TouchesOpenFacet() const
 {
@@ -361,8 +363,8 @@ bool VolumeRefinement::RequestEdge(Id edge, bool isSizeKept)
 }
 
 /**
- * Where two triangles of the boundary that lie almost in a plane have a common circumcircle, almost,
- * they share a flat tetrahedron. No point inside destroys it; a point on their edge does.
+ * Where two triangles of the boundary that lie almost in a plane have a common circumcircle,
+ * almost, they share a flat tetrahedron. No point inside destroys it; a point on their edge does.
  */
 bool VolumeRefinement::RequestEdge(const TetrahedronIds& ids)
 {

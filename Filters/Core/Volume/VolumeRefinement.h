@@ -8,21 +8,21 @@
  *    circumcenter or off-center (TetrahedronLimits.h); if it disturbs triangles or structural edges
  *    of the boundary (BoundarySpheres.h), that which it disturbs most is requested to be split
  *    instead;
- *  - tetrahedra with a small dihedral angle, worst first: a free point of it is taken out of the mesh
- *    and put in again at the best of some hundred places around, or left out if that is better. A
- *    place is rated by the smallest dihedral angle of all tetrahedra that it would make, before
- *    anything is changed. If no point's move helps, a new point is tried in the same way, at last
- *    the boundary that is in the way is requested to be split. Each change makes the smallest angle
- *    of what it replaces larger, and breaks no limit where all were kept.
+ *  - tetrahedra with a small dihedral angle, worst first: a free point of it is taken out of the
+ *    mesh and put in again at the best of some hundred places around, or left out if that is
+ *    better. A place is rated by the smallest dihedral angle of all tetrahedra that it would make,
+ *    before anything is changed. If no point's move helps, a new point is tried in the same way, at
+ *    last the boundary that is in the way is requested to be split. Each change makes the smallest
+ *    angle of what it replaces larger, and breaks no limit where all were kept.
  *
  * Sharp input angles would be refined for ever: a tetrahedron across one (SharpAngles.h) is refined
  * for its size only; if it is a sliver, its points are moved. Each point has a size, the
  * shortest edge at it before any shape was refined, or how close edges of the boundary come to each
- * other there (FeatureSizes.h), and at most the size of another point and the way from there; no point
- * comes closer to it than a fifth of that, but for size limits. Of tetrahedra across a thin layer
- * (ThinLayers.h) only the size counts. Nor is a tetrahedron refined for its shape whose points all
- * belong to the boundary and lie in one plane but for rounding, as those of turned devices do: new
- * points on the boundary would have more of the kind.
+ * other there (FeatureSizes.h), and at most the size of another point and the way from there; no
+ * point comes closer to it than a fifth of that, but for size limits. Of tetrahedra across a thin
+ * layer (ThinLayers.h) only the size counts. Nor is a tetrahedron refined for its shape whose
+ * points all belong to the boundary and lie in one plane but for rounding, as those of turned
+ * devices do: new points on the boundary would have more of the kind.
  *
  * References: J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998,
  * doi:10.1145/276884.276894 (what is split instead, and why it ends); J. Tournois, R. Srinivasan,
@@ -72,7 +72,9 @@ enum class SliverAttempt
   SurfaceMove
 };
 
-/** What has been tried in vain, so that it is not tried again before something has changed there. */
+/**
+ * What has been tried in vain, so that it is not tried again before something has changed there.
+ */
 class SliverMemory
 {
 public:
@@ -121,10 +123,10 @@ class VolumeRefinement
 {
 public:
   /**
-   * The mesh has the points of the surface, then the interior points. It is Delaunay; by the pulling
-   * rule it stays if it is. The surface's triangles are those of its outer and interface facets
-   * whose smallest spheres are empty, and stay so; points are put in only where no other outer
-   * facet is near.
+   * The mesh has the points of the surface, then the interior points. It is Delaunay; by the
+   * pulling rule it stays if it is. The surface's triangles are those of its outer and interface
+   * facets whose smallest spheres are empty, and stay so; points are put in only where no other
+   * outer facet is near.
    * @param surfaceSizes as InteriorPoint::Size, one for each point of the surface, or empty
    * @param memory is kept from one boundary to the next, which has more points
    */
@@ -153,8 +155,9 @@ public:
   std::size_t CountSlivers(double target) const;
 
   /**
-   * Moves points of the surface that are corners of slivers. Afterwards it has to be seen whether they are
-   * in smallest spheres on the other side of outer facets; this object is good for nothing more.
+   * Moves points of the surface that are corners of slivers. Afterwards it has to be seen whether
+   * they are in smallest spheres on the other side of outer facets; this object is good for nothing
+   * more.
    * @param isFree one for each point of the surface, whether it may be moved
    * @param structural edges of the surface, sorted
    * @param areEdgesKept whether smallest spheres of the object's edges stay empty, too

@@ -3,8 +3,8 @@
  * @file Inputs.h
  * @brief VTK's data sets as meshes of the engine.
  *
- * A conversion checks what the engine takes for granted (ids in range, 32 bits, array types), and says
- * in its Status what is wrong, with the ids of VTK cells and points.
+ * A conversion checks what the engine takes for granted (ids in range, 32 bits, array types), and
+ * says in its Status what is wrong, with the ids of VTK cells and points.
  */
 #ifndef CoreBridge_Inputs_h
 #define CoreBridge_Inputs_h

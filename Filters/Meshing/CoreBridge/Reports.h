@@ -3,8 +3,8 @@
  * @file Reports.h
  * @brief What is wrong, in the words of VTK's users: with ids of their cells and points.
  *
- * Status::Cells of an engine run count polygons; OffsetCells() and MapCells() turn them into ids of VTK
- * cells (which count vertices and lines before polygons).
+ * Status::Cells of an engine run count polygons; OffsetCells() and MapCells() turn them into ids of
+ * VTK cells (which count vertices and lines before polygons).
  */
 #ifndef CoreBridge_Reports_h
 #define CoreBridge_Reports_h

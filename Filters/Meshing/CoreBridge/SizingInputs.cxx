@@ -92,7 +92,8 @@ public:
 
   cdm::LocalSpacing operator()(const cdm::Vec3& position) const
   {
-    // One for each thread, without a lock: threads that ask for one all the time wait for each other.
+    // One for each thread, without a lock: threads that ask for one all the time wait for each
+    // other.
     thread_local Place place;
     place.Weights.resize(this->NumberOfWeights);
     return this->Find(position, place);
