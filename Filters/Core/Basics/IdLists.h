@@ -10,6 +10,7 @@
 
 #include "Core/Basics/Types.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <numeric>
 #include <utility>
@@ -58,6 +59,7 @@ public:
   {
     return { this->Ids.data() + this->Begin[owner], this->Ids.data() + this->End[owner] };
   }
+  Id GetNumberOfOwners() const { return static_cast<Id>(this->End.size()); }
 
 private:
   std::vector<Id> Begin;
@@ -80,6 +82,19 @@ inline IdLists ListTrianglesAtPoints(
   IdLists lists;
   lists.Build(static_cast<Id>(numberOfPoints), pairs);
   return lists;
+}
+
+/** Whether three points, which may be others than those of the lists, have a triangle. */
+inline bool IsTriangle(const std::vector<TriangleIds>& triangles, const IdLists& pointTriangles,
+  const TriangleIds& points)
+{
+  if (points[0] >= pointTriangles.GetNumberOfOwners())
+  {
+    return false;
+  }
+  const IdLists::Range around = pointTriangles[points[0]];
+  return std::any_of(around.begin(), around.end(),
+    [&](Id t) { return std::is_permutation(points.begin(), points.end(), triangles[t].begin()); });
 }
 } // namespace cdm
 

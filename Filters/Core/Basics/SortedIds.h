@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SortedIds.h
- * @brief Ids in ascending order: of a list, and of the two ends of an edge.
+ * @brief Ids in ascending order: of a list, of a triangle, and of the two ends of an edge.
  */
 #ifndef cdmSortedIds_h
 #define cdmSortedIds_h
@@ -19,6 +19,14 @@ void SortUnique(std::vector<T>& ids)
 {
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+}
+
+/** Of a triangle or tetrahedron, as a key. */
+template <typename Ids>
+Ids Sorted(Ids ids)
+{
+  std::sort(ids.begin(), ids.end());
+  return ids;
 }
 
 /** The same for both directions. */

@@ -2,6 +2,7 @@
 #include "Core/Delaunay/CavityFilling.h"
 
 #include "Core/Basics/ExecutionContext.h"
+#include "Core/Basics/SortedIds.h"
 #include "Core/Delaunay/DelaunayTetrahedralization.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Meshes/TetMesh.h"
@@ -10,15 +11,6 @@
 
 namespace cdm
 {
-namespace
-{
-TriangleIds Sorted(TriangleIds ids)
-{
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
-} // namespace
-
 bool CavityFilling::Run(const Cavity& cavity)
 {
   this->Cells.clear();
@@ -45,9 +37,9 @@ bool CavityFilling::Run(const Cavity& cavity)
     for (int i = 0; i < 4; ++i)
     {
       const TriangleIds facet = GetFacet(local.Tetrahedra[t], i);
-      this->Facets.push_back(
-        { Sorted({ cavity.Numbers[facet[0]], cavity.Numbers[facet[1]], cavity.Numbers[facet[2]] }),
-          4 * t + i });
+      this->Facets.push_back({ Sorted(TriangleIds{ cavity.Numbers[facet[0]],
+                                 cavity.Numbers[facet[1]], cavity.Numbers[facet[2]] }),
+        4 * t + i });
     }
   }
   std::sort(this->Facets.begin(), this->Facets.end());

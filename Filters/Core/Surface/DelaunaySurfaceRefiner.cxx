@@ -318,9 +318,7 @@ Status SurfaceRefiner::SplitRequested()
   }
   this->CollectIncidences();
   std::map<EdgeIds, Id> segments;
-  const auto makeKey = [](const EdgeIds& edge) {
-    return EdgeIds{ std::min(edge[0], edge[1]), std::max(edge[0], edge[1]) };
-  };
+  const auto makeKey = [](const EdgeIds& edge) { return MakeEdge(edge[0], edge[1]); };
   for (Id s = 0; s < this->Surface->GetNumberOfSegments(); ++s)
   {
     segments.emplace(makeKey(this->Surface->GetSegment(s).Points), s);
@@ -981,7 +979,7 @@ Status SurfaceRefiner::Finish()
     const Id a = renumber(segment.Points[0]);
     const Id b = renumber(segment.Points[1]);
     this->Output.StructuralEdges.push_back(
-      { { std::min(a, b), std::max(a, b) }, segment.Kind, segment.Chain, segment.DihedralAngle });
+      { MakeEdge(a, b), segment.Kind, segment.Chain, segment.DihedralAngle });
   }
   std::sort(this->Output.StructuralEdges.begin(), this->Output.StructuralEdges.end(),
     [](const StructuralEdge& x, const StructuralEdge& y)

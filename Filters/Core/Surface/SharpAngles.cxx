@@ -51,9 +51,8 @@ void SharpAngles::FindFacets(const TriangleMesh& surface, const std::vector<Stru
       ++end;
     }
     const EdgeIds ends = uses[begin].GetPoints();
-    const auto edge = std::lower_bound(edges.begin(), edges.end(), ends,
-      [](const StructuralEdge& a, const EdgeIds& b) { return a.Points < b; });
-    if (edge == edges.end() || edge->Points != ends)
+    const StructuralEdge* const edge = FindStructuralEdge(edges, ends);
+    if (edge == nullptr)
     {
       for (std::size_t i = begin + 1; i < end; ++i)
       {

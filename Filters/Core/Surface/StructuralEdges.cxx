@@ -255,6 +255,14 @@ bool IsSurelySharp(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, d
 }
 } // namespace
 
+const StructuralEdge* FindStructuralEdge(
+  const std::vector<StructuralEdge>& edges, const EdgeIds& points)
+{
+  const auto edge = std::lower_bound(edges.begin(), edges.end(), points,
+    [](const StructuralEdge& a, const EdgeIds& b) { return a.Points < b; });
+  return edge != edges.end() && edge->Points == points ? &*edge : nullptr;
+}
+
 bool IsSmoothEdge(
   const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double accuracyAngle, double flatness)
 {

@@ -82,6 +82,10 @@ struct StructuralEdgesOutput
 Status ExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeOptions& options,
   const ExecutionContext& context, StructuralEdgesOutput& output);
 
+/** The edge between two points, the smaller id first, in a sorted list; null if it is not there. */
+const StructuralEdge* FindStructuralEdge(
+  const std::vector<StructuralEdge>& edges, const EdgeIds& points);
+
 /**
  * Whether two triangles (a, b, c) and (b, a, d) count as flat or bend by no more than the accuracy
  * angle: the rule above in one place. flatness is a distance in model units.

@@ -32,13 +32,12 @@ public:
   Status MoveBoundary(const ExecutionContext& context, bool& isMoved);
 
 private:
-  /** The mesh with the points of its boundary first; only boundary triangles that are intact. */
+  /** The mesh with the points of its boundary first; boundary triangles, then the intact ones. */
   struct Parts
   {
     TetMesh Mesh;
     TriangleMesh Surface;
     std::vector<StructuralEdge> IntactEdges;
-    std::vector<StructuralEdge> StructuralEdges;
     std::vector<InteriorPoint> Interior;
     /** Points of this->Mesh. */
     std::vector<Id> Sources;
@@ -56,7 +55,7 @@ private:
       return ids;
     }
   };
-  Status TakeApart(const ExecutionContext& context, Parts& parts) const;
+  void TakeApart(Parts& parts) const;
   bool KeepIntact(const ExecutionContext& context, Parts& parts) const;
   VolumeRefinement MakeRefinement(Parts& parts) const
   {
@@ -115,18 +114,10 @@ bool SliverPointMoves::KeepIntact(const ExecutionContext& context, Parts& parts)
   return true;
 }
 
-Status SliverPointMoves::TakeApart(const ExecutionContext& context, Parts& parts) const
+void SliverPointMoves::TakeApart(Parts& parts) const
 {
   parts.Surface = ExtractBoundary(this->Mesh);
   parts.Sources = RemoveUnusedPoints(parts.Surface);
-  StructuralEdgesOutput structural;
-  const Status status =
-    ExtractStructuralEdges(parts.Surface, {}, context.Part(0.0, 0.1), structural);
-  if (!status.IsOk())
-  {
-    return status;
-  }
-  parts.StructuralEdges = std::move(structural.Edges);
   for (const Id p : FindPointsInside(this->Mesh, parts.Sources))
   {
     parts.Sources.push_back(p);
@@ -146,7 +137,6 @@ Status SliverPointMoves::TakeApart(const ExecutionContext& context, Parts& parts
     ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]], newIds[ids[3]] };
   }
   parts.IsIntact.assign(parts.Surface.Points.size(), 1);
-  return KeepIntact(context.Part(0.1, 1.0), parts) ? Status{} : Status::Aborted();
 }
 
 void SliverPointMoves::PutTogether(const Parts& parts, const TetMesh& moved)
@@ -169,13 +159,14 @@ void SliverPointMoves::PutTogether(const Parts& parts, const TetMesh& moved)
 Status SliverPointMoves::MoveInside(const ExecutionContext& context)
 {
   Parts parts;
-  Status status = this->TakeApart(context.Part(0.0, 0.1), parts);
-  if (!status.IsOk())
+  this->TakeApart(parts);
+  if (!this->KeepIntact(context.Part(0.0, 0.1), parts))
   {
-    return status;
+    return Status::Aborted();
   }
   VolumeRefinement refinement = MakeRefinement(parts);
-  status = refinement.PerturbSlivers(this->Target, SliverMeans::Moves, {}, context.Part(0.1, 1.0));
+  const Status status =
+    refinement.PerturbSlivers(this->Target, SliverMeans::Moves, {}, context.Part(0.1, 1.0));
   this->PutTogether(parts, refinement.GetMesh());
   this->MovedPoints += refinement.GetReport().MovedPoints;
   return status;
@@ -185,10 +176,17 @@ Status SliverPointMoves::MoveBoundary(const ExecutionContext& context, bool& isM
 {
   isMoved = false;
   Parts parts;
-  const Status status = this->TakeApart(context.Part(0.0, 0.2), parts);
+  this->TakeApart(parts);
+  StructuralEdgesOutput structural;
+  const Status status =
+    ExtractStructuralEdges(parts.Surface, {}, context.Part(0.0, 0.05), structural);
   if (!status.IsOk())
   {
     return status;
+  }
+  if (!this->KeepIntact(context.Part(0.05, 0.2), parts))
+  {
+    return Status::Aborted();
   }
   std::vector<char> isFree = parts.IsIntact;
   for (int i = 0; i < MaximumTries; ++i)
@@ -199,7 +197,7 @@ Status SliverPointMoves::MoveBoundary(const ExecutionContext& context, bool& isM
     }
     VolumeRefinement refinement = MakeRefinement(parts);
     const std::vector<Vec3> places =
-      refinement.MoveSurfacePoints(this->Target, isFree, parts.StructuralEdges, true);
+      refinement.MoveSurfacePoints(this->Target, isFree, structural.Edges, true);
     std::vector<Vec3> points = this->Mesh.Points;
     std::vector<Id> moved;
     for (Id p = 0; p < static_cast<Id>(places.size()); ++p)

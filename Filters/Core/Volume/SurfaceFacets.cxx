@@ -2,6 +2,7 @@
 #include "Core/Volume/SurfaceFacets.h"
 
 #include "Core/Basics/ParallelLoop.h"
+#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Meshes/DuplicateTriangles.h"
 #include "Core/Meshes/FacetPolygons.h"
@@ -186,13 +187,8 @@ void SurfaceFacetFinder::FindFacets()
     Id Third;
     Id Triangle;
   };
-  const auto getSorted = [](TriangleIds ids)
-  {
-    std::sort(ids.begin(), ids.end());
-    return ids;
-  };
   const auto getVertices = [&](const TriangleIds& ids) {
-    return getSorted({ vertices[ids[0]], vertices[ids[1]], vertices[ids[2]] });
+    return Sorted(TriangleIds{ vertices[ids[0]], vertices[ids[1]], vertices[ids[2]] });
   };
   std::vector<Id> starts(count + 2, 0);
   std::vector<char> isOnSurface(count + 1, 0);
@@ -233,7 +229,7 @@ void SurfaceFacetFinder::FindFacets()
       {
         continue;
       }
-      const TriangleIds ids = getSorted(facet);
+      const TriangleIds ids = Sorted(facet);
       for (Id k = starts[ids[0]]; k < starts[ids[0] + 1]; ++k)
       {
         const Candidate& candidate = candidates[k];

@@ -73,12 +73,6 @@ Vec3 Project(const Vec3& position, const Vec3& origin, const Vec3& axis, bool is
   }
   return projected;
 }
-bool IsAmong(const std::vector<StructuralEdge>& edges, const EdgeIds& ids)
-{
-  const auto edge = std::lower_bound(edges.begin(), edges.end(), ids,
-    [](const StructuralEdge& a, const EdgeIds& b) { return a.Points < b; });
-  return edge != edges.end() && edge->Points == ids;
-}
 } // namespace
 
 SurfacePointMoves::SurfacePointMoves(DynamicTetrahedralization& mesh, const TriangleMesh& surface,
@@ -103,7 +97,7 @@ std::vector<Id> SurfacePointMoves::FindEdgeEnds(Id point) const
   {
     for (Id other : this->Surface.Triangles[t])
     {
-      if (other != point && IsAmong(this->Edges, MakeEdge(point, other)))
+      if (other != point && FindStructuralEdge(this->Edges, MakeEdge(point, other)) != nullptr)
       {
         ends.push_back(other);
       }
@@ -146,7 +140,7 @@ bool SurfacePointMoves::ArePlanar(Id point, const std::vector<Id>& ends) const
 
 bool SurfacePointMoves::FindSupport(Id point, Support& support) const
 {
-  const std::vector<Id>& ends = this->EdgeEnds;
+  const std::vector<Id> ends = this->FindEdgeEnds(point);
   const Vec3& origin = this->Points[point];
   support.IsLine = ends.size() == 2;
   if (support.IsLine)
@@ -247,20 +241,10 @@ bool SurfacePointMoves::KeepsTurns(Id point, const Vec3& position) const
   return std::all_of(triangles.begin(), triangles.end(), isKept);
 }
 
-bool SurfacePointMoves::IsTriangle(const TriangleIds& ids) const
+/** Whether a facet is one of the surface's triangles. */
+bool SurfacePointMoves::IsOnSurface(const TriangleIds& ids) const
 {
-  const Id count = static_cast<Id>(this->Points.size());
-  if (std::max({ ids[0], ids[1], ids[2] }) >= count)
-  {
-    return false;
-  }
-  const IdLists::Range triangles = this->PointTriangles[ids[0]];
-  return std::any_of(triangles.begin(), triangles.end(),
-    [&](Id t)
-    {
-      const TriangleIds& others = this->Surface.Triangles[t];
-      return std::is_permutation(ids.begin(), ids.end(), others.begin());
-    });
+  return IsTriangle(this->Surface.Triangles, this->PointTriangles, ids);
 }
 
 /** What is at the point, and in conflict with the position; false if this is too much. */
@@ -307,7 +291,7 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
       const TriangleIds facet = GetFacet(ids, i);
       const Id neighbor = mesh.Neighbors[t][i];
       const bool isInside = neighbor != NoId && isIn(neighbor / 4);
-      const bool isTriangle = this->IsTriangle(facet);
+      const bool isTriangle = this->IsOnSurface(facet);
       if (!isInside && !isTriangle &&
         (neighbor == NoId || mesh.Regions[neighbor / 4] != mesh.Regions[t]))
       {
@@ -374,7 +358,7 @@ bool SurfacePointMoves::AreSpheresEmpty(Id point, const Vec3& position) const
       const EdgeIds edge = MakeEdge(ids[i], ids[(i + 1) % 3]);
       const Vec3& a = v[i];
       const Vec3& b = v[(i + 1) % 3];
-      if (IsAmong(this->KeptEdges, edge) &&
+      if (FindStructuralEdge(this->KeptEdges, edge) != nullptr &&
         !isEmpty(edge, [&](const Vec3& other) { return InDiametralSphere(a, b, other) > 0; }))
       {
         return false;
@@ -384,7 +368,7 @@ bool SurfacePointMoves::AreSpheresEmpty(Id point, const Vec3& position) const
   };
   return std::all_of(this->Around.Walls.begin(), this->Around.Walls.end(), isTriangleEmpty) &&
     std::all_of(this->Around.Border.begin(), this->Around.Border.end(),
-      [&](const TriangleIds& ids) { return !this->IsTriangle(ids) || isTriangleEmpty(ids); });
+      [&](const TriangleIds& ids) { return !this->IsOnSurface(ids) || isTriangleEmpty(ids); });
 }
 
 double SurfacePointMoves::Rate(Id point, const Vec3& position, double required)
@@ -443,7 +427,6 @@ double SurfacePointMoves::Rate(Id point, const Vec3& position, double required)
 bool SurfacePointMoves::Move(Id point, const TetrahedronIds& sliver, double target)
 {
   Support support;
-  this->EdgeEnds = this->FindEdgeEnds(point);
   if (!this->FindSupport(point, support))
   {
     return false;

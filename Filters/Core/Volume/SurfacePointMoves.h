@@ -84,7 +84,7 @@ private:
   double Rate(Id point, const Vec3& position, double required);
   bool KeepsTurns(Id point, const Vec3& position) const;
   bool CollectCavity(Id point, const Vec3& position);
-  bool IsTriangle(const TriangleIds& ids) const;
+  bool IsOnSurface(const TriangleIds& ids) const;
   bool AreSpheresEmpty(Id point, const Vec3& position) const;
 
   DynamicTetrahedralization& Mesh;
@@ -96,9 +96,8 @@ private:
   const Rules Given;
   /** Across which triangles count as lying in one plane. */
   double Flatness = 0.0;
-  /** Tetrahedra at the point that is moved, and other ends of its structural edges. */
+  /** Tetrahedra at the point that is moved. */
   std::vector<Id> Star;
-  std::vector<Id> EdgeEnds;
   /** Work space of one place: the tetrahedra that it changes, and facets around these. */
   std::vector<Id> Tetrahedra;
   Cavity Around;

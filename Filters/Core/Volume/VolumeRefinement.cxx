@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Volume/VolumeRefinement.h"
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Search/PlaceSearch.h"
 #include "Core/Volume/SurfacePointMoves.h"
@@ -270,19 +271,7 @@ bool VolumeRefinement::TouchesOpenFacet() const
     {
       continue;
     }
-    const TriangleIds& facet = this->Hole.Facets[i];
-    const auto isSame = [&](Id t)
-    {
-      const TriangleIds& triangle = this->Surface.Triangles[t];
-      return std::is_permutation(facet.begin(), facet.end(), triangle.begin());
-    };
-    // Only points of the surface have triangles.
-    if (facet[0] >= this->NumberOfSurfacePoints)
-    {
-      return true;
-    }
-    const IdLists::Range triangles = this->PointTriangles[facet[0]];
-    if (std::none_of(triangles.begin(), triangles.end(), isSame))
+    if (!IsTriangle(this->Surface.Triangles, this->PointTriangles, this->Hole.Facets[i]))
     {
       return true;
     }
@@ -370,14 +359,9 @@ bool VolumeRefinement::RequestEdge(const TetrahedronIds& ids)
 {
   for (const auto& positions : TetrahedronEdges)
   {
-    EdgeIds ends{ ids[positions[0]], ids[positions[1]] };
-    if (ends[0] > ends[1])
-    {
-      std::swap(ends[0], ends[1]);
-    }
-    const auto edge = std::lower_bound(this->Edges.begin(), this->Edges.end(), ends,
-      [](const StructuralEdge& a, const EdgeIds& b) { return a.Points < b; });
-    if (edge == this->Edges.end() || edge->Points != ends)
+    const EdgeIds ends = MakeEdge(ids[positions[0]], ids[positions[1]]);
+    const StructuralEdge* const edge = FindStructuralEdge(this->Edges, ends);
+    if (edge == nullptr)
     {
       continue;
     }
@@ -389,7 +373,7 @@ bool VolumeRefinement::RequestEdge(const TetrahedronIds& ids)
                  [&](Id id) { return std::find(ids.begin(), ids.end(), id) != ids.end(); }) &&
         std::find(triangle.begin(), triangle.end(), ends[1]) != triangle.end();
     }
-    if (count == 2 && this->RequestEdge(static_cast<Id>(edge - this->Edges.begin()), true))
+    if (count == 2 && this->RequestEdge(static_cast<Id>(edge - this->Edges.data()), true))
     {
       return true;
     }
