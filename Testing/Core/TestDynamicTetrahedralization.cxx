@@ -159,6 +159,24 @@ bool FindHole(DynamicTetrahedralization& mesh, BoundarySpheres& spheres, const V
   return false;
 }
 
+/** All is as before, but for places that no tetrahedron had. */
+void ExpectUndone(const TetMesh& before, const std::vector<std::int64_t>& stamps,
+  const DynamicTetrahedralization& mesh)
+{
+  for (Id t = 0; t < mesh.GetNumberOfTetrahedra(); ++t)
+  {
+    if (t >= static_cast<Id>(stamps.size()) || before.Tetrahedra[t][0] == NoId)
+    {
+      ASSERT_TRUE(mesh.IsDead(t));
+      continue;
+    }
+    ASSERT_EQ(mesh.GetMesh().Tetrahedra[t], before.Tetrahedra[t]);
+    ASSERT_EQ(mesh.GetMesh().Neighbors[t], before.Neighbors[t]);
+    ASSERT_EQ(mesh.GetMesh().Regions[t], before.Regions[t]);
+    ASSERT_EQ(mesh.GetStamp(t), stamps[t]);
+  }
+}
+
 /** Inserts, removes and moves points at random; getPosition() proposes places. */
 template <typename GetPosition>
 void Exercise(const DelaunaySurfaceRefinerOutput& refined, int steps, std::mt19937_64& generator,
@@ -187,8 +205,17 @@ void Exercise(const DelaunaySurfaceRefinerOutput& refined, int steps, std::mt199
     {
       const Id point = inside[chosen];
       const Vec3 old = mesh.GetPoint(point);
+      const TetMesh before = mesh.GetMesh();
+      std::vector<std::int64_t> stamps;
+      for (Id t = 0; t < mesh.GetNumberOfTetrahedra(); ++t)
+      {
+        stamps.push_back(mesh.GetStamp(t));
+      }
       ASSERT_TRUE(mesh.Remove(point));
       EXPECT_EQ(mesh.GetTetrahedronAt(point), NoId);
+      mesh.UndoRemove();
+      ExpectUndone(before, stamps, mesh);
+      ASSERT_TRUE(mesh.Remove(point));
       if (action == 3)
       {
         const bool isMoved = FindHole(mesh, spheres, position, point, hole);
@@ -282,7 +309,6 @@ TEST(DynamicTetrahedralization, TakesNothingOnOrBeyondABoundary)
   ExpectMeshOfStage3(mesh, refined.Surface);
   EXPECT_TRUE(mesh.Remove(center));
   ExpectMeshOfStage3(mesh, refined.Surface);
-  // A removal is undone.
-  mesh.Restore(center, { 0.5, 0.5, 0.5 }, mesh.GetRemovedStar());
+  mesh.UndoRemove();
   ExpectMeshOfStage3(mesh, refined.Surface);
 }

@@ -6,12 +6,13 @@
 #include "Core/Geometry/PulledSphere.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace cdm
 {
 DynamicTetrahedralization::DynamicTetrahedralization(TetMesh mesh)
-  : Mesh(std::move(mesh)), Stamps(this->Mesh.Tetrahedra.size(), 0),
+  : Mesh(std::move(mesh)), Stamps(this->Mesh.Tetrahedra.size(), 0), NextStamp(1),
     PointTetrahedra(this->Mesh.Points.size(), NoId), Marks(this->Mesh.Tetrahedra.size(), 0)
 {
   for (Id t = 0; t < this->GetNumberOfTetrahedra(); ++t)
@@ -189,7 +190,7 @@ Id DynamicTetrahedralization::Make(const TetrahedronIds& ids, Id region)
     this->Mesh.Tetrahedra[t] = ids;
     this->Mesh.Regions[t] = region;
   }
-  ++this->Stamps[t];
+  this->Stamps[t] = this->NextStamp++;
   for (Id point : ids)
   {
     this->PointTetrahedra[point] = t;
@@ -201,7 +202,7 @@ Id DynamicTetrahedralization::Make(const TetrahedronIds& ids, Id region)
 void DynamicTetrahedralization::Kill(Id tetrahedron)
 {
   this->Mesh.Tetrahedra[tetrahedron][0] = NoId;
-  ++this->Stamps[tetrahedron];
+  this->Stamps[tetrahedron] = this->NextStamp++;
   this->Free.push_back(tetrahedron);
 }
 
@@ -263,21 +264,21 @@ bool DynamicTetrahedralization::Remove(Id point)
   {
     return false;
   }
-  // The hole's facets and points.
-  Hole& hole = this->RemovedStar;
-  hole.Facets.clear();
-  hole.Outer.clear();
-  const Id region = this->Mesh.Regions[this->Star.front()];
+  this->RemovedStar.clear();
+  this->RemovedRegion = this->Mesh.Regions[this->Star.front()];
+  this->FormerlyFree = this->Free.size();
   Cavity cavity;
+  std::vector<Id> outer;
   for (Id t : this->Star)
   {
     const TetrahedronIds& vertices = this->Mesh.Tetrahedra[t];
     const int i =
       static_cast<int>(std::find(vertices.begin(), vertices.end(), point) - vertices.begin());
     const TriangleIds facet = GetFacet(vertices, i);
-    hole.Facets.push_back({ facet[0], facet[2], facet[1] });
-    hole.Outer.push_back(this->Mesh.Neighbors[t][i]);
+    cavity.Border.push_back({ facet[0], facet[2], facet[1] });
+    outer.push_back(this->Mesh.Neighbors[t][i]);
     cavity.Numbers.insert(cavity.Numbers.end(), facet.begin(), facet.end());
+    this->RemovedStar.push_back({ t, vertices, this->Mesh.Neighbors[t], this->Stamps[t] });
   }
   SortUnique(cavity.Numbers);
   cavity.Points.reserve(cavity.Numbers.size());
@@ -285,19 +286,47 @@ bool DynamicTetrahedralization::Remove(Id point)
   {
     cavity.Points.push_back(this->Mesh.Points[id]);
   }
-  cavity.Border = hole.Facets;
-  cavity.Regions.assign(hole.Facets.size(), region);
+  cavity.Regions.assign(cavity.Border.size(), this->RemovedRegion);
   if (!this->Filling.Run(cavity))
   {
     return false;
   }
-  this->Refill(this->Star, hole.Outer, this->Filling.GetCells());
+  this->Replace(this->Star, outer, this->Filling.GetCells());
   this->PointTetrahedra[point] = NoId;
-  hole.Tetrahedra = this->Changed;
   return true;
 }
 
-void DynamicTetrahedralization::Refill(const std::vector<Id>& tetrahedra,
+void DynamicTetrahedralization::UndoRemove()
+{
+  for (Id t : this->Changed)
+  {
+    this->Mesh.Tetrahedra[t][0] = NoId;
+    this->Stamps[t] = this->NextStamp++;
+  }
+  for (const Removed& removed : this->RemovedStar)
+  {
+    const Id t = removed.Tetrahedron;
+    this->Mesh.Tetrahedra[t] = removed.Ids;
+    this->Mesh.Neighbors[t] = removed.Neighbors;
+    this->Mesh.Regions[t] = this->RemovedRegion;
+    this->Stamps[t] = removed.Stamp;
+    for (int i = 0; i < 4; ++i)
+    {
+      this->PointTetrahedra[removed.Ids[i]] = t;
+      const Id neighbor = removed.Neighbors[i];
+      if (neighbor != NoId)
+      {
+        this->Mesh.Neighbors[neighbor / 4][neighbor % 4] = 4 * t + i;
+      }
+    }
+  }
+  this->Free.resize(std::min(this->Free.size(), this->FormerlyFree));
+  std::copy_if(this->Changed.begin(), this->Changed.end(), std::back_inserter(this->Free),
+    [this](Id t) { return this->IsDead(t); });
+  this->Changed.clear();
+}
+
+void DynamicTetrahedralization::Replace(const std::vector<Id>& tetrahedra,
   const std::vector<Id>& outer, const std::vector<CavityFilling::Cell>& cells)
 {
   for (auto t = tetrahedra.rbegin(); t != tetrahedra.rend(); ++t)
@@ -326,13 +355,5 @@ void DynamicTetrahedralization::Refill(const std::vector<Id>& tetrahedra,
       }
     }
   }
-}
-
-void DynamicTetrahedralization::Move(Id point, const Vec3& position,
-  const std::vector<Id>& tetrahedra, const std::vector<Id>& outer,
-  const std::vector<CavityFilling::Cell>& cells)
-{
-  this->Mesh.Points[point] = position;
-  this->Refill(tetrahedra, outer, cells);
 }
 } // namespace cdm

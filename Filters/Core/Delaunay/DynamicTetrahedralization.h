@@ -19,7 +19,7 @@
  * the smallest sphere of that has to be empty (Crit. 3.1), also of the point: then nothing beyond
  * it, which the mesh does not have, is in conflict with a point on this side.
  * Guarantees: these invariants; only points inside of a region are inserted, removed or moved, but
- * for Move(), whose caller has to know that the cells fit.
+ * for Replace(), whose caller has to know that the cells fit.
  * Cost: microseconds for an insertion, a few hundred for a removal; 44 bytes per tetrahedron and 32
  * per point beside the mesh.
  *
@@ -61,8 +61,8 @@ public:
   Id GetNumberOfPoints() const { return static_cast<Id>(this->Mesh.Points.size()); }
   Id GetNumberOfTetrahedra() const { return static_cast<Id>(this->Mesh.Tetrahedra.size()); }
   bool IsDead(Id tetrahedron) const { return this->Mesh.Tetrahedra[tetrahedron][0] == NoId; }
-  /** Counts the changes of what is at this place. */
-  Id GetStamp(Id tetrahedron) const { return this->Stamps[tetrahedron]; }
+  /** Of what is at this place: no other tetrahedron ever gets the same one. */
+  std::int64_t GetStamp(Id tetrahedron) const { return this->Stamps[tetrahedron]; }
   /** A tetrahedron at the point, or NoId. */
   Id GetTetrahedronAt(Id point) const { return this->PointTetrahedra[point]; }
   /** Between two regions or at the outside: never removed. */
@@ -86,23 +86,31 @@ public:
 
   /** Appends a point and returns its id. The hole must be that of this point and number. */
   Id Insert(const Vec3& position, const Hole& hole);
-  /** Puts a point back that was removed, to the same or another position. */
+  /** Puts a point back that was removed, to another position. */
   void Restore(Id point, const Vec3& position, const Hole& hole);
   /**
    * False, and nothing changed, if the point lies on a boundary, or if cospherical neighbors are
    * not told apart by the pulling rule. The id stays reserved.
    */
   bool Remove(Id point);
-  /** The hole that undoes the last removal, as long as nothing else has been changed. */
-  const Hole& GetRemovedStar() const { return this->RemovedStar; }
-
   /**
-   * Moves a point of a boundary, and puts cells in the place of all tetrahedra that this changes.
+   * Undoes the last removal, as long as nothing else has been changed: all tetrahedra are back in
+   * their places, with their stamps.
+   */
+  void UndoRemove();
+
+  /** A new place for a point, before all tetrahedra that this changes are replaced. */
+  void SetPoint(Id point, const Vec3& position) { this->Mesh.Points[point] = position; }
+  /**
+   * Puts cells in the place of tetrahedra.
    * @param outer one for each facet of the border that the cells were found in: the facet id of the
    *   tetrahedron beyond, NoId at the outer boundary
    */
-  void Move(Id point, const Vec3& position, const std::vector<Id>& tetrahedra,
-    const std::vector<Id>& outer, const std::vector<CavityFilling::Cell>& cells);
+  void Replace(const std::vector<Id>& tetrahedra, const std::vector<Id>& outer,
+    const std::vector<CavityFilling::Cell>& cells);
+
+  /** What lay beyond a facet is replaced by the outside. */
+  void MakeOuter(Id facet) { this->Mesh.Neighbors[facet / 4][facet % 4] = NoId; }
 
   /** The tetrahedra made by the last change. */
   const std::vector<Id>& GetChanged() const { return this->Changed; }
@@ -112,13 +120,12 @@ private:
   Id Make(const TetrahedronIds& ids, Id region);
   void Kill(Id tetrahedron);
   void Fill(Id point, const Hole& hole);
-  void Refill(const std::vector<Id>& tetrahedra, const std::vector<Id>& outer,
-    const std::vector<CavityFilling::Cell>& cells);
   /** Stamp of a new search; marks of older ones do not count. */
   std::uint32_t StartSearch();
 
   TetMesh Mesh;
-  std::vector<Id> Stamps;
+  std::vector<std::int64_t> Stamps;
+  std::int64_t NextStamp = 0;
   std::vector<Id> PointTetrahedra;
   std::vector<Id> Free;
   std::vector<Id> Changed;
@@ -127,7 +134,18 @@ private:
   std::uint32_t Search = 0;
   /** Work space. */
   std::vector<Id> Star;
-  Hole RemovedStar;
+  /** A tetrahedron that the last removal has taken out. */
+  struct Removed
+  {
+    Id Tetrahedron;
+    TetrahedronIds Ids;
+    std::array<Id, 4> Neighbors;
+    std::int64_t Stamp;
+  };
+  std::vector<Removed> RemovedStar;
+  Id RemovedRegion = NoId;
+  /** How many free places there were before. */
+  std::size_t FormerlyFree = 0;
   std::vector<std::pair<TriangleIds, Id>> Facets;
   CavityFilling Filling;
 };

@@ -103,6 +103,20 @@ void PointOctree::Insert(Id id, const Vec3& position)
   }
 }
 
+void PointOctree::Remove(Id id, const Vec3& position)
+{
+  Id current = 0;
+  while (this->Nodes[current].FirstChild != NoId)
+  {
+    current = this->Nodes[current].FirstChild + GetChild(this->Nodes[current], position);
+  }
+  LeafPoints& leaf = this->Leaves[this->Nodes[current].Leaf];
+  const auto place = std::find(leaf.Ids, leaf.Ids + leaf.Count, id) - leaf.Ids;
+  --leaf.Count;
+  leaf.Ids[place] = leaf.Ids[leaf.Count];
+  leaf.Positions[place] = leaf.Positions[leaf.Count];
+}
+
 Vec3 PointOctree::GetCenter(const Box& bounds)
 {
   Vec3 center;

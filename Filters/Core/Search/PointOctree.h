@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointOctree.h
- * @brief Non-uniform point bucket octree (thesis 6.4.2) with tight boxes; points can be added.
+ * @brief Non-uniform point bucket octree (thesis 6.4.2) with tight boxes; points come and go.
  *
  * A leaf holds up to LeafCapacity points with their coordinates side by side. A full leaf is split
  * at the center of the box of its points, which separates at least two of them, so that any
  * distribution of distinct points works: graded 1:10000, on surfaces, in clusters.
  *
- * Invariants: the box of a node is the tight box of the points below it; a node has either eight
- * children, stored next to each other, or a leaf. Points are distinct.
+ * Invariants: the box of a node is the tight box of the points that have been added below it; a node
+ * has either eight children, stored next to each other, or a leaf. Points are distinct.
  *
- * Cost: O(log n) for usual distributions to add a point; about 60 bytes per point.
+ * Cost: O(log n) for usual distributions to add or remove a point; about 60 bytes per point.
  */
 #ifndef cdmPointOctree_h
 #define cdmPointOctree_h
@@ -32,6 +32,9 @@ public:
 
   /** Add a point that differs from all points added before. */
   void Insert(Id id, const Vec3& position);
+
+  /** Remove a point that was added with this id and position. */
+  void Remove(Id id, const Vec3& position);
 
   /** Add all points, with their index as id; into an empty octree much faster than one by one. */
   void Insert(const std::vector<Vec3>& points);

@@ -133,8 +133,10 @@ IdLists::Range SurfaceIncidences::GetFacets(Id point) const
     return {};
   }
   const Id* const facet = &this->NewPointFacets[point - this->NumberOfGivenPoints];
+  const Id edge = this->NewPointEdges[point - this->NumberOfGivenPoints];
   return *facet != NoId ? IdLists::Range{ facet, facet + 1 }
-                        : this->EdgeFacets[this->NewPointEdges[point - this->NumberOfGivenPoints]];
+    : edge != NoId      ? this->EdgeFacets[edge]
+                        : IdLists::Range();
 }
 
 IdLists::Range SurfaceIncidences::GetEdges(Id point) const

@@ -5,7 +5,8 @@
  *
  * Facets and input edges are those of RefinableSurface and stay the same: splits and flips change
  * neither. Points are numbered as the refiner has them: those of the surface, mesh points, which lie
- * on nothing, and new ones, each of which lies in one facet or on one input edge.
+ * on nothing, and new ones, each of which lies in one facet or on one input edge or is a mesh point
+ * again.
  *
  * Cost: O(n log n) to build, O(1) for a new point.
  */
@@ -36,7 +37,7 @@ public:
   SurfaceIncidences(const RefinableSurface& surface, const std::vector<Vec3>& points,
     Id numberOfSurfacePoints, double flatness);
 
-  /** The next new point: its facet, or NoId and its input edge. */
+  /** The next new point: its facet, or NoId and its input edge; neither for a mesh point. */
   void AddPoint(Id facet, Id inputEdge);
 
   /** Facets that a point lies on, ascending; none for a mesh point. */

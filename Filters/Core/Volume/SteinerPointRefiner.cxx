@@ -24,8 +24,8 @@ namespace cdm
 namespace
 {
 /** Rounds without end would be an error of the rules; so many have never been seen. */
-constexpr Id MaximumRounds = 200;
-/** Rounds that move points of the boundary for slivers, or split it. */
+constexpr Id MaximumRounds = 1000;
+/** Rounds in a row that move points of the boundary for slivers, or split it, in vain. */
 constexpr int MaximumSliverRounds = 40;
 /** Roundings of points in a row that do not help. */
 constexpr int MaximumFailedRoundings = 2;
@@ -35,10 +35,18 @@ constexpr int MaximumFailedMoves = 3;
 constexpr int MaximumLastPasses = 5;
 /** Slivers wait until no more requests than these are left from badly shaped tetrahedra. */
 constexpr std::size_t FewRequests = 16;
+/** The boundary is split for flat tetrahedra if no more than these are left. */
+constexpr std::ptrdiff_t FewFlat = 16;
+/** What is left of a point's size between it and new ones at last, if nothing else helps slivers. */
+constexpr double SliverSizeRatio = 0.05;
 /**
  * Edges of the boundary for a largest volume, in edges of the regular tetrahedron of that volume.
  */
 constexpr double BoundaryEdgeRatio = 1.15;
+/** Where more than this part of the boundary is to be split, the mesh is made anew. */
+constexpr double LargestSplitRatio = 0.05;
+/** Places that the mesh of a round has for points of the boundary. */
+constexpr Id FewestReservedPoints = 256;
 
 class Refiner
 {
@@ -62,9 +70,12 @@ private:
   void ExtractSurface();
   ExecutionContext GetRoundContext() const;
   Status Translate(Status status, const std::vector<Id>& sources) const;
+  DelaunaySurfaceRefinerOptions GetSurfaceOptions() const;
   Status StartRound();
+  bool CanSplitInPlace() const;
+  Status SplitBoundary();
   Status RefineRound(bool isShapeTested);
-  void CollectSurfaceSizes(std::size_t first);
+  std::size_t CollectSurfaceSizes();
   void MeasureSizes();
   void CollectReport();
   Status PerturbSlivers(SliverMeans means);
@@ -72,6 +83,7 @@ private:
   bool RoundFlatTetrahedraAway();
   bool MoveSurfacePoints();
   bool MoveSurface(const std::vector<Vec3>& places);
+  bool AllowCloserPoints();
   bool IsInevitable(const TetrahedronIds& ids, Id region) const;
   std::size_t CountRequests() const
   {
@@ -114,8 +126,8 @@ private:
   int FailedRoundings = 0;
   /** Points of flat tetrahedra that rounding has left, sorted. */
   std::vector<TetrahedronIds> LeftFlat;
-  /** Those of them that are not in thin layers or at sharp angles. */
-  std::size_t NumberOfLeftSlivers = 0;
+  /** Whether points may come closer to others for slivers. */
+  bool AreCloserPointsAllowed = false;
   /** Whether the last round has split nothing of what was requested. */
   bool IsStuck = false;
 };
@@ -306,6 +318,24 @@ Status Refiner::Translate(Status status, const std::vector<Id>& sources) const
   return status;
 }
 
+DelaunaySurfaceRefinerOptions Refiner::GetSurfaceOptions() const
+{
+  DelaunaySurfaceRefinerOptions options;
+  options.Criterion = std::max(this->Options.Criterion, SurfaceCriterion::SmallestSphere);
+  options.StructuralEdges = this->Options.StructuralEdges;
+  options.MaximumEdgeLength = this->Options.MaximumEdgeLength;
+  options.MeshPointClearanceRatio = 0.0;
+  options.NumberOfThreads = this->Options.NumberOfThreads;
+  if (this->Options.MaximumVolume > 0.0)
+  {
+    const double edge =
+      BoundaryEdgeRatio * std::cbrt(6.0 * std::sqrt(2.0) * this->Options.MaximumVolume);
+    options.MaximumEdgeLength =
+      options.MaximumEdgeLength > 0.0 ? std::min(options.MaximumEdgeLength, edge) : edge;
+  }
+  return options;
+}
+
 /** Refine the boundary, splitting what was requested, and tetrahedralize. */
 Status Refiner::StartRound()
 {
@@ -325,21 +355,9 @@ Status Refiner::StartRound()
     points.push_back(point.Position);
   }
   input.MeshPoints = &points;
-  DelaunaySurfaceRefinerOptions options;
-  options.Criterion = std::max(this->Options.Criterion, SurfaceCriterion::SmallestSphere);
-  options.StructuralEdges = this->Options.StructuralEdges;
-  options.MaximumEdgeLength = this->Options.MaximumEdgeLength;
-  options.MeshPointClearanceRatio = 0.0;
-  options.NumberOfThreads = this->Options.NumberOfThreads;
-  if (this->Options.MaximumVolume > 0.0)
-  {
-    const double edge =
-      BoundaryEdgeRatio * std::cbrt(6.0 * std::sqrt(2.0) * this->Options.MaximumVolume);
-    options.MaximumEdgeLength =
-      options.MaximumEdgeLength > 0.0 ? std::min(options.MaximumEdgeLength, edge) : edge;
-  }
   DelaunaySurfaceRefinerOutput refined;
-  Status status = RefineDelaunaySurface(input, options, context.Part(0.0, 0.3), refined);
+  Status status =
+    RefineDelaunaySurface(input, this->GetSurfaceOptions(), context.Part(0.0, 0.3), refined);
   if (!status.IsOk())
   {
     return this->Translate(std::move(status), {});
@@ -371,7 +389,6 @@ Status Refiner::StartRound()
   ++this->Output.Report.Rounds;
   this->CollectReport();
   this->IsStuck = refined.NewPoints.empty();
-  const Id oldPoints = static_cast<Id>(this->Surface.Points.size());
   this->Output.Report.BoundaryPoints += static_cast<Id>(refined.NewPoints.size());
   this->Output.Report.UnresolvedTriangles = static_cast<Id>(refined.UnresolvedTriangles.size());
   this->Interior.clear();
@@ -387,16 +404,16 @@ Status Refiner::StartRound()
   this->Surface = std::move(made.Boundary);
   this->Surface.Points = std::move(refined.Surface.Points);
   this->Edges = std::move(refined.StructuralEdges);
-  if (!this->SurfaceSizes.empty())
-  {
-    this->SurfaceSizes.resize(this->Surface.Points.size(), -1.0);
-    this->CollectSurfaceSizes(static_cast<std::size_t>(oldPoints));
-  }
+  this->CollectSurfaceSizes();
   this->Round = std::make_unique<VolumeRefinement>(std::move(made.Mesh), this->Surface, this->Edges,
     this->SurfaceSizes, this->Interior, this->Limits,
     this->MaximumNewPoints - this->Output.Report.BoundaryPoints -
       this->Output.Report.InteriorPoints,
-    this->Memory);
+    this->Memory, FewestReservedPoints + static_cast<Id>(this->Surface.Points.size()) / 4);
+  if (this->AreCloserPointsAllowed)
+  {
+    this->Round->SetSliverSizes(SliverSizeRatio, this->Options.DihedralAngleTarget);
+  }
   this->IsSurfaceFree.resize(this->Surface.Points.size(), 1);
   this->IsNew.resize(this->Surface.Points.size(), 1);
   this->Round->NoteNewPoints(this->IsNew);
@@ -404,12 +421,60 @@ Status Refiner::StartRound()
   return status;
 }
 
-/**
- * Sizes of the surface's points from the first new one on, which are negative: from those around
- * them, and from edges that come close to each other.
- */
-void Refiner::CollectSurfaceSizes(std::size_t first)
+/** Whether there is little to be split, and facets are plane: curved ones may have to be tried. */
+bool Refiner::CanSplitInPlace() const
 {
+  return this->Options.StructuralEdges.AccuracyAngle == 0.0 &&
+    this->Output.Report.UnresolvedTriangles == 0 &&
+    static_cast<double>(this->CountRequests()) <
+    LargestSplitRatio * static_cast<double>(this->Surface.Triangles.size());
+}
+
+/** The next round on the same mesh, if it can be had. */
+Status Refiner::SplitBoundary()
+{
+  if (!this->CanSplitInPlace())
+  {
+    return this->StartRound();
+  }
+  const std::size_t before = this->Surface.Points.size();
+  Status status;
+  const bool isDone = this->Round->SplitBoundary(this->Surface, this->Edges,
+    this->GetSurfaceOptions(), this->Input.Sizing, this->GetRoundContext(), status);
+  const std::size_t after = this->Surface.Points.size();
+  this->Output.Report.BoundaryPoints += static_cast<Id>(after - before);
+  if (!status.IsOk())
+  {
+    return this->Translate(std::move(status), {});
+  }
+  if (!isDone)
+  {
+    return this->StartRound();
+  }
+  ++this->Output.Report.Rounds;
+  this->IsStuck = after == before;
+  if (!this->SurfaceSizes.empty())
+  {
+    const std::size_t first = this->CollectSurfaceSizes();
+    this->Round->SetSurfaceSizes(static_cast<Id>(first), this->SurfaceSizes);
+  }
+  this->IsSurfaceFree.resize(after, 1);
+  this->IsNew.assign(after, 0);
+  return status;
+}
+
+/**
+ * Sizes of those points of the surface that have none yet: from those around them, and from edges
+ * that come close to each other. Returns the first of them.
+ */
+std::size_t Refiner::CollectSurfaceSizes()
+{
+  const std::size_t first = this->SurfaceSizes.size();
+  if (first == 0)
+  {
+    return first;
+  }
+  this->SurfaceSizes.resize(this->Surface.Points.size(), -1.0);
   bool isDone = false;
   while (!isDone)
   {
@@ -439,6 +504,7 @@ void Refiner::CollectSurfaceSizes(std::size_t first)
   {
     this->SurfaceSizes[p] = this->Features->Find(this->Surface.Points[p], this->SurfaceSizes[p]);
   }
+  return first;
 }
 
 /** The shortest edge at each point of the mesh, and how close edges of the surface are. */
@@ -460,9 +526,15 @@ Status Refiner::PerturbSlivers(SliverMeans means)
 {
   // Rounding may leave a few flat tetrahedra, for which the boundary is split then; many are those
   // of a device that is turned, and splits would not end there.
+  const std::vector<Id> flat = this->Round->FindFlatTetrahedra();
+  const auto slivers = std::count_if(flat.begin(), flat.end(),
+    [this](Id t)
+    {
+      const TetMesh& mesh = this->Round->GetMesh();
+      return !this->IsInevitable(mesh.Tetrahedra[t], mesh.Regions[t]);
+    });
   return this->Round->PerturbSlivers(this->Options.DihedralAngleTarget, means,
-    this->NumberOfLeftSlivers <= FewRequests ? std::vector<char>() : this->IsSurfaceFree,
-    this->GetRoundContext());
+    slivers <= FewFlat ? std::vector<char>() : this->IsSurfaceFree, this->GetRoundContext());
 }
 
 /** Points that were put in for shapes after the slivers' points were moved leave slivers, too. */
@@ -518,12 +590,6 @@ bool Refiner::RoundFlatTetrahedraAway()
   if (this->FailedRoundings > MaximumFailedRoundings)
   {
     this->LeftFlat = std::move(found);
-    this->NumberOfLeftSlivers = static_cast<std::size_t>(std::count_if(flat.begin(), flat.end(),
-      [this](Id t)
-      {
-        const TetMesh& mesh = this->Round->GetMesh();
-        return !this->IsInevitable(mesh.Tetrahedra[t], mesh.Regions[t]);
-      }));
     this->FailedRoundings = 0;
     this->FewestFlat = std::numeric_limits<std::size_t>::max() / 4;
     return false;
@@ -554,6 +620,19 @@ bool Refiner::MoveSurfacePoints()
   return this->MoveSurface(
     this->Round->MoveSurfacePoints(this->Options.DihedralAngleTarget, this->IsSurfaceFree,
       this->Edges, this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges));
+}
+
+/** For slivers that nothing else helps. False if there are none, or if it has been done. */
+bool Refiner::AllowCloserPoints()
+{
+  if (this->Options.DihedralAngleTarget == 0.0 || this->AreCloserPointsAllowed ||
+    this->Round->CountSlivers(this->Options.DihedralAngleTarget) == 0)
+  {
+    return false;
+  }
+  this->AreCloserPointsAllowed = true;
+  this->Round->SetSliverSizes(SliverSizeRatio, this->Options.DihedralAngleTarget);
+  return true;
 }
 
 /** False if all points stay where they are. */
@@ -678,6 +757,7 @@ Status Refiner::Run()
 
   bool areSizesDone = false;
   int sliverRounds = 0;
+  std::size_t fewestSlivers = std::numeric_limits<std::size_t>::max();
   bool isDone = false;
   while (status.IsOk() && !isDone)
   {
@@ -701,28 +781,40 @@ Status Refiner::Run()
       if (status.IsOk() && (this->IsStuck || isFull || this->CountRequests() <= FewRequests))
       {
         const Id inserted = this->Round->GetReport().InsertedPoints;
-        const bool areMeant = this->Options.DihedralAngleTarget > 0.0;
-        areMoved = areMeant && !isFull && sliverRounds < MaximumSliverRounds &&
-          this->RoundFlatTetrahedraAway();
+        const std::size_t slivers = this->Round->CountSlivers(this->Options.DihedralAngleTarget);
+        sliverRounds = slivers < fewestSlivers ? 0 : sliverRounds;
+        fewestSlivers = std::min(fewestSlivers, slivers);
+        const bool areMeant =
+          this->Options.DihedralAngleTarget > 0.0 && sliverRounds < MaximumSliverRounds;
+        areMoved = areMeant && !isFull && this->RoundFlatTetrahedraAway();
+        bool areRequested = false;
         if (areMeant && !areMoved)
         {
-          ++sliverRounds;
           status = this->PerturbSlivers(isFull ? SliverMeans::Moves : SliverMeans::Points);
-          if (status.IsOk() && !isFull && sliverRounds < MaximumSliverRounds)
+          if (status.IsOk() && !isFull)
           {
             areMoved = this->MoveSurfacePoints();
             // Splits for shapes do away with slivers, too.
-            if (!areMoved && (this->IsStuck || this->CountRequests() == 0))
+            const std::size_t requests = this->CountRequests();
+            if (!areMoved && (this->IsStuck || requests == 0))
             {
               status = this->PerturbSlivers(SliverMeans::Requests);
+              areRequested = this->CountRequests() > requests;
             }
           }
+          sliverRounds += areMoved || areRequested ? 1 : 0;
           status = status.IsOk() && !areMoved ? this->RefineRound(true) : status;
         }
-        isDone = !areMoved &&
-          (this->IsStuck || isFull || sliverRounds >= MaximumSliverRounds ||
+        isDone = !areMoved && !areRequested &&
+          (this->IsStuck || isFull ||
             (!this->HasRequests() && this->Round->GetReport().InsertedPoints == inserted));
-        if (isDone && areMeant && status.IsOk())
+        if (isDone && !isFull && status.IsOk() && this->AllowCloserPoints())
+        {
+          isDone = false;
+          sliverRounds = 0;
+          status = this->RefineRound(true);
+        }
+        if (isDone && this->Options.DihedralAngleTarget > 0.0 && status.IsOk())
         {
           status = this->PerturbLastSlivers();
         }
@@ -731,14 +823,15 @@ Status Refiner::Run()
     if (status.IsOk())
     {
       isDone = isDone || this->Output.Report.Rounds >= MaximumRounds;
-      status = this->StartRound();
+      status = isDone && !areMoved ? status : this->SplitBoundary();
       this->IsStuck = this->IsStuck && !areMoved;
     }
   }
   if (status.IsOk())
   {
-    // The last round has only numbered the points anew.
-    this->Output.Mesh = this->Round->GetMesh();
+    this->CollectReport();
+    this->Interior = this->Round->GetInterior();
+    this->Output.Mesh = this->Round->MakeMesh();
     this->MakeOutput();
   }
   return status;

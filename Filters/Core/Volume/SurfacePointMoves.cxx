@@ -452,7 +452,8 @@ bool SurfacePointMoves::Move(Id point, const TetrahedronIds& sliver, double targ
   // The place that was tried last need not be the best one.
   this->CollectCavity(point, best.Position);
   this->Filling.Run(this->Around);
-  this->Mesh.Move(point, best.Position, this->Tetrahedra, this->Outer, this->Filling.GetCells());
+  this->Mesh.SetPoint(point, best.Position);
+  this->Mesh.Replace(this->Tetrahedra, this->Outer, this->Filling.GetCells());
   this->Points[point] = best.Position;
   return true;
 }

@@ -6,7 +6,6 @@
 #include "Core/Meshes/TetMesh.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -113,18 +112,13 @@ void ThinLayers::MeasureWidths()
   }
 }
 
-std::vector<ThinLayers::Face> ThinLayers::GetFaces(Id point, Id region) const
+/** As seen from a region; null if it does not bound it. */
+const ThinLayers::Face* ThinLayers::GetFace(Id triangle, Id region) const
 {
-  std::vector<Face> faces;
-  for (Id t : this->PointTriangles[point])
-  {
-    const RegionPair& labels = this->Surface.Labels[t];
-    if (labels.Back == region || labels.Front == region)
-    {
-      faces.push_back(this->Faces[2 * t + (labels.Back == region ? 0 : 1)]);
-    }
-  }
-  return faces;
+  const RegionPair& labels = this->Surface.Labels[triangle];
+  return labels.Back == region ? &this->Faces[2 * triangle]
+    : labels.Front == region   ? &this->Faces[2 * triangle + 1]
+                               : nullptr;
 }
 
 bool ThinLayers::IsAcross(const TetrahedronIds& ids, Id region) const
@@ -139,29 +133,27 @@ bool ThinLayers::IsAcross(const TetrahedronIds& ids, Id region) const
   {
     longest = std::max(longest, Distance(points[ids[edge[0]]], points[ids[edge[1]]]));
   }
-  std::array<std::vector<Face>, 4> faces;
-  for (int v = 0; v < 4; ++v)
-  {
-    faces[v] = this->GetFaces(ids[v], region);
-  }
   return std::any_of(std::begin(TetrahedronEdges), std::end(TetrahedronEdges),
     [&](const int(&edge)[2])
     {
       const Vec3 direction = points[ids[edge[1]]] - points[ids[edge[0]]];
       const double length = Norm(direction);
-      for (const Face& first : faces[edge[0]])
+      for (Id t : this->PointTriangles[ids[edge[0]]])
       {
+        const Face* const first = this->GetFace(t, region);
         // How far it is to the other side.
-        const double height = -Dot(first.Normal, direction);
+        const double height = first != nullptr ? -Dot(first->Normal, direction) : 0.0;
         const bool isUpright = height >= AcrossCosine * length && length <= ThinRatio * longest;
-        if (!isUpright && !(height > 0.0 && height <= VeryThinRatio * longest))
+        if (height <= 0.0 || AspectRatio * height > first->Width ||
+          (!isUpright && height > VeryThinRatio * longest))
         {
           continue;
         }
-        for (const Face& second : faces[edge[1]])
+        for (Id u : this->PointTriangles[ids[edge[1]]])
         {
-          if (Dot(first.Normal, second.Normal) <= -AcrossCosine &&
-            AspectRatio * height <= std::min(first.Width, second.Width))
+          const Face* const second = this->GetFace(u, region);
+          if (second != nullptr && Dot(first->Normal, second->Normal) <= -AcrossCosine &&
+            AspectRatio * height <= second->Width)
           {
             return true;
           }

@@ -43,7 +43,7 @@ private:
     double Width = 0.0;
   };
   void MeasureWidths();
-  std::vector<Face> GetFaces(Id point, Id region) const;
+  const Face* GetFace(Id triangle, Id region) const;
 
   const TriangleMesh& Surface;
   const IdLists& PointTriangles;

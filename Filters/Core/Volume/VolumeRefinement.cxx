@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <queue>
 #include <utility>
 
@@ -19,8 +20,6 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t ReportInterval = 256;
 
-/** What is left of a point's size between it and a new one. */
-constexpr double SizeRatio = 0.2;
 /** Points are moved where angles are below this multiple of the target: it leaves some room. */
 constexpr double MoveRatio = 1.1;
 /** Free points closer to others than this part of the sizing are removed. */
@@ -29,8 +28,27 @@ constexpr double CloseRatio = 0.3;
 constexpr double FlatAngle = 1e-6;
 /** First step of the search for a new point's place, in radii of the sphere that it destroys. */
 constexpr double FirstInsertion = 0.3;
+/** What is left of a point's size between it and a new one. */
+constexpr double UsualSizeRatio = 0.2;
 /** Passes over the slivers that are left. */
 constexpr int MaximumPasses = 20;
+
+/** Places for more points after the first ones, which no tetrahedron has. */
+TetMesh ReservePoints(TetMesh mesh, std::size_t first, Id reserve)
+{
+  if (reserve > 0)
+  {
+    mesh.Points.insert(mesh.Points.begin() + static_cast<std::ptrdiff_t>(first), reserve, Vec3());
+    for (TetrahedronIds& ids : mesh.Tetrahedra)
+    {
+      for (Id& id : ids)
+      {
+        id += id >= static_cast<Id>(first) ? reserve : 0;
+      }
+    }
+  }
+  return mesh;
+}
 } // namespace
 
 void SliverMemory::SetChanged(const TetrahedronIds& names)
@@ -62,12 +80,11 @@ bool SliverMemory::IsHopeless(const TetrahedronIds& names, SliverAttempt last) c
 VolumeRefinement::VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
   const std::vector<StructuralEdge>& edges, const std::vector<double>& surfaceSizes,
   const std::vector<InteriorPoint>& interior, const TetrahedronLimits& limits, Id maximumNewPoints,
-  SliverMemory& memory)
-  : Mesh(std::move(mesh)), Surface(surface), Edges(edges), Limits(limits),
-    NumberOfSurfacePoints(static_cast<Id>(surface.Points.size())),
-    MaximumNewPoints(maximumNewPoints), Memory(memory), Spheres(surface, edges),
-    PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
-    Sharp(surface, edges), Layers(surface, this->PointTriangles),
+  SliverMemory& memory, Id reserve)
+  : Mesh(ReservePoints(std::move(mesh), surface.Points.size(), reserve)), Surface(surface),
+    Edges(edges), Limits(limits), FirstInside(static_cast<Id>(surface.Points.size()) + reserve),
+    MaximumNewPoints(maximumNewPoints), Memory(memory),
+    Shape(std::make_unique<BoundaryShape>(surface, edges)),
     IsTriangleRequested(surface.Triangles.size(), 0), IsEdgeRequested(edges.size(), 0)
 {
   for (std::size_t p = 0; p < surface.Points.size(); ++p)
@@ -75,12 +92,23 @@ VolumeRefinement::VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
     this->Points.push_back({ surface.Points[p], surfaceSizes.empty() ? 0.0 : surfaceSizes[p], false,
       NoId, static_cast<Id>(p) });
   }
+  this->Points.resize(this->FirstInside);
   this->Points.insert(this->Points.end(), interior.begin(), interior.end());
-  this->BoundSizes();
+  std::vector<Id> all(this->Mesh.GetNumberOfTetrahedra());
+  std::iota(all.begin(), all.end(), 0);
+  this->BoundSizes(all);
 }
 
-/** No size is larger than another one and the way there, along edges. */
-void VolumeRefinement::BoundSizes()
+VolumeRefinement::BoundaryShape::BoundaryShape(
+  const TriangleMesh& surface, const std::vector<StructuralEdge>& edges)
+  : Spheres(surface, edges),
+    PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
+    Sharp(surface, edges), Layers(surface, this->PointTriangles)
+{
+}
+
+/** No size is larger than another one and the way there, along edges, beginning with some. */
+void VolumeRefinement::BoundSizes(const std::vector<Id>& tetrahedra)
 {
   std::vector<Id> changed;
   const auto bound = [&](Id t)
@@ -104,10 +132,7 @@ void VolumeRefinement::BoundSizes()
       }
     }
   };
-  for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
-  {
-    bound(t);
-  }
+  std::for_each(tetrahedra.begin(), tetrahedra.end(), bound);
   std::vector<Id> star;
   while (!changed.empty())
   {
@@ -121,7 +146,7 @@ void VolumeRefinement::BoundSizes()
 std::vector<InteriorPoint> VolumeRefinement::GetInterior() const
 {
   std::vector<InteriorPoint> interior;
-  for (Id p = this->NumberOfSurfacePoints; p < this->Mesh.GetNumberOfPoints(); ++p)
+  for (Id p = this->FirstInside; p < this->Mesh.GetNumberOfPoints(); ++p)
   {
     if (this->Mesh.GetTetrahedronAt(p) != NoId)
     {
@@ -129,6 +154,29 @@ std::vector<InteriorPoint> VolumeRefinement::GetInterior() const
     }
   }
   return interior;
+}
+
+TetMesh VolumeRefinement::MakeMesh() const
+{
+  TetMesh mesh = this->GetMesh();
+  RemoveDeadTetrahedra(mesh);
+  std::vector<Id> newIds(mesh.Points.size(), NoId);
+  Id count = 0;
+  for (Id p = 0; p < static_cast<Id>(newIds.size()); ++p)
+  {
+    const bool isOnSurface = p < static_cast<Id>(this->Surface.Points.size());
+    if (isOnSurface || (p >= this->FirstInside && this->Mesh.GetTetrahedronAt(p) != NoId))
+    {
+      mesh.Points[count] = mesh.Points[p];
+      newIds[p] = count++;
+    }
+  }
+  mesh.Points.resize(count);
+  for (TetrahedronIds& ids : mesh.Tetrahedra)
+  {
+    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]], newIds[ids[3]] };
+  }
+  return mesh;
 }
 
 std::vector<Id> VolumeRefinement::FindFlatTetrahedra() const
@@ -146,7 +194,7 @@ std::vector<Id> VolumeRefinement::FindFlatTetrahedra() const
 
 bool VolumeRefinement::IsFree(Id point) const
 {
-  return point >= this->NumberOfSurfacePoints && this->Points[point].IsFree &&
+  return point >= this->FirstInside && this->Points[point].IsFree &&
     this->Mesh.GetTetrahedronAt(point) != NoId;
 }
 
@@ -156,19 +204,31 @@ std::array<Vec3, 4> VolumeRefinement::GetVertices(const TetrahedronIds& ids) con
     this->Mesh.GetPoint(ids[3]) };
 }
 
-double VolumeRefinement::GetAngle(Id tetrahedron) const
+VolumeRefinement::KnownShape& VolumeRefinement::GetShape(Id tetrahedron) const
 {
-  if (static_cast<std::size_t>(tetrahedron) >= this->Angles.size())
+  if (static_cast<std::size_t>(tetrahedron) >= this->Shapes.size())
   {
-    this->Angles.resize(this->GetMesh().Tetrahedra.size());
+    this->Shapes.resize(this->GetMesh().Tetrahedra.size());
   }
-  KnownAngle& known = this->Angles[tetrahedron];
+  KnownShape& known = this->Shapes[tetrahedron];
   if (known.Stamp != this->Mesh.GetStamp(tetrahedron))
   {
     const std::array<Vec3, 4> v = this->GetVertices(this->GetMesh().Tetrahedra[tetrahedron]);
     known = { GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]), this->Mesh.GetStamp(tetrahedron) };
   }
-  return known.Angle;
+  return known;
+}
+
+bool VolumeRefinement::IsInLayer(Id tetrahedron) const
+{
+  KnownShape& known = this->GetShape(tetrahedron);
+  if (known.LayerRound != this->ShapeRound)
+  {
+    known.LayerRound = this->ShapeRound;
+    known.IsInLayer = this->Shape->Layers.IsAcross(
+      this->GetMesh().Tetrahedra[tetrahedron], this->GetMesh().Regions[tetrahedron]);
+  }
+  return known.IsInLayer;
 }
 
 /**
@@ -177,7 +237,7 @@ double VolumeRefinement::GetAngle(Id tetrahedron) const
 bool VolumeRefinement::IsFlat(Id tetrahedron) const
 {
   const TetrahedronIds& ids = this->GetMesh().Tetrahedra[tetrahedron];
-  return *std::max_element(ids.begin(), ids.end()) < this->NumberOfSurfacePoints &&
+  return *std::max_element(ids.begin(), ids.end()) < this->FirstInside &&
     this->GetAngle(tetrahedron) < FlatAngle;
 }
 
@@ -206,7 +266,7 @@ bool VolumeRefinement::BreaksLimit(
   double severity = 0.0;
   const TetrahedronFault fault = this->Limits.Find(vertices, true, target, severity);
   return fault == TetrahedronFault::Size ||
-    (fault == TetrahedronFault::Shape && !this->Sharp.IsAcross(ids));
+    (fault == TetrahedronFault::Shape && !this->Shape->Sharp.IsAcross(ids));
 }
 
 bool VolumeRefinement::BreaksLimit(Id tetrahedron) const
@@ -235,7 +295,7 @@ bool VolumeRefinement::IsClear(const Vec3& position) const
   {
     for (Id id : facet)
     {
-      if (Distance(position, this->Mesh.GetPoint(id)) < SizeRatio * this->Points[id].Size)
+      if (Distance(position, this->Mesh.GetPoint(id)) < this->SizeRatio * this->Points[id].Size)
       {
         return false;
       }
@@ -249,12 +309,12 @@ bool VolumeRefinement::DisturbsBoundary(const Vec3& position)
   // What would be disturbed is part of the hole.
   const bool isNear = std::any_of(this->Hole.Facets.begin(), this->Hole.Facets.end(),
     [&](const TriangleIds& facet)
-    { return *std::min_element(facet.begin(), facet.end()) < this->NumberOfSurfacePoints; });
+    { return *std::min_element(facet.begin(), facet.end()) < this->FirstInside; });
   if (!isNear)
   {
     return false;
   }
-  this->Spheres.Find(position, this->Disturbed);
+  this->Shape->Spheres.Find(position, this->Disturbed);
   return !this->Disturbed.IsEmpty() || this->TouchesOpenFacet();
 }
 
@@ -271,7 +331,7 @@ bool VolumeRefinement::TouchesOpenFacet() const
     {
       continue;
     }
-    if (!IsTriangle(this->Surface.Triangles, this->PointTriangles, this->Hole.Facets[i]))
+    if (!IsTriangle(this->Surface.Triangles, this->Shape->PointTriangles, this->Hole.Facets[i]))
     {
       return true;
     }
@@ -301,8 +361,8 @@ void VolumeRefinement::NoteNewPoints(const std::vector<char>& isNew)
 {
   for (const TetrahedronIds& ids : this->GetMesh().Tetrahedra)
   {
-    if (std::any_of(ids.begin(), ids.end(),
-          [&](Id id) { return id < this->NumberOfSurfacePoints && isNew[id] != 0; }))
+    if (std::any_of(
+          ids.begin(), ids.end(), [&](Id id) { return id < this->FirstInside && isNew[id] != 0; }))
     {
       this->Memory.SetChanged(this->GetNames(ids));
     }
@@ -326,12 +386,20 @@ void VolumeRefinement::AddPoint(const Vec3& position)
   ++this->Report.InsertedPoints;
 }
 
+/** What counts for points that are put in for a tetrahedron. */
+double VolumeRefinement::GetSizeRatio(Id tetrahedron) const
+{
+  return this->SliverTarget > 0.0 && this->GetAngle(tetrahedron) < this->SliverTarget
+    ? this->SliverSizeRatio
+    : UsualSizeRatio;
+}
+
 /** Whether a point at this distance from others is as far away as their sizes ask for. */
 template <typename Ids>
 bool VolumeRefinement::KeepsSizes(double distance, const Ids& ids) const
 {
-  return std::all_of(
-    ids.begin(), ids.end(), [&](Id id) { return distance >= SizeRatio * this->Points[id].Size; });
+  return std::all_of(ids.begin(), ids.end(),
+    [&](Id id) { return distance >= this->SizeRatio * this->Points[id].Size; });
 }
 
 /** To split an edge of the boundary, if the sizes of its ends allow it. */
@@ -366,7 +434,7 @@ bool VolumeRefinement::RequestEdge(const TetrahedronIds& ids)
       continue;
     }
     int count = 0;
-    for (Id t : this->PointTriangles[ends[0]])
+    for (Id t : this->Shape->PointTriangles[ends[0]])
     {
       const TriangleIds& triangle = this->Surface.Triangles[t];
       count += std::all_of(triangle.begin(), triangle.end(),
@@ -401,7 +469,7 @@ void VolumeRefinement::RequestLargestTriangle(const TetrahedronIds& ids)
     {
       continue;
     }
-    for (Id t : this->PointTriangles[id])
+    for (Id t : this->Shape->PointTriangles[id])
     {
       const TriangleIds& corners = this->Surface.Triangles[t];
       const double radius = Norm(GetCircumcenterOffset(this->Surface.Points[corners[0]],
@@ -419,7 +487,7 @@ void VolumeRefinement::RequestLargestTriangle(const TetrahedronIds& ids)
 /** To split what the position disturbs most; edges before triangles. */
 void VolumeRefinement::Request(const Vec3& position, bool isSizeKept)
 {
-  this->Spheres.Find(position, this->Disturbed);
+  this->Shape->Spheres.Find(position, this->Disturbed);
   double deepest = Infinity;
   Id best = NoId;
   for (Id e : this->Disturbed.Edges)
@@ -478,7 +546,7 @@ void VolumeRefinement::SetSizes(const std::vector<double>& sizes)
 void VolumeRefinement::RemoveClosePoints(double smallest, const SizingField& sizing)
 {
   std::vector<Id> star;
-  for (Id p = this->NumberOfSurfacePoints; p < this->Mesh.GetNumberOfPoints(); ++p)
+  for (Id p = this->FirstInside; p < this->Mesh.GetNumberOfPoints(); ++p)
   {
     if (!this->IsFree(p) || !this->Mesh.FindStar(p, star))
     {
@@ -512,8 +580,8 @@ Status VolumeRefinement::RefineByLimits(bool isShapeTested, const ExecutionConte
     const TetrahedronFault fault =
       this->Limits.Find(this->GetVertices(ids), isShapeTested, target, severity);
     if (fault == TetrahedronFault::Size ||
-      (fault == TetrahedronFault::Shape && !this->Sharp.IsAcross(ids) &&
-        !this->Layers.IsAcross(ids, this->GetMesh().Regions[t]) && !this->IsFlat(t)))
+      (fault == TetrahedronFault::Shape && !this->Shape->Sharp.IsAcross(ids) &&
+        !this->IsInLayer(t) && !this->IsFlat(t)))
     {
       tasks.push({ fault, severity, t, this->Mesh.GetStamp(t) });
     }
@@ -548,7 +616,8 @@ Status VolumeRefinement::RefineByLimits(bool isShapeTested, const ExecutionConte
       continue;
     }
     const bool isSizeKept = task.Fault == TetrahedronFault::Shape;
-    this->Spheres.Find(target, this->Disturbed);
+    this->SizeRatio = this->GetSizeRatio(task.Tetrahedron);
+    this->Shape->Spheres.Find(target, this->Disturbed);
     if (!this->Disturbed.IsEmpty())
     {
       this->Request(target, isSizeKept);
@@ -565,6 +634,58 @@ Status VolumeRefinement::RefineByLimits(bool isShapeTested, const ExecutionConte
     }
   }
   return Status();
+}
+
+bool VolumeRefinement::SplitBoundary(TriangleMesh& surface, std::vector<StructuralEdge>& edges,
+  const DelaunaySurfaceRefinerOptions& options, const SizingField& sizing,
+  const ExecutionContext& context, Status& status)
+{
+  if (!this->Splits)
+  {
+    this->Splits = std::make_unique<BoundarySplits>(
+      this->Mesh, this->FirstInside, surface, edges, options, sizing);
+  }
+  const Id first = static_cast<Id>(surface.Points.size());
+  status = this->Splits->Run(this->RequestedTriangles, this->RequestedEdges, context);
+  const Id end = static_cast<Id>(surface.Points.size());
+  for (Id p = first; p < end; ++p)
+  {
+    this->Points[p] = { surface.Points[p], 0.0, false, NoId, p };
+  }
+  this->MaximumNewPoints -= end - first;
+  for (Id t : this->Splits->GetChanged())
+  {
+    if (!this->Mesh.IsDead(t))
+    {
+      this->Memory.SetChanged(this->GetNames(this->GetMesh().Tetrahedra[t]));
+    }
+  }
+  if (!status.IsOk() || !this->Splits->IsUsable())
+  {
+    return false;
+  }
+  this->Shape = std::make_unique<BoundaryShape>(surface, edges);
+  ++this->ShapeRound;
+  this->IsTriangleRequested.assign(surface.Triangles.size(), 0);
+  this->IsEdgeRequested.assign(edges.size(), 0);
+  return true;
+}
+
+void VolumeRefinement::SetSurfaceSizes(Id first, const std::vector<double>& sizes)
+{
+  for (std::size_t p = first; p < sizes.size(); ++p)
+  {
+    this->Points[p].Size = sizes[p];
+  }
+  std::vector<Id> changed;
+  for (Id t : this->Splits->GetChanged())
+  {
+    if (!this->Mesh.IsDead(t))
+    {
+      changed.push_back(t);
+    }
+  }
+  this->BoundSizes(changed);
 }
 
 bool VolumeRefinement::Move(Id point, double target)
@@ -649,7 +770,7 @@ bool VolumeRefinement::Move(Id point, double target)
   }
   if (!best.IsFound)
   {
-    this->Mesh.Restore(point, old, this->Mesh.GetRemovedStar());
+    this->Mesh.UndoRemove();
     return false;
   }
   const Id first = this->Mesh.Locate(best.Position, filled.front());
@@ -695,41 +816,13 @@ bool VolumeRefinement::InsertBest(Id tetrahedron, double target)
   return true;
 }
 
-/**
- * False if nothing helps.
- * @param left the tetrahedron, which may have got another place
- */
-bool VolumeRefinement::Mend(
-  const TetrahedronIds& ids, Id tetrahedron, Id stamp, double target, bool mayInsert, Id& left)
+/** False if nothing helps; then nothing has changed. */
+bool VolumeRefinement::Mend(Id tetrahedron, double target, bool mayInsert)
 {
-  left = tetrahedron;
-  Id tried = NoId;
-  for (Id id : ids)
-  {
-    if (!this->IsFree(id))
-    {
-      continue;
-    }
-    tried = id;
-    if (this->Move(id, target))
-    {
-      return true;
-    }
-  }
-  if (this->Mesh.GetStamp(tetrahedron) != stamp)
-  {
-    // A point that was taken out and put back has the same tetrahedra in other places.
-    std::vector<Id> star;
-    this->Mesh.FindStar(tried, star);
-    const auto same = std::find_if(star.begin(), star.end(),
-      [&](Id t)
-      {
-        const TetrahedronIds& others = this->GetMesh().Tetrahedra[t];
-        return std::is_permutation(ids.begin(), ids.end(), others.begin());
-      });
-    left = same == star.end() ? NoId : *same;
-  }
-  return left == NoId || (mayInsert && this->InsertBest(left, target));
+  const TetrahedronIds ids = this->GetMesh().Tetrahedra[tetrahedron];
+  return std::any_of(ids.begin(), ids.end(),
+           [&](Id id) { return this->IsFree(id) && this->Move(id, target); }) ||
+    (mayInsert && this->InsertBest(tetrahedron, target));
 }
 
 std::vector<VolumeRefinement::Sliver> VolumeRefinement::FindSlivers(double target) const
@@ -738,8 +831,7 @@ std::vector<VolumeRefinement::Sliver> VolumeRefinement::FindSlivers(double targe
   for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
   {
     const double angle = this->Mesh.IsDead(t) ? 180.0 : this->GetAngle(t);
-    if (angle < target &&
-      !this->Layers.IsAcross(this->GetMesh().Tetrahedra[t], this->GetMesh().Regions[t]))
+    if (angle < target && !this->IsInLayer(t))
     {
       slivers.push_back({ angle, t, this->Mesh.GetStamp(t) });
     }
@@ -755,7 +847,7 @@ std::size_t VolumeRefinement::CountSlivers(double target) const
   const std::vector<Sliver> slivers = this->FindSlivers(target);
   return static_cast<std::size_t>(std::count_if(slivers.begin(), slivers.end(),
     [this](const Sliver& sliver)
-    { return !this->Sharp.IsAcross(this->GetMesh().Tetrahedra[sliver.Tetrahedron]); }));
+    { return !this->Shape->Sharp.IsAcross(this->GetMesh().Tetrahedra[sliver.Tetrahedron]); }));
 }
 
 std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(double target,
@@ -763,12 +855,12 @@ std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(double target,
 {
   SurfacePointMoves::Rules rules;
   rules.HasAngle = [this](const TetrahedronIds& ids, Id region)
-  { return !this->Layers.IsAcross(ids, region) && !this->Sharp.IsAcross(ids); };
+  { return !this->Shape->Layers.IsAcross(ids, region) && !this->Shape->Sharp.IsAcross(ids); };
   rules.BreaksLimit = [this](const TetrahedronIds& ids, const std::array<Vec3, 4>& vertices)
   { return this->BreaksLimit(ids, vertices); };
-  rules.GetClearance = [this](Id point) { return SizeRatio * this->Points[point].Size; };
+  rules.GetClearance = [this](Id point) { return UsualSizeRatio * this->Points[point].Size; };
   const std::vector<StructuralEdge> none;
-  SurfacePointMoves moves(this->Mesh, this->Surface, this->PointTriangles, structural,
+  SurfacePointMoves moves(this->Mesh, this->Surface, this->Shape->PointTriangles, structural,
     areEdgesKept ? this->Edges : none, rules);
 
   bool isMended = true;
@@ -783,14 +875,14 @@ std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(double target,
       }
       const TetrahedronIds ids = this->GetMesh().Tetrahedra[sliver.Tetrahedron];
       const TetrahedronIds names = this->GetNames(ids);
-      if (this->Sharp.IsAcross(ids) || this->Memory.IsHopeless(names, SliverAttempt::SurfaceMove))
+      if (this->Shape->Sharp.IsAcross(ids) ||
+        this->Memory.IsHopeless(names, SliverAttempt::SurfaceMove))
       {
         continue;
       }
       const bool isMoved = std::any_of(ids.begin(), ids.end(),
-        [&](Id id)
-        {
-          return id < this->NumberOfSurfacePoints && isFree[id] != 0 &&
+        [&](Id id) {
+          return id < this->FirstInside && isFree[id] != 0 &&
             moves.Move(id, ids, MoveRatio * target);
         });
       if (isMoved)
@@ -834,18 +926,17 @@ Status VolumeRefinement::PerturbSlivers(double target, SliverMeans means,
       }
       const TetrahedronIds ids = this->GetMesh().Tetrahedra[sliver.Tetrahedron];
       const TetrahedronIds names = this->GetNames(ids);
-      Id left = NoId;
-      const bool isBad = sliver.Angle < target && !this->Sharp.IsAcross(ids);
+      this->SizeRatio = this->GetSizeRatio(sliver.Tetrahedron);
+      const bool isBad = sliver.Angle < target && !this->Shape->Sharp.IsAcross(ids);
       const bool mayRequest = means == SliverMeans::Requests &&
         (isFree.empty() || !this->IsFlat(sliver.Tetrahedron) ||
           std::none_of(ids.begin(), ids.end(),
-            [&](Id id) { return id >= this->NumberOfSurfacePoints || isFree[id] != 0; }));
+            [&](Id id) { return id >= this->FirstInside || isFree[id] != 0; }));
       const SliverAttempt last =
         isBad && mayInsert ? SliverAttempt::Insertion : SliverAttempt::Move;
       if (!this->Memory.IsHopeless(names, last))
       {
-        if (this->Mend(ids, sliver.Tetrahedron, sliver.Stamp, MoveRatio * target,
-              last == SliverAttempt::Insertion, left))
+        if (this->Mend(sliver.Tetrahedron, MoveRatio * target, last == SliverAttempt::Insertion))
         {
           isMended = isMended || isBad;
           continue;
@@ -872,11 +963,20 @@ Status VolumeRefinement::PerturbSlivers(double target, SliverMeans means,
     mayInsert = !isMoving;
   }
   // No edge or triangle of the boundary is at fault: another point at one of them gives a
-  // sliver beside it another chance.
-  for (std::size_t i = 0;
-       i < unmet.size() && this->RequestedEdges.empty() && this->RequestedTriangles.empty(); ++i)
+  // sliver beside it another chance; one for those that have a point in common.
+  if (this->RequestedEdges.empty() && this->RequestedTriangles.empty())
   {
-    this->RequestLargestTriangle(unmet[i]);
+    std::vector<Id> near;
+    this->SizeRatio = this->SliverTarget > 0.0 ? this->SliverSizeRatio : UsualSizeRatio;
+    for (const TetrahedronIds& ids : unmet)
+    {
+      if (std::none_of(ids.begin(), ids.end(),
+            [&near](Id id) { return std::find(near.begin(), near.end(), id) != near.end(); }))
+      {
+        this->RequestLargestTriangle(ids);
+        near.insert(near.end(), ids.begin(), ids.end());
+      }
+    }
   }
   return Status();
 }

@@ -19,7 +19,7 @@
  * for its size only; if it is a sliver, its points are moved. Each point has a size, the
  * shortest edge at it before any shape was refined, or how close edges of the boundary come to each
  * other there (FeatureSizes.h), and at most the size of another point and the way from there; no
- * point comes closer to it than a fifth of that, but for size limits. Of tetrahedra across a thin
+ * point comes closer to it than a fifth of that, but for size limits and, at last, for slivers. Of tetrahedra across a thin
  * layer (ThinLayers.h) only the size counts. Nor is a tetrahedron refined for its shape whose
  * points all belong to the boundary and lie in one plane but for rounding, as those of turned
  * devices do: new points on the boundary would have more of the kind.
@@ -39,9 +39,11 @@
 #include "Core/Sizing/TetrahedronLimits.h"
 #include "Core/Surface/SharpAngles.h"
 #include "Core/Volume/BoundarySpheres.h"
+#include "Core/Volume/BoundarySplits.h"
 #include "Core/Volume/ThinLayers.h"
 
 #include <map>
+#include <memory>
 #include <unordered_map>
 #include <vector>
 
@@ -129,16 +131,26 @@ public:
    * outer facet is near.
    * @param surfaceSizes as InteriorPoint::Size, one for each point of the surface, or empty
    * @param memory is kept from one boundary to the next, which has more points
+   * @param reserve so many points may be added to the surface by SplitBoundary()
    */
   VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
     const std::vector<StructuralEdge>& edges, const std::vector<double>& surfaceSizes,
     const std::vector<InteriorPoint>& interior, const TetrahedronLimits& limits,
-    Id maximumNewPoints, SliverMemory& memory);
+    Id maximumNewPoints, SliverMemory& memory, Id reserve = 0);
 
   /** One for each point of the surface: whether it has not been there, or has been elsewhere. */
   void NoteNewPoints(const std::vector<char>& isNew);
   /** As InteriorPoint::Size, one for each point of the mesh. */
   void SetSizes(const std::vector<double>& sizes);
+  /**
+   * For tetrahedra with smaller angles than the target points may come closer to others than to a
+   * fifth of their sizes.
+   */
+  void SetSliverSizes(double ratio, double target)
+  {
+    this->SliverSizeRatio = ratio;
+    this->SliverTarget = target;
+  }
   /** Free points closer to another one than this, or than 0.3 of the sizing, which may be empty. */
   void RemoveClosePoints(double smallest, const SizingField& sizing);
   /** Until no tetrahedron breaks a limit, but for those that need the boundary split. */
@@ -156,8 +168,8 @@ public:
 
   /**
    * Moves points of the surface that are corners of slivers. Afterwards it has to be seen whether
-   * they are in smallest spheres on the other side of outer facets; this object is good for nothing
-   * more.
+   * they are in smallest spheres on the other side of outer facets: the surface gets its points, and
+   * SplitBoundary() is called, or a new mesh is made.
    * @param isFree one for each point of the surface, whether it may be moved
    * @param structural edges of the surface, sorted
    * @param areEdgesKept whether smallest spheres of the object's edges stay empty, too
@@ -170,18 +182,33 @@ public:
   const std::vector<Id>& GetRequestedTriangles() const { return this->RequestedTriangles; }
   const std::vector<EdgeIds>& GetRequestedEdges() const { return this->RequestedEdges; }
 
+  /**
+   * Splits what is requested in the boundary, and whatever that disturbs, in the mesh itself.
+   * @param surface the one given at first, and its edges
+   * @param options those that have made the surface
+   * @return whether all is done: if not, the surface is as far as the mesh is, what is left is still
+   *   requested, and a new mesh has to be made; this object is good for nothing more
+   */
+  bool SplitBoundary(TriangleMesh& surface, std::vector<StructuralEdge>& edges,
+    const DelaunaySurfaceRefinerOptions& options, const SizingField& sizing,
+    const ExecutionContext& context, Status& status);
+  /** As InteriorPoint::Size, of new points of the surface, from the first one on. */
+  void SetSurfaceSizes(Id first, const std::vector<double>& sizes);
+
   /** Tetrahedra that are there by rounding. */
   std::vector<Id> FindFlatTetrahedra() const;
 
   /** The points that are in the mesh now. */
   std::vector<InteriorPoint> GetInterior() const;
   const TetMesh& GetMesh() const { return this->Mesh.GetMesh(); }
+  /** Without gaps: points are those of the surface, then those of GetInterior(). */
+  TetMesh MakeMesh() const;
   const VolumeRefinementReport& GetReport() const { return this->Report; }
   /** Whether it has made as many points as it may. */
   bool IsFull() const { return this->Report.InsertedPoints >= this->MaximumNewPoints; }
 
-  const ThinLayers& GetLayers() const { return this->Layers; }
-  const SharpAngles& GetSharpAngles() const { return this->Sharp; }
+  const ThinLayers& GetLayers() const { return this->Shape->Layers; }
+  const SharpAngles& GetSharpAngles() const { return this->Shape->Sharp; }
 
 private:
   struct Task
@@ -189,7 +216,7 @@ private:
     TetrahedronFault Fault;
     double Severity;
     Id Tetrahedron;
-    Id Stamp;
+    std::int64_t Stamp;
 
     /** Large ones first, then the most severe fault, then the smallest id. */
     friend bool operator<(const Task& a, const Task& b)
@@ -199,11 +226,13 @@ private:
                                    : a.Tetrahedron > b.Tetrahedron;
     }
   };
-  void BoundSizes();
+  void BoundSizes(const std::vector<Id>& tetrahedra);
   bool IsFree(Id point) const;
   std::array<Vec3, 4> GetVertices(const TetrahedronIds& ids) const;
   /** The smallest dihedral angle. */
-  double GetAngle(Id tetrahedron) const;
+  double GetSizeRatio(Id tetrahedron) const;
+  double GetAngle(Id tetrahedron) const { return this->GetShape(tetrahedron).Angle; }
+  bool IsInLayer(Id tetrahedron) const;
   bool IsFlat(Id tetrahedron) const;
   double RateHole(const Vec3& position, double required) const;
   bool BreaksLimit(const TetrahedronIds& ids, const std::array<Vec3, 4>& vertices) const;
@@ -229,41 +258,62 @@ private:
   {
     double Angle;
     Id Tetrahedron;
-    Id Stamp;
+    std::int64_t Stamp;
   };
   /** Worst first; without those across thin layers. */
   std::vector<Sliver> FindSlivers(double target) const;
-  bool Mend(
-    const TetrahedronIds& ids, Id tetrahedron, Id stamp, double target, bool mayInsert, Id& left);
+  bool Mend(Id tetrahedron, double target, bool mayInsert);
 
   DynamicTetrahedralization Mesh;
   const TriangleMesh& Surface;
   const std::vector<StructuralEdge>& Edges;
   const TetrahedronLimits& Limits;
-  const Id NumberOfSurfacePoints;
-  const Id MaximumNewPoints;
+  /** Of the mesh's points; those of the surface, and places for new ones, come before. */
+  const Id FirstInside;
+  Id MaximumNewPoints;
   SliverMemory& Memory;
-  BoundarySpheres Spheres;
-  /** Triangles at each point of the surface. */
-  const IdLists PointTriangles;
-  const SharpAngles Sharp;
-  const ThinLayers Layers;
+  /** What follows from the surface as it is. */
+  struct BoundaryShape
+  {
+    BoundaryShape(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges);
+
+    BoundarySpheres Spheres;
+    /** Triangles at each point of the surface. */
+    const IdLists PointTriangles;
+    const SharpAngles Sharp;
+    const ThinLayers Layers;
+  };
+  std::unique_ptr<BoundaryShape> Shape;
+  /** How often it has changed. */
+  Id ShapeRound = 0;
+  std::unique_ptr<BoundarySplits> Splits;
   /** One for each point of the mesh. */
   std::vector<InteriorPoint> Points;
   VolumeRefinementReport Report;
   SliverMeans Means = SliverMeans::Moves;
+  double SliverSizeRatio = 0.0;
+  double SliverTarget = 0.0;
+  /** Of the tetrahedron that is being refined. */
+  double SizeRatio = 0.0;
 
   std::vector<Id> RequestedTriangles;
   std::vector<EdgeIds> RequestedEdges;
   std::vector<char> IsTriangleRequested;
   std::vector<char> IsEdgeRequested;
-  /** The smallest dihedral angle that a tetrahedron had when it was last asked for. */
-  struct KnownAngle
+  /**
+   * What a tetrahedron was like when it was last asked for. To ask again and again whether it is
+   * across a layer was two fifths of the time of late rounds.
+   */
+  struct KnownShape
   {
     double Angle = 0.0;
-    Id Stamp = NoId;
+    std::int64_t Stamp = NoId;
+    bool IsInLayer = false;
+    /** For what shape of the boundary that was asked, or NoId. */
+    Id LayerRound = NoId;
   };
-  mutable std::vector<KnownAngle> Angles;
+  KnownShape& GetShape(Id tetrahedron) const;
+  mutable std::vector<KnownShape> Shapes;
   /** Work space. */
   DynamicTetrahedralization::Hole Hole;
   BoundarySpheres::Disturbed Disturbed;

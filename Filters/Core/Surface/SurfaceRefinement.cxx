@@ -1,0 +1,832 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Surface/SurfaceRefinement.h"
+
+#include "Core/Basics/IdLimits.h"
+#include "Core/Basics/ParallelLoop.h"
+#include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Surface/SurfaceChecks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace cdm
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t ReportInterval = 256;
+
+/** In curved facets, points closer than that to others, in shortest edges of the input there. */
+constexpr double CrumplingRatio = 1.0 / 8.0;
+} // namespace
+
+SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
+  const std::vector<StructuralEdge>& edges, const std::vector<Vec3>& meshPoints,
+  const DelaunaySurfaceRefinerOptions& options, SizingField sizing, bool isSaturated)
+  : Options(options), Points(surface.Points),
+    NumberOfSurfacePoints(static_cast<Id>(surface.Points.size())),
+    Diagonal(GetBoundingBoxDiagonal(surface.Points)),
+    Flatness(options.StructuralEdges.FlatnessRatio * this->Diagonal),
+    MinimumEdge(options.MinimumEdgeRatio * this->Diagonal),
+    Test(this->Points, this->Octree), Limits{ options.MaximumEdgeLength, options.MaximumArea,
+      options.MinimumAngle, std::move(sizing) }
+{
+  this->Points.insert(this->Points.end(), meshPoints.begin(), meshPoints.end());
+  // Without a limit of the user's, one that only a runaway refinement reaches: sheets a hair apart.
+  this->MaximumNewPoints = options.MaximumNewPoints > 0
+    ? options.MaximumNewPoints
+    : static_cast<Id>(
+        std::min<std::size_t>(std::max<std::size_t>(this->Limits.HasAny() ? 1000000 : 20000,
+                                50 * surface.Triangles.size()) +
+            meshPoints.size(),
+          LargestId / 8));
+  this->Octree.Insert(this->Points);
+  this->Surface = std::make_unique<RefinableSurface>(surface, edges, this->Points);
+  this->Flips = std::make_unique<SurfaceFlips>(
+    *this->Surface, this->Points, this->Flatness, options.StructuralEdges.AccuracyAngle);
+  if (options.StructuralEdges.AccuracyAngle > 0.0)
+  {
+    for (const TriangleIds& ids : surface.Triangles)
+    {
+      double shortest = Infinity;
+      for (int i = 0; i < 3; ++i)
+      {
+        shortest =
+          std::min(shortest, Distance(this->Points[ids[i]], this->Points[ids[(i + 1) % 3]]));
+      }
+      this->ShortestEdges.push_back(shortest);
+    }
+  }
+  if (isSaturated)
+  {
+    this->EnqueueAll();
+  }
+  else
+  {
+    this->Saturate();
+  }
+  for (Id segment = 0; this->AreEdgesTested() && segment < this->Surface->GetNumberOfSegments();
+       ++segment)
+  {
+    this->EnqueueEdge(segment);
+  }
+}
+
+void SurfaceRefinement::CollectIncidences()
+{
+  if (this->Incidences)
+  {
+    return;
+  }
+  // Without an angle all facets are plane.
+  const double flatness =
+    this->Options.StructuralEdges.AccuracyAngle > 0.0 ? this->Flatness : Infinity;
+  this->Incidences = std::make_unique<SurfaceIncidences>(
+    *this->Surface, this->Points, this->NumberOfSurfacePoints, flatness);
+  this->Partners = std::make_unique<PartnerPoints>(
+    *this->Surface, *this->Incidences, this->Points, this->Octree, this->Diagonal);
+  this->Walk = std::make_unique<FacetWalk>(
+    *this->Surface, *this->Partners, this->Points, this->Octree, this->Diagonal);
+}
+
+void SurfaceRefinement::Enqueue(Id t)
+{
+  if (static_cast<std::size_t>(t) >= this->States.size())
+  {
+    this->States.resize(t + 1, QueueState::None);
+    this->IsProven.resize(t + 1, 0);
+    this->IsBad.resize(t + 1, 0);
+  }
+  this->Touch(t);
+  this->IsProven[t] = 0;
+  this->IsBad[t] = 0;
+  if (this->States[t] != QueueState::First)
+  {
+    this->Enqueue(t, QueueState::First);
+  }
+}
+
+void SurfaceRefinement::Enqueue(Id t, QueueState state)
+{
+  this->States[t] = state;
+  // Once the edges are fine enough, small triangles first: what large ones need depends on them.
+  // Without, in order: of almost flat surfaces that would be refined down to the smallest.
+  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+  const double order = this->AreEdgesTested()
+    ? Norm(GetCircumcenterOffset(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]))
+    : static_cast<double>(this->NumberOfEnqueued++);
+  this->Queue.push_back({ state, order, t });
+  std::push_heap(this->Queue.begin(), this->Queue.end(), std::greater<>());
+}
+
+void SurfaceRefinement::Legalize(std::vector<Id>& uses)
+{
+  for (Id use : uses)
+  {
+    this->Enqueue(use / 3);
+  }
+  this->Flips->Saturate(uses, [this](Id t) { this->Enqueue(t); });
+}
+
+void SurfaceRefinement::Saturate()
+{
+  const Id count = this->Surface->GetNumberOfTriangles();
+  std::vector<Id> uses;
+  for (Id use = 3 * count - 1; use >= 0; --use)
+  {
+    const Id other = this->Surface->GetTriangle(use / 3).Adjacent[use % 3];
+    if (other > use)
+    {
+      uses.push_back(use);
+    }
+  }
+  this->Legalize(uses);
+  this->EnqueueAll();
+}
+
+void SurfaceRefinement::EnqueueAll()
+{
+  for (Id t = 0; t < this->Surface->GetNumberOfTriangles(); ++t)
+  {
+    this->Enqueue(t);
+  }
+}
+
+Status SurfaceRefinement::SplitSegment(Id segment, const ExecutionContext& context)
+{
+  this->CollectIncidences();
+  this->SplitSegment(segment, NoId);
+  return this->Refine(context);
+}
+
+Status SurfaceRefinement::SplitTriangle(Id triangle, const ExecutionContext& context)
+{
+  this->CollectIncidences();
+  if (!this->ResolveInFacet(triangle, NoId, this->FindCircumcenter(triangle), false))
+  {
+    this->SplitLongestEdge(triangle);
+  }
+  return this->Refine(context);
+}
+
+Id SurfaceRefinement::AddMeshPoint(const Vec3& position)
+{
+  const Id point = static_cast<Id>(this->Points.size());
+  this->Points.push_back(position);
+  if (this->Incidences)
+  {
+    this->Incidences->AddPoint(NoId, NoId);
+  }
+  this->Octree.Insert(point, position);
+  this->TestAgainAround(position);
+  return point;
+}
+
+void SurfaceRefinement::RemoveMeshPoint(Id point)
+{
+  this->Octree.Remove(point, this->Points[point]);
+}
+
+void SurfaceRefinement::MovePoints(const std::vector<std::pair<Id, Vec3>>& moves)
+{
+  // The octree never has two points in one place.
+  std::vector<char> isMoved(this->Points.size(), 0);
+  for (const auto& [point, position] : moves)
+  {
+    isMoved[point] = 1;
+    this->Octree.Remove(point, this->Points[point]);
+  }
+  for (const auto& [point, position] : moves)
+  {
+    this->Points[point] = position;
+    this->Octree.Insert(point, position);
+    this->TestAgainAround(position);
+  }
+  const auto isAnyMoved = [&isMoved](const auto& ids)
+  { return std::any_of(ids.begin(), ids.end(), [&](Id id) { return isMoved[id] != 0; }); };
+  for (Id t = 0; t < this->Surface->GetNumberOfTriangles() && !moves.empty(); ++t)
+  {
+    if (isAnyMoved(this->Surface->GetTriangle(t).Points))
+    {
+      this->Proofs.Remove(t);
+      this->Enqueue(t);
+    }
+  }
+  for (Id s = 0; s < this->Surface->GetNumberOfSegments() && this->AreEdgesTested(); ++s)
+  {
+    if (isAnyMoved(this->Surface->GetSegment(s).Points))
+    {
+      this->EmptyEdges.Remove(s);
+      this->EnqueueEdge(s);
+    }
+  }
+}
+
+void SurfaceRefinement::PullCocircular(const std::vector<Id>& triangles)
+{
+  std::vector<Id> uses;
+  for (Id t : triangles)
+  {
+    uses.insert(uses.end(), { 3 * t, 3 * t + 1, 3 * t + 2 });
+  }
+  while (!uses.empty())
+  {
+    const Id use = uses.back();
+    uses.pop_back();
+    const Id other = this->Surface->GetTriangle(use / 3).Adjacent[use % 3];
+    if (other < 0)
+    {
+      continue;
+    }
+    const TriangleIds& ids = this->Surface->GetTriangle(use / 3).Points;
+    const Id a = ids[use % 3];
+    const Id b = ids[(use % 3 + 1) % 3];
+    const Id c = this->Surface->GetApex(use);
+    const Id d = this->Surface->GetApex(other);
+    const std::vector<Vec3>& points = this->Points;
+    if (std::min(c, d) < std::min(a, b) &&
+      Orientation(points[a], points[b], points[c], points[d]) == 0 &&
+      InEquatorialSphere(points[a], points[b], points[c], points[d]) == 0)
+    {
+      this->Surface->Flip(use);
+      for (Id t : { use / 3, other / 3 })
+      {
+        this->Touch(t);
+        uses.insert(uses.end(), { 3 * t, 3 * t + 1, 3 * t + 2 });
+      }
+    }
+  }
+}
+
+bool SurfaceRefinement::IsUnresolved(Id triangle) const
+{
+  if (static_cast<std::size_t>(triangle) < this->IsBad.size() && this->IsBad[triangle] != 0)
+  {
+    return true;
+  }
+  for (int i = 0; i < 3; ++i)
+  {
+    const Id segment = this->Surface->GetSegmentAt(triangle, i);
+    if (segment != NoId && static_cast<std::size_t>(segment) < this->IsDisturbed.size() &&
+      this->IsDisturbed[segment] != 0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+void SurfaceRefinement::Touch(Id t)
+{
+  this->IsTouched.resize(this->Surface->GetNumberOfTriangles(), 0);
+  if (this->IsTouched[t] == 0)
+  {
+    this->IsTouched[t] = 1;
+    this->Touched.push_back(t);
+  }
+}
+
+std::vector<Id> SurfaceRefinement::TakeTouched()
+{
+  std::sort(this->Touched.begin(), this->Touched.end());
+  for (Id t : this->Touched)
+  {
+    this->IsTouched[t] = 0;
+  }
+  return std::exchange(this->Touched, {});
+}
+
+bool SurfaceRefinement::IsCocircularFacet(Id t, const SurfaceDelaunayTest::Result& found) const
+{
+  // All points on the circumcircle have to be reached across smooth edges of triangles on it.
+  const std::vector<Id>& cocircular = found.Cocircular;
+  std::vector<Id> triangles(1, t);
+  std::vector<Id> reached;
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+  {
+    for (Id use : this->Surface->GetTriangle(triangles[i]).Adjacent)
+    {
+      if (use < 0 || std::find(triangles.begin(), triangles.end(), use / 3) != triangles.end())
+      {
+        continue;
+      }
+      const Id apex = this->Surface->GetApex(use);
+      if (std::binary_search(cocircular.begin(), cocircular.end(), apex))
+      {
+        triangles.push_back(use / 3);
+        reached.push_back(apex);
+      }
+    }
+  }
+  std::sort(reached.begin(), reached.end());
+  return reached == cocircular;
+}
+
+bool SurfaceRefinement::IsGood(Id t, SurfaceDelaunayTest::Result& found) const
+{
+  this->Test.Run(this->Surface->GetTriangle(t).Points, found,
+    this->Options.Criterion != SurfaceCriterion::Delaunay);
+  if (!found.IsDelaunay || (!found.Cocircular.empty() && !this->IsCocircularFacet(t, found)))
+  {
+    return false;
+  }
+  return this->Options.Criterion == SurfaceCriterion::Delaunay ||
+    found.InsideSmallestSphere.empty();
+}
+
+/**
+ * Tests all triangles on all threads before the first of them is refined: most are good and stay
+ * so. False if aborted.
+ */
+bool SurfaceRefinement::TestAll(const ExecutionContext& context)
+{
+  this->AreAllTested = true;
+  const auto count = static_cast<std::size_t>(this->Surface->GetNumberOfTriangles());
+  std::vector<char> isGood(count, 0);
+  std::vector<std::pair<Vec3, double>> proofs(count);
+  const ParallelLoopOptions options{ this->Options.NumberOfThreads, 1024 };
+  if (!ParallelLoop(count, options, context, "Testing the surface",
+        [&](std::size_t begin, std::size_t end, std::size_t)
+        {
+          SurfaceDelaunayTest::Result found;
+          for (std::size_t t = begin; t < end; ++t)
+          {
+            isGood[t] = this->IsGood(static_cast<Id>(t), found);
+            proofs[t] = { found.ProofCenter, found.ProofRadius };
+          }
+        }))
+  {
+    return false;
+  }
+  for (std::size_t t = 0; t < count; ++t)
+  {
+    if (isGood[t] != 0)
+    {
+      this->Proofs.Set(static_cast<Id>(t), proofs[t].first, proofs[t].second);
+      this->IsProven[t] = 1;
+    }
+  }
+  return true;
+}
+
+bool SurfaceRefinement::ResolveByFlip(Id t)
+{
+  std::vector<Id> uses{ 3 * t, 3 * t + 1, 3 * t + 2 };
+  for (Id use : uses)
+  {
+    if (this->Flips->ShouldFlip(use))
+    {
+      this->Legalize(uses);
+      return true;
+    }
+  }
+  // Nearly cocircular and nearly coplanar points: the local rule may not see what the exact
+  // double sphere sees.
+  for (Id use : uses)
+  {
+    const Id other = this->Surface->GetTriangle(t).Adjacent[use % 3];
+    if (!this->Flips->CanFlip(use))
+    {
+      continue;
+    }
+    const TriangleIds ids = this->Surface->GetTriangle(t).Points;
+    const Id a = ids[use % 3];
+    const Id b = ids[(use % 3 + 1) % 3];
+    const Id c = this->Surface->GetApex(use);
+    const Id d = this->Surface->GetApex(other);
+    if (InEquatorialSphere(
+          this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]], this->Points[d]) < 0)
+    {
+      continue;
+    }
+    SurfaceDelaunayTest::Result first;
+    SurfaceDelaunayTest::Result second;
+    const bool isStronger = this->Options.Criterion != SurfaceCriterion::Delaunay;
+    this->Test.Run({ a, d, c }, first, isStronger);
+    this->Test.Run({ d, b, c }, second, isStronger);
+    const bool isAllowed =
+      !isStronger || (first.InsideSmallestSphere.empty() && second.InsideSmallestSphere.empty());
+    if (first.IsDelaunay && second.IsDelaunay && isAllowed && first.Cocircular.empty() &&
+      second.Cocircular.empty())
+    {
+      this->Flips->Flip(use);
+      this->Enqueue(t);
+      this->Enqueue(other / 3);
+      return true;
+    }
+  }
+  return false;
+}
+
+Id SurfaceRefinement::AddPoint(
+  const Vec3& position, const PointParents& parents, Id facet, Id inputEdge)
+{
+  const Id point = static_cast<Id>(this->Points.size());
+  this->Points.push_back(position);
+  this->Flips->AddPoint();
+  this->Octree.Insert(point, position);
+  this->Incidences->AddPoint(facet, inputEdge);
+  this->NewPoints.push_back(parents);
+  this->TestAgainAround(position);
+  return point;
+}
+
+/** What a new point may disturb. */
+void SurfaceRefinement::TestAgainAround(const Vec3& position)
+{
+  this->Proofs.Find(position, this->Reached);
+  for (Id t : this->Reached)
+  {
+    this->Proofs.Remove(t);
+    this->Enqueue(t);
+  }
+  if (this->AreEdgesTested())
+  {
+    this->EmptyEdges.Find(position, this->Reached);
+    for (Id segment : this->Reached)
+    {
+      this->EmptyEdges.Remove(segment);
+      this->EnqueueEdge(segment);
+    }
+  }
+}
+
+bool SurfaceRefinement::SplitSegment(Id segment, Id disturbing)
+{
+  const EdgeIds ends = this->Surface->GetSegment(segment).Points;
+  const Vec3 a = this->Points[ends[0]];
+  const Vec3 b = this->Points[ends[1]];
+  const double length = Distance(a, b);
+  Vec3 position = this->Partners->PlaceOnSegment(segment, disturbing);
+  for (int attempt = 0; attempt < 2; ++attempt)
+  {
+    if (std::min(Distance(position, a), Distance(position, b)) >= this->MinimumEdge &&
+      !this->HasPointNear(position, 0.0) && this->Surface->CanSplitSegment(segment, position))
+    {
+      const double weight = Distance(position, a) / length;
+      const PointParents parents{ { ends[0], ends[1], NoId }, { 1.0 - weight, weight, 0.0 } };
+      const Id point =
+        this->AddPoint(position, parents, NoId, this->Surface->GetSegment(segment).InputEdge);
+      ++this->NumberOfEdgePoints;
+      std::vector<Id> uses;
+      this->Surface->SplitSegment(segment, point, uses);
+      if (this->AreEdgesTested())
+      {
+        this->EmptyEdges.Remove(segment);
+        this->EnqueueEdge(segment);
+        this->EnqueueEdge(this->Surface->GetNumberOfSegments() - 1);
+      }
+      this->Legalize(uses);
+      return true;
+    }
+    position = 0.5 * (a + b);
+  }
+  return false;
+}
+
+bool SurfaceRefinement::ResolveByEdge(Id t)
+{
+  Id bestSegment = NoId;
+  Id bestPoint = NoId;
+  double bestDepth = Infinity;
+  const auto consider = [&](Id segment, const std::vector<Id>& points)
+  {
+    const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
+    const Vec3& a = this->Points[ends[0]];
+    const Vec3& b = this->Points[ends[1]];
+    const Vec3 middle = 0.5 * (a + b);
+    const double unit = 1.0 / SquaredNorm(b - a);
+    for (Id point : points)
+    {
+      const double depth = unit * SquaredNorm(this->Points[point] - middle);
+      if (point != ends[0] && point != ends[1] && depth < bestDepth &&
+        InDiametralSphere(a, b, this->Points[point]) >= 0)
+      {
+        bestSegment = segment;
+        bestPoint = point;
+        bestDepth = depth;
+      }
+    }
+  };
+  for (int i = 0; i < 3; ++i)
+  {
+    const Id segment = this->Surface->GetSegmentAt(t, i);
+    if (segment != NoId)
+    {
+      consider(segment, this->Found.InsideSmallestSphere);
+      consider(segment, this->Found.OnSmallestSphere);
+      consider(segment, this->Found.Cocircular);
+    }
+  }
+  if (bestSegment == NoId)
+  {
+    for (int i = 0; i < 3; ++i)
+    {
+      const Id segment = this->Surface->GetSegmentAt(t, i);
+      if (segment != NoId)
+      {
+        consider(segment, { this->Surface->GetApex(3 * t + i) });
+      }
+    }
+  }
+  return bestSegment != NoId && this->SplitSegment(bestSegment, bestPoint);
+}
+
+bool SurfaceRefinement::ResolveInFacet(Id t, Id disturbing, const Vec3& target, bool isMirrored)
+{
+  const RefinableSurface& surface = *this->Surface;
+  const TriangleIds start = surface.GetTriangle(t).Points;
+  FacetWalk::Landing landing;
+  if (!this->Walk->Run(t, isMirrored ? disturbing : NoId, target, landing))
+  {
+    return false;
+  }
+  if (landing.Segment != NoId)
+  {
+    const EdgeIds& ends = surface.GetSegment(landing.Segment).Points;
+    const auto isDisturbedBy = [&](const Vec3& p)
+    { return InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], p) >= 0; };
+    const bool isDisturbed = disturbing != NoId && isDisturbedBy(this->Points[disturbing]);
+    // On a curved facet the walk may lead to an edge that has nothing to do with the triangle.
+    return (isDisturbed || isDisturbedBy(target) ||
+             std::any_of(
+               start.begin(), start.end(), [&](Id p) { return isDisturbedBy(this->Points[p]); })) &&
+      this->SplitSegment(landing.Segment, isDisturbed ? disturbing : NoId);
+  }
+
+  // A point that does not disturb the triangle would not remove it (on curved facets).
+  const Vec3& position = landing.Position;
+  if (this->HasPointNear(position, this->MinimumEdge) ||
+    InEquatorialSphere(
+      this->Points[start[0]], this->Points[start[1]], this->Points[start[2]], position) <= 0)
+  {
+    return false;
+  }
+  const Id current = landing.Triangle;
+  if (landing.Edge != NoId && surface.GetSegmentAt(current, landing.Edge) != NoId)
+  {
+    return this->SplitSegment(surface.GetSegmentAt(current, landing.Edge), disturbing);
+  }
+
+  // A point that would disturb an edge of the facet must not be made: split the edge instead.
+  const Id encroached = this->Walk->FindEncroachedSegment(current, position);
+  if (encroached != NoId)
+  {
+    return this->SplitSegment(encroached, isMirrored ? disturbing : NoId);
+  }
+
+  const TriangleIds ids = surface.GetTriangle(current).Points;
+  const Vec3 weights = GetBarycentricWeights(
+    position, this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]);
+  const PointParents parents{ ids, { weights.X, weights.Y, weights.Z } };
+  const Id point = this->AddPoint(position, parents, surface.GetTriangle(current).Facet, NoId);
+  std::vector<Id> uses;
+  if (landing.Edge == NoId)
+  {
+    this->Surface->SplitTriangle(current, point, uses);
+  }
+  else
+  {
+    this->Surface->SplitSmoothEdge(3 * current + landing.Edge, point, uses);
+  }
+  this->Legalize(uses);
+  return true;
+}
+
+bool SurfaceRefinement::SplitLongestEdge(Id t)
+{
+  const TriangleIds ids = this->Surface->GetTriangle(t).Points;
+  int longest = 0;
+  double length = 0.0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const double candidate = Distance(this->Points[ids[i]], this->Points[ids[(i + 1) % 3]]);
+    if (candidate > length)
+    {
+      longest = i;
+      length = candidate;
+    }
+  }
+  const Id use = 3 * t + longest;
+  const Id segment = this->Surface->GetSegmentAt(t, longest);
+  if (segment != NoId)
+  {
+    return this->SplitSegment(segment, this->Surface->GetApex(use));
+  }
+  const EdgeIds ends{ ids[longest], ids[(longest + 1) % 3] };
+  const Vec3 a = this->Points[ends[0]];
+  const Vec3 edge = this->Points[ends[1]] - a;
+  const double foot = Dot(this->Points[this->Surface->GetApex(use)] - a, edge) / SquaredNorm(edge);
+  for (double weight : { std::min(std::max(foot, 0.25), 0.75), 0.5 })
+  {
+    const Vec3 position = a + weight * edge;
+    if (0.25 * length >= this->MinimumEdge && !this->HasPointNear(position, 0.0) &&
+      this->Surface->CanSplitSmoothEdge(use, position))
+    {
+      const PointParents parents{ { ends[0], ends[1], NoId }, { 1.0 - weight, weight, 0.0 } };
+      const Id point = this->AddPoint(position, parents, this->Surface->GetTriangle(t).Facet, NoId);
+      std::vector<Id> uses;
+      this->Surface->SplitSmoothEdge(use, point, uses);
+      this->Legalize(uses);
+      return true;
+    }
+  }
+  return false;
+}
+
+Vec3 SurfaceRefinement::FindCircumcenter(Id t) const
+{
+  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+  return GetCircumcenter(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]);
+}
+
+/** Segment: a structural edge to split first, or NoId. */
+bool SurfaceRefinement::FindTooCoarse(Id t, Id& segment) const
+{
+  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+  const Id segments[3] = { this->Surface->GetSegmentAt(t, 0), this->Surface->GetSegmentAt(t, 1),
+    this->Surface->GetSegmentAt(t, 2) };
+  Id edge;
+  const bool isTooCoarse =
+    this->Limits.IsTooCoarse({ this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]] },
+      { segments[0] != NoId, segments[1] != NoId, segments[2] != NoId }, edge);
+  segment = edge != NoId ? segments[edge] : NoId;
+  return isTooCoarse;
+}
+
+/**
+ * In a curved facet a point that mends one triangle may disturb its neighbors, which are bent
+ * against it, and so on with ever smaller triangles. Points much closer than the input's are a sign
+ * of that.
+ */
+void SurfaceRefinement::NoteCrumpling(Id t, Id newPoint)
+{
+  const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
+  if (this->ShortestEdges.empty() || newPoint >= static_cast<Id>(this->Points.size()) ||
+    !this->Incidences->IsCurved(triangle.Facet) || !this->Incidences->GetEdges(newPoint).empty())
+  {
+    return;
+  }
+  const double reach = CrumplingRatio * this->ShortestEdges[triangle.Source];
+  if (this->HasPointNear(this->Points[newPoint], reach, newPoint))
+  {
+    this->IsCrumpled.resize(this->ShortestEdges.size(), 0);
+    this->IsCrumpled[triangle.Source] = 1;
+  }
+}
+
+void SurfaceRefinement::Process(Id t, QueueState state)
+{
+  Id segment = NoId;
+  const bool isProven = this->IsProven[t] != 0;
+  if (isProven || this->IsGood(t, this->Found))
+  {
+    if (!isProven)
+    {
+      this->Proofs.Set(t, this->Found.ProofCenter, this->Found.ProofRadius);
+      this->IsProven[t] = 1;
+    }
+    if (this->FindTooCoarse(t, segment))
+    {
+      this->CollectIncidences();
+      // Too coarse is no fault: if a limit forbids to refine, the triangle stays as it is.
+      const bool isRefined = segment != NoId
+        ? this->SplitSegment(segment, NoId)
+        : this->ResolveInFacet(t, NoId, this->FindCircumcenter(t), false) ||
+          this->SplitLongestEdge(t);
+      if (isRefined)
+      {
+        this->Enqueue(t);
+      }
+    }
+    return;
+  }
+  this->Proofs.Remove(t);
+  this->CollectIncidences();
+  if (this->ResolveByFlip(t))
+  {
+    return;
+  }
+  if (!this->IsCrumpled.empty() && this->IsCrumpled[this->Surface->GetTriangle(t).Source] != 0)
+  {
+    this->IsBad[t] = 1;
+    return;
+  }
+  // Whatever is done now, t is looked at again: the new point need not have changed it.
+  this->IsBad[t] = 0;
+  if (this->ResolveByEdge(t))
+  {
+    this->Enqueue(t);
+    return;
+  }
+  if (state == QueueState::First && !this->AreEdgesTested())
+  {
+    this->Enqueue(t, QueueState::Last);
+    return;
+  }
+  const Id disturbing = !this->Found.InsideSmallestSphere.empty()
+    ? this->Found.InsideSmallestSphere.front()
+    : !this->Found.OnSmallestSphere.empty() ? this->Found.OnSmallestSphere.front()
+    : !this->Found.Cocircular.empty()       ? this->Found.Cocircular.front()
+                                            : NoId;
+  const Id newPoint = static_cast<Id>(this->Points.size());
+  Vec3 target;
+  const bool isMirrored = disturbing != NoId && this->Partners->PlaceInFacet(t, disturbing, target);
+  if ((isMirrored && this->ResolveInFacet(t, disturbing, target, true)) ||
+    this->ResolveInFacet(t, disturbing, this->FindCircumcenter(t), false) ||
+    this->SplitLongestEdge(t))
+  {
+    this->NoteCrumpling(t, newPoint);
+    this->Enqueue(t);
+    return;
+  }
+  this->IsBad[t] = 1;
+}
+
+void SurfaceRefinement::EnqueueEdge(Id segment)
+{
+  const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
+  this->EdgeQueue.emplace_back(Distance(this->Points[ends[0]], this->Points[ends[1]]), segment);
+  std::push_heap(this->EdgeQueue.begin(), this->EdgeQueue.end(), std::greater<>());
+}
+
+/**
+ * Edges whose diametral spheres have to be empty come before any triangle: facets are refined from
+ * a fine enough outline. The shortest first: what it needs is given by the surface around it, and
+ * the partners of its points are the points that longer edges need.
+ */
+void SurfaceRefinement::ProcessEdge()
+{
+  std::pop_heap(this->EdgeQueue.begin(), this->EdgeQueue.end(), std::greater<>());
+  const auto [length, segment] = this->EdgeQueue.back();
+  this->EdgeQueue.pop_back();
+  const EdgeIds ends = this->Surface->GetSegment(segment).Points;
+  const Vec3 a = this->Points[ends[0]];
+  const Vec3 b = this->Points[ends[1]];
+  if (length != Distance(a, b))
+  {
+    // It has been split since, and both pieces are in the queue.
+    return;
+  }
+  DiametralSphereVisitor visitor(this->Points, ends);
+  this->Octree.Visit(visitor, visitor.GetReach());
+  if (visitor.Found == NoId)
+  {
+    this->EmptyEdges.Set(segment, 0.5 * (a + b), 0.5 * length * (1.0 + 1e-6));
+    return;
+  }
+  this->CollectIncidences();
+  if (this->IsFull() || !this->SplitSegment(segment, visitor.Found))
+  {
+    this->IsDisturbed.resize(this->Surface->GetNumberOfSegments(), 0);
+    this->IsDisturbed[segment] = 1;
+  }
+}
+
+Status SurfaceRefinement::Refine(const ExecutionContext& context)
+{
+  for (std::size_t steps = 0; !this->EdgeQueue.empty() || !this->Queue.empty(); ++steps)
+  {
+    const double left = static_cast<double>(this->EdgeQueue.size() + this->Queue.size());
+    const double done = static_cast<double>(steps) / (static_cast<double>(steps) + left);
+    if (steps % ReportInterval == 0 && !context.Continue(done, "Refining the surface"))
+    {
+      return Status::Aborted();
+    }
+    const Status range =
+      CheckRefinement(this->Points.size(), this->Surface->GetNumberOfTriangles());
+    if (!range.IsOk())
+    {
+      return range;
+    }
+    if (!this->EdgeQueue.empty())
+    {
+      this->ProcessEdge();
+      continue;
+    }
+    if (!this->AreAllTested && !this->TestAll(context.Part(done, done)))
+    {
+      return Status::Aborted();
+    }
+    std::pop_heap(this->Queue.begin(), this->Queue.end(), std::greater<>());
+    const auto [state, order, t] = this->Queue.back();
+    this->Queue.pop_back();
+    if (this->States[t] != state)
+    {
+      continue;
+    }
+    this->States[t] = QueueState::None;
+    if (this->IsFull())
+    {
+      this->IsBad[t] = this->IsProven[t] == 0 && !this->IsGood(t, this->Found);
+      continue;
+    }
+    this->Process(t, state);
+  }
+  return Status();
+}
+} // namespace cdm

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BoundarySplits.h
+ * @brief Splits triangles and edges of the boundary of a Delaunay mesh, in the mesh itself.
+ *
+ * Method, for one triangle or edge after the other:
+ *  1. the surface is refined (SurfaceRefinement.h) until it fulfils its criterion again; diagonals of
+ *     points on one circle turn as the pulling rule has them;
+ *  2. all tetrahedra in conflict with its new points, whatever their region, leave a cavity; it is
+ *     filled anew (CavityFilling.h), the surface's new triangles and the interfaces that stay being
+ *     walls.
+ *
+ * Guarantees: surface and mesh fit each other at any time. Exact; the mesh is the one that would be
+ * made anew of the same points (AdvancingFrontTetrahedralizer.h).
+ * Cost: some hundred microseconds for a split, whatever the size of the mesh; the first run tests
+ * all of the surface, and each one looks for points that have come, moved or gone.
+ */
+#ifndef cdmBoundarySplits_h
+#define cdmBoundarySplits_h
+
+#include "Core/Basics/ExecutionContext.h"
+#include "Core/Basics/Status.h"
+#include "Core/Delaunay/CavityFilling.h"
+#include "Core/Delaunay/DynamicTetrahedralization.h"
+#include "Core/Surface/SurfaceRefinement.h"
+
+#include <vector>
+
+namespace cdm
+{
+class BoundarySplits
+{
+public:
+  /**
+   * All have to outlive the object.
+   * @param mesh has the surface's points first, then places for new ones, then points inside
+   * @param firstInside of the mesh's points
+   * @param surface all outer and interface facets of the mesh; with labels and source cells
+   * @param edges structural ones, sorted
+   * @param options those that have made the surface
+   */
+  BoundarySplits(DynamicTetrahedralization& mesh, Id firstInside, TriangleMesh& surface,
+    std::vector<StructuralEdge>& edges, const DelaunaySurfaceRefinerOptions& options,
+    const SizingField& sizing);
+
+  /**
+   * Splits what it is given. Before that, points inside may have come and gone, and points of the
+   * surface may have been moved, in the surface or in both: the mesh follows. Triangles that have a new point at them by then, and edges that are
+   * split, are left out. The lists keep what has not been done if the mesh has to be made anew: there
+   * is no place for more points, or rounding has made something that does not fit; then the object is
+   * good for nothing more.
+   */
+  Status Run(
+    std::vector<Id>& triangles, std::vector<EdgeIds>& edges, const ExecutionContext& context);
+  bool IsUsable() const { return this->CanGoOn; }
+
+  /** Tetrahedra that the last run has made; some may be gone again. */
+  const std::vector<Id>& GetChanged() const { return this->Changed; }
+
+private:
+  /** A triangle of the surface as it is to be. */
+  struct NewTriangle
+  {
+    Id Index;
+    TriangleIds Ids;
+    RegionPair Labels;
+    Id Source;
+  };
+
+  Status FollowPoints(const ExecutionContext& context);
+  Id FindSegment(const EdgeIds& edge) const;
+  TriangleIds Translate(const TriangleIds& refined) const;
+  bool Update();
+  void CollectTriangles(const std::vector<Id>& touched);
+  bool CollectConflicts(const std::vector<Vec3>& points, const std::vector<Id>& touched);
+  void CollectCavity(const std::vector<Vec3>& points);
+  bool AreWallsComplete();
+  Id GetRegionInFront(const TriangleIds& ids) const;
+  bool FindSides(const TriangleIds& ids);
+  void Visit(Id tetrahedron, Id point, const Vec3& position);
+  void Adopt(const std::vector<Vec3>& points);
+  void ListEdges();
+
+  DynamicTetrahedralization& Mesh;
+  const Id FirstInside;
+  TriangleMesh& Surface;
+  std::vector<StructuralEdge>& Edges;
+  SurfaceRefinement Refinement;
+  bool CanGoOn = true;
+  /** Of the surface when the object was made. */
+  const std::vector<Id> SourceCells;
+  /** Segment of each edge. */
+  std::vector<Id> Segments;
+  /** Point of the refinement for each point inside, or NoId. */
+  std::vector<Id> RefinementPoints;
+  /** Point of the surface for each point of the refinement, or NoId. */
+  std::vector<Id> SurfacePoints;
+  std::vector<Id> Changed;
+  /** Points of the surface, ascending, that have not been moved in the mesh yet. */
+  std::vector<Id> Moved;
+
+  /** Work space of one split. */
+  std::vector<NewTriangle> Triangles;
+  /** Sorted: triangles that are there no longer, and new ones. */
+  std::vector<TriangleIds> Vanished;
+  std::vector<TriangleIds> Made;
+  /** Facets of tetrahedra at vanished triangles; the tetrahedra that are replaced. */
+  std::vector<Id> Sides;
+  std::vector<Id> Tetrahedra;
+  std::vector<char> IsInCavity;
+  /** Searches that have come to a tetrahedron. */
+  std::vector<Id> Visits;
+  Id Search = 0;
+  std::vector<Id> Open;
+  Cavity Around;
+  std::vector<Id> Outer;
+  /** Facets of tetrahedra beyond the cavity that are outer ones now. */
+  std::vector<Id> Bared;
+  /** Of each wall, sorted: a region that has to be at it, and one that is. */
+  std::vector<std::pair<TriangleIds, Id>> WallRegions;
+  std::vector<std::pair<TriangleIds, Id>> FoundRegions;
+  CavityFilling Filling;
+};
+} // namespace cdm
+
+#endif

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Basics/SortedIds.h"
+#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Surface/DelaunaySurfaceRefiner.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
+#include "Core/Volume/BoundarySpheres.h"
+#include "Core/Volume/BoundarySplits.h"
+#include "RandomComplexes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+
+using namespace cdm;
+
+namespace
+{
+std::vector<TriangleIds> GetSorted(const std::vector<TriangleIds>& triangles)
+{
+  std::vector<TriangleIds> sorted;
+  for (const TriangleIds& ids : triangles)
+  {
+    sorted.push_back(Sorted(ids));
+  }
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
+
+/** A conforming mesh with points inside, and places for points of the surface that are to come. */
+class GrowingMesh
+{
+public:
+  GrowingMesh(
+    const PolygonSoup& soup, SurfaceCriterion criterion, Id reserve, std::mt19937_64& generator)
+    : Generator(generator)
+  {
+    this->Options.Criterion = criterion;
+    this->Options.MeshPointClearanceRatio = 0.0;
+    BoundaryTriangulatorOutput boundary;
+    EXPECT_TRUE(TriangulateBoundary(soup, {}, {}, boundary).IsOk());
+    DelaunaySurfaceRefinerInput input;
+    input.Surface = &boundary.Surface;
+    DelaunaySurfaceRefinerOptions options = this->Options;
+    options.MaximumEdgeLength = 0.4;
+    DelaunaySurfaceRefinerOutput refined;
+    EXPECT_TRUE(RefineDelaunaySurface(input, options, {}, refined).IsOk());
+    AdvancingFrontTetrahedralizerInput front;
+    front.Surface = &refined.Surface;
+    AdvancingFrontTetrahedralizerOutput made;
+    EXPECT_TRUE(TetrahedralizeByAdvancingFront(front, {}, {}, made).IsOk());
+    this->Surface = std::move(made.Boundary);
+    this->Surface.Points = refined.Surface.Points;
+    this->Edges = refined.StructuralEdges;
+    this->FirstInside = static_cast<Id>(made.Mesh.Points.size()) + reserve;
+    made.Mesh.Points.resize(this->FirstInside);
+    this->Mesh = std::make_unique<DynamicTetrahedralization>(std::move(made.Mesh));
+    this->InsertPoints(60);
+    this->Splits = std::make_unique<BoundarySplits>(
+      *this->Mesh, this->FirstInside, this->Surface, this->Edges, this->Options, SizingField());
+  }
+
+  /** Into random tetrahedra, where they disturb nothing. */
+  void InsertPoints(int tries)
+  {
+    BoundarySpheres spheres(this->Surface, this->Edges);
+    BoundarySpheres::Disturbed disturbed;
+    std::uniform_real_distribution<double> uniform(0.1, 1.0);
+    DynamicTetrahedralization::Hole hole;
+    for (int i = 0; i < tries; ++i)
+    {
+      const Id t = this->Draw(this->Mesh->GetNumberOfTetrahedra());
+      if (this->Mesh->IsDead(t))
+      {
+        continue;
+      }
+      Vec3 position;
+      double sum = 0.0;
+      for (Id id : this->Mesh->GetMesh().Tetrahedra[t])
+      {
+        const double weight = uniform(this->Generator);
+        position = position + weight * this->Mesh->GetPoint(id);
+        sum += weight;
+      }
+      position = (1.0 / sum) * position;
+      spheres.Find(position, disturbed);
+      if (disturbed.IsEmpty() &&
+        this->Mesh->FindHole(position, this->Mesh->GetNumberOfPoints(), t, hole))
+      {
+        this->Mesh->Insert(position, hole);
+      }
+    }
+  }
+
+  void RemovePoints(int tries)
+  {
+    for (int i = 0; i<tries&& this->Mesh->GetNumberOfPoints()> this->FirstInside; ++i)
+    {
+      const Id p =
+        this->FirstInside + this->Draw(this->Mesh->GetNumberOfPoints() - this->FirstInside);
+      if (this->Mesh->GetTetrahedronAt(p) != NoId)
+      {
+        this->Mesh->Remove(p);
+      }
+    }
+  }
+
+  /** Moves points of the surface by rounding errors; the mesh does not know of it yet. */
+  void RoundPoints(int count)
+  {
+    for (int i = 0; i < count; ++i)
+    {
+      Vec3& point = this->Surface.Points[this->Draw(static_cast<Id>(this->Surface.Points.size()))];
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        point[axis] += 1e-16 * static_cast<double>(this->Draw(9) - 4);
+      }
+    }
+  }
+
+  /** False if the mesh has to be made anew. */
+  bool Split(int numberOfTriangles, int numberOfEdges)
+  {
+    std::vector<Id> triangles;
+    std::vector<EdgeIds> edges;
+    for (int i = 0; i < numberOfTriangles; ++i)
+    {
+      triangles.push_back(this->Draw(static_cast<Id>(this->Surface.Triangles.size())));
+    }
+    for (int i = 0; i < numberOfEdges; ++i)
+    {
+      edges.push_back(this->Edges[this->Draw(static_cast<Id>(this->Edges.size()))].Points);
+    }
+    EXPECT_TRUE(this->Splits->Run(triangles, edges, {}).IsOk());
+    EXPECT_TRUE(!this->Splits->IsUsable() || (triangles.empty() && edges.empty()));
+    return this->Splits->IsUsable();
+  }
+
+  std::size_t GetNumberOfSurfacePoints() const { return this->Surface.Points.size(); }
+
+  /** Surface and mesh are what is made anew of their points. */
+  void ExpectAsMadeAnew() const
+  {
+    std::vector<Vec3> inside;
+    std::vector<Id> numbers;
+    for (Id p = this->FirstInside; p < this->Mesh->GetNumberOfPoints(); ++p)
+    {
+      if (this->Mesh->GetTetrahedronAt(p) != NoId)
+      {
+        inside.push_back(this->Mesh->GetPoint(p));
+        numbers.push_back(p);
+      }
+    }
+    AdvancingFrontTetrahedralizerInput front;
+    front.Surface = &this->Surface;
+    front.MeshPoints = &inside;
+    AdvancingFrontTetrahedralizerOutput made;
+    const Status status = TetrahedralizeByAdvancingFront(front, {}, {}, made);
+    ASSERT_TRUE(status.IsOk()) << status.Message;
+    EXPECT_EQ(GetSorted(made.Boundary.Triangles), GetSorted(this->Surface.Triangles));
+    const Id first = static_cast<Id>(this->Surface.Points.size());
+    std::map<TetrahedronIds, Id> expected;
+    for (std::size_t t = 0; t < made.Mesh.Tetrahedra.size(); ++t)
+    {
+      TetrahedronIds ids = made.Mesh.Tetrahedra[t];
+      for (Id& id : ids)
+      {
+        id = id < first ? id : numbers[made.MeshPointSources[id - first]];
+      }
+      expected[Sorted(ids)] = made.Mesh.Regions[t];
+    }
+    const TetMesh& mesh = this->Mesh->GetMesh();
+    std::map<TetrahedronIds, Id> found;
+    for (Id t = 0; t < this->Mesh->GetNumberOfTetrahedra(); ++t)
+    {
+      if (this->Mesh->IsDead(t))
+      {
+        continue;
+      }
+      found[Sorted(mesh.Tetrahedra[t])] = mesh.Regions[t];
+      for (int i = 0; i < 4; ++i)
+      {
+        const Id neighbor = mesh.Neighbors[t][i];
+        if (neighbor != NoId)
+        {
+          ASSERT_EQ(mesh.Neighbors[neighbor / 4][neighbor % 4], 4 * t + i);
+          ASSERT_EQ(Sorted(GetFacet(mesh.Tetrahedra[t], i)),
+            Sorted(GetFacet(mesh.Tetrahedra[neighbor / 4], neighbor % 4)));
+        }
+      }
+    }
+    EXPECT_EQ(found, expected);
+  }
+
+private:
+  Id Draw(Id count) { return std::uniform_int_distribution<Id>(0, count - 1)(this->Generator); }
+
+  std::mt19937_64& Generator;
+  DelaunaySurfaceRefinerOptions Options;
+  TriangleMesh Surface;
+  std::vector<StructuralEdge> Edges;
+  Id FirstInside = 0;
+  std::unique_ptr<DynamicTetrahedralization> Mesh;
+  std::unique_ptr<BoundarySplits> Splits;
+};
+
+/** Three boxes side by side and on top of each other: many points on one sphere. */
+PolygonSoup MakeStraightBoxes()
+{
+  CellComplex complex({ 1.0, 1.0, 1.0 });
+  EXPECT_TRUE(complex.Cut({ 0.0, 0.0, 1.0 }, 0.5, 1e-6));
+  EXPECT_TRUE(complex.Cut({ 1.0, 0.0, 0.0 }, 0.25, 1e-6));
+  return complex.GetSoup();
+}
+} // namespace
+
+TEST(BoundarySplits, TheMeshIsAsMadeAnew)
+{
+  for (unsigned int seed = 1; seed <= 40; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 generator(seed);
+    const SurfaceCriterion criterion =
+      seed % 3 == 0 ? SurfaceCriterion::SmallestSphereAndEdges : SurfaceCriterion::SmallestSphere;
+    GrowingMesh mesh(seed % 2 == 0 ? MakeStraightBoxes()
+                                   : MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, 2, 0.5 * seed),
+      criterion, 20000, generator);
+    const std::size_t before = mesh.GetNumberOfSurfacePoints();
+    for (int run = 0; run < 8; ++run)
+    {
+      ASSERT_TRUE(mesh.Split(run, 8 - run));
+      mesh.ExpectAsMadeAnew();
+      mesh.InsertPoints(10);
+      mesh.RemovePoints(5);
+    }
+    EXPECT_GT(mesh.GetNumberOfSurfacePoints(), before + 30);
+  }
+}
+
+TEST(BoundarySplits, TheMeshFollowsPointsOfTheSurface)
+{
+  for (unsigned int seed = 1; seed <= 40; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 generator(seed);
+    GrowingMesh mesh(seed % 2 == 0 ? MakeStraightBoxes()
+                                   : MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, 2, 0.5 * seed),
+      SurfaceCriterion::SmallestSphere, 20000, generator);
+    for (int run = 0; run < 8; ++run)
+    {
+      mesh.RoundPoints(1 + 2 * run);
+      ASSERT_TRUE(mesh.Split(run % 3, run % 2));
+      mesh.ExpectAsMadeAnew();
+      mesh.InsertPoints(5);
+    }
+  }
+}
+
+TEST(BoundarySplits, WhereThereIsNoPlaceTheMeshStays)
+{
+  std::mt19937_64 generator(1);
+  GrowingMesh mesh(MakeStraightBoxes(), SurfaceCriterion::SmallestSphere, 20, generator);
+  const std::size_t before = mesh.GetNumberOfSurfacePoints();
+  EXPECT_FALSE(mesh.Split(20, 20));
+  mesh.ExpectAsMadeAnew();
+  EXPECT_LE(mesh.GetNumberOfSurfacePoints(), before + 20);
+  EXPECT_FALSE(mesh.Split(1, 1));
+  mesh.ExpectAsMadeAnew();
+}
