@@ -7,8 +7,8 @@
  * at the center of the box of its points, which separates at least two of them, so that any
  * distribution of distinct points works: graded 1:10000, on surfaces, in clusters.
  *
- * Invariants: the box of a node is the tight box of the points that have been added below it; a node
- * has either eight children, stored next to each other, or a leaf. Points are distinct.
+ * Invariants: the box of a node is the tight box of the points that have been added below it; a
+ * node has either eight children, stored next to each other, or a leaf. Points are distinct.
  *
  * Cost: O(log n) for usual distributions to add or remove a point; about 60 bytes per point.
  */

@@ -4,8 +4,8 @@
  * @brief Splits triangles and edges of the boundary of a Delaunay mesh, in the mesh itself.
  *
  * Method, for one triangle or edge after the other:
- *  1. the surface is refined (SurfaceRefinement.h) until it fulfils its criterion again; diagonals of
- *     points on one circle turn as the pulling rule has them;
+ *  1. the surface is refined (SurfaceRefinement.h) until it fulfils its criterion again; diagonals
+ *     of points on one circle turn as the pulling rule has them;
  *  2. all tetrahedra in conflict with its new points, whatever their region, leave a cavity; it is
  *     filled anew (CavityFilling.h), the surface's new triangles and the interfaces that stay being
  *     walls.
@@ -45,10 +45,10 @@ public:
 
   /**
    * Splits what it is given. Before that, points inside may have come and gone, and points of the
-   * surface may have been moved, in the surface or in both: the mesh follows. Triangles that have a new point at them by then, and edges that are
-   * split, are left out. The lists keep what has not been done if the mesh has to be made anew: there
-   * is no place for more points, or rounding has made something that does not fit; then the object is
-   * good for nothing more.
+   * surface may have been moved, in the surface or in both: the mesh follows. Triangles that have a
+   * new point at them by then, and edges that are split, are left out. The lists keep what has not
+   * been done if the mesh has to be made anew: there is no place for more points, or rounding has
+   * made something that does not fit; then the object is good for nothing more.
    */
   Status Run(
     std::vector<Id>& triangles, std::vector<EdgeIds>& edges, const ExecutionContext& context);

@@ -37,7 +37,7 @@ constexpr int MaximumLastPasses = 5;
 constexpr std::size_t FewRequests = 16;
 /** The boundary is split for flat tetrahedra if no more than these are left. */
 constexpr std::ptrdiff_t FewFlat = 16;
-/** What is left of a point's size between it and new ones at last, if nothing else helps slivers. */
+/** What is left of a point's size between it and new ones at last, if nothing else helps. */
 constexpr double SliverSizeRatio = 0.05;
 /**
  * Edges of the boundary for a largest volume, in edges of the regular tetrahedron of that volume.

@@ -19,10 +19,10 @@
  * for its size only; if it is a sliver, its points are moved. Each point has a size, the
  * shortest edge at it before any shape was refined, or how close edges of the boundary come to each
  * other there (FeatureSizes.h), and at most the size of another point and the way from there; no
- * point comes closer to it than a fifth of that, but for size limits and, at last, for slivers. Of tetrahedra across a thin
- * layer (ThinLayers.h) only the size counts. Nor is a tetrahedron refined for its shape whose
- * points all belong to the boundary and lie in one plane but for rounding, as those of turned
- * devices do: new points on the boundary would have more of the kind.
+ * point comes closer to it than a fifth of that, but for size limits and, at last, for slivers. Of
+ * tetrahedra across a thin layer (ThinLayers.h) only the size counts. Nor is a tetrahedron refined
+ * for its shape whose points all belong to the boundary and lie in one plane but for rounding, as
+ * those of turned devices do: new points on the boundary would have more of the kind.
  *
  * References: J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998,
  * doi:10.1145/276884.276894 (what is split instead, and why it ends); J. Tournois, R. Srinivasan,
@@ -168,8 +168,8 @@ public:
 
   /**
    * Moves points of the surface that are corners of slivers. Afterwards it has to be seen whether
-   * they are in smallest spheres on the other side of outer facets: the surface gets its points, and
-   * SplitBoundary() is called, or a new mesh is made.
+   * they are in smallest spheres on the other side of outer facets: the surface gets its points,
+   * and SplitBoundary() is called, or a new mesh is made.
    * @param isFree one for each point of the surface, whether it may be moved
    * @param structural edges of the surface, sorted
    * @param areEdgesKept whether smallest spheres of the object's edges stay empty, too
@@ -186,8 +186,8 @@ public:
    * Splits what is requested in the boundary, and whatever that disturbs, in the mesh itself.
    * @param surface the one given at first, and its edges
    * @param options those that have made the surface
-   * @return whether all is done: if not, the surface is as far as the mesh is, what is left is still
-   *   requested, and a new mesh has to be made; this object is good for nothing more
+   * @return whether all is done: if not, the surface is as far as the mesh is, what is left is
+   *   still requested, and a new mesh has to be made; this object is good for nothing more
    */
   bool SplitBoundary(TriangleMesh& surface, std::vector<StructuralEdge>& edges,
     const DelaunaySurfaceRefinerOptions& options, const SizingField& sizing,
