@@ -96,12 +96,22 @@ void SharpAngles::FindFacets(const TriangleMesh& surface, const std::vector<Stru
   }
   SortUnique(this->FacetPairs);
 
+  std::vector<char> isSharp(surface.Triangles.size(), 0);
+  for (const auto& [first, second] : this->FacetPairs)
+  {
+    isSharp[first] = 1;
+    isSharp[second] = 1;
+  }
   std::vector<std::pair<Id, Id>> pairs;
   for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()) && !sharp.empty(); ++t)
   {
+    const Id facet = facets.Find(t);
     for (Id point : surface.Triangles[t])
     {
-      pairs.emplace_back(point, facets.Find(t));
+      if (isSharp[facet] != 0)
+      {
+        pairs.emplace_back(point, facet);
+      }
     }
   }
   std::sort(pairs.begin(), pairs.end());

@@ -54,7 +54,7 @@ private:
 
   /** One for each point of the surface. */
   std::vector<char> IsCorner;
-  /** Of each point. */
+  /** Of each point; those without a sharp angle are left out. */
   IdLists PointFacets;
   /** Pairs of facets with a sharp angle, the smaller one first; sorted. */
   std::vector<std::pair<Id, Id>> FacetPairs;
