@@ -5,11 +5,9 @@
 #include "Core/Geometry/Predicates.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
+#include <iterator>
 #include <numeric>
 #include <utility>
-#define WHY(x) (std::getenv("SRT") ? std::fprintf(stderr, "SRT why %s\n", x) : 0)
 
 namespace cdm
 {
@@ -119,10 +117,10 @@ Status BoundarySplits::Run(
   {
     segments.emplace_back(edge, this->IsUsable() ? this->FindSegment(edge) : NoId);
   }
-  std::size_t next = 0;
-  for (; next < edges.size() && status.IsOk() && this->IsUsable(); ++next)
+  std::size_t done = 0;
+  for (; done < edges.size() && status.IsOk() && this->IsUsable(); done += this->IsUsable())
   {
-    const auto& [edge, segment] = segments[next];
+    const auto& [edge, segment] = segments[done];
     if (segment == NoId)
     {
       continue;
@@ -135,17 +133,18 @@ Status BoundarySplits::Run(
       this->CanGoOn = this->Update();
     }
   }
-  edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(next));
-  for (next = 0; next < triangles.size() && status.IsOk() && this->IsUsable(); ++next)
+  edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(done));
+  done = 0;
+  for (; done < triangles.size() && status.IsOk() && this->IsUsable(); done += this->IsUsable())
   {
-    const TriangleIds& ids = this->Surface.Triangles[triangles[next]];
+    const TriangleIds& ids = this->Surface.Triangles[triangles[done]];
     if (*std::max_element(ids.begin(), ids.end()) < numberOfPoints)
     {
-      status = this->Refinement.SplitTriangle(triangles[next], context);
+      status = this->Refinement.SplitTriangle(triangles[done], context);
       this->CanGoOn = this->Update();
     }
   }
-  triangles.erase(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(next));
+  triangles.erase(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(done));
   if (this->IsUsable())
   {
     this->ListEdges();
@@ -175,10 +174,6 @@ bool BoundarySplits::Update()
     touched.begin(), touched.end(), [this](Id t) { return this->Refinement.IsUnresolved(t); });
   if (!isResolved || next > this->FirstInside)
   {
-    WHY(isResolved ? "reserve" : "unresolved");
-    WHY(isResolved ? "reserve" : "unresolved");
-    WHY(isResolved ? "reserve" : "unresolved");
-    WHY(isResolved ? "reserve" : "unresolved");
     return false;
   }
   this->Refinement.PullCocircular(touched);
