@@ -118,7 +118,7 @@ Status BoundarySplits::Run(
     segments.emplace_back(edge, this->IsUsable() ? this->FindSegment(edge) : NoId);
   }
   std::size_t done = 0;
-  for (; done < edges.size() && status.IsOk() && this->IsUsable(); done += this->IsUsable())
+  for (; done < edges.size() && status.IsOk() && this->IsUsable(); ++done)
   {
     const auto& [edge, segment] = segments[done];
     if (segment == NoId)
@@ -135,7 +135,7 @@ Status BoundarySplits::Run(
   }
   edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(done));
   done = 0;
-  for (; done < triangles.size() && status.IsOk() && this->IsUsable(); done += this->IsUsable())
+  for (; done < triangles.size() && status.IsOk() && this->IsUsable(); ++done)
   {
     const TriangleIds& ids = this->Surface.Triangles[triangles[done]];
     if (*std::max_element(ids.begin(), ids.end()) < numberOfPoints)
