@@ -2,13 +2,13 @@
 #include "Core/Volume/SteinerPointRefiner.h"
 
 #include "Core/Basics/SortedIds.h"
-#include "Core/Certificate/MeshChecks.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Meshes/MeshBoundary.h"
 #include "Core/Meshes/ShortestEdges.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "Core/Volume/FeatureSizes.h"
 #include "Core/Volume/PointRounding.h"
+#include "Core/Volume/SteinerPointChecks.h"
 #include "Core/Volume/VolumeRefinement.h"
 
 #include <algorithm>
@@ -27,10 +27,11 @@ namespace
 constexpr Id MaximumRounds = 1000;
 /** Rounds in a row that move points of the boundary for slivers, or split it, in vain. */
 constexpr int MaximumSliverRounds = 40;
-/** Roundings of points in a row that do not help. */
-constexpr int MaximumFailedRoundings = 2;
-/** Rounds in a row whose moves of the boundary's points leave as many slivers as before. */
-constexpr int MaximumFailedMoves = 3;
+/** Moves of the boundary's points in a row that leave as many slivers as before. */
+constexpr int MaximumMoves = 4;
+/** Roundings of points in a row that do not do away with a quarter of the flat tetrahedra. */
+constexpr int MaximumRoundings = 3;
+constexpr double RoundingGain = 0.75;
 /** Passes over slivers and shapes in turn, when the boundary stays as it is. */
 constexpr int MaximumLastPasses = 5;
 /** Slivers wait until no more requests than these are left from badly shaped tetrahedra. */
@@ -47,6 +48,29 @@ constexpr double BoundaryEdgeRatio = 1.15;
 constexpr double LargestSplitRatio = 0.05;
 /** Places that the mesh of a round has for points of the boundary. */
 constexpr Id FewestReservedPoints = 256;
+
+/** Until when something is tried again: while it makes a number smaller now and then. */
+class Patience
+{
+public:
+  /** @param part of the smallest number that a smaller one has to be below */
+  explicit Patience(int maximumTries, double part = 1.0) : MaximumTries(maximumTries), Part(part) {}
+
+  bool IsOver(std::size_t number)
+  {
+    this->Tries = static_cast<double>(number) < this->Part * this->Fewest ? 0 : this->Tries;
+    this->Fewest = std::min(this->Fewest, static_cast<double>(number));
+    return this->Tries >= this->MaximumTries;
+  }
+  void NoteTry() { ++this->Tries; }
+  void Renew() { *this = Patience(this->MaximumTries, this->Part); }
+
+private:
+  int MaximumTries;
+  double Part;
+  int Tries = 0;
+  double Fewest = std::numeric_limits<double>::infinity();
+};
 
 class Refiner
 {
@@ -65,8 +89,6 @@ public:
 private:
   static Id GetMaximumNewPoints(
     const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options);
-  Status CheckInput() const;
-  Status CheckBoundary() const;
   void ExtractSurface();
   ExecutionContext GetRoundContext() const;
   Status Translate(Status status, const std::vector<Id>& sources) const;
@@ -78,6 +100,23 @@ private:
   std::size_t CollectSurfaceSizes();
   void MeasureSizes();
   void CollectReport();
+  /** What a round of shapes and slivers has come to. */
+  enum class Outcome
+  {
+    /** What shapes have requested is to be split. */
+    Open,
+    /** As before, and what slivers have requested. */
+    Requested,
+    /** Points of the surface have got other places. */
+    Moved,
+    /** Nothing helps any more. */
+    Done
+  };
+  Status RefineSizes();
+  Status RefineShapes();
+  Status MendSlivers(Outcome& outcome);
+  Status MoveOrRequest(Outcome& outcome);
+  bool AreManyFlat() const;
   Status PerturbSlivers(SliverMeans means);
   Status PerturbLastSlivers();
   bool RoundFlatTetrahedraAway();
@@ -85,11 +124,7 @@ private:
   bool MoveSurface(const std::vector<Vec3>& places);
   bool AllowCloserPoints();
   bool IsInevitable(const TetrahedronIds& ids, Id region) const;
-  std::size_t CountRequests() const
-  {
-    return this->Round->GetRequestedTriangles().size() + this->Round->GetRequestedEdges().size();
-  }
-  bool HasRequests() const { return this->CountRequests() > 0; }
+  std::size_t CountRequests() const { return this->Round->GetRequests().GetNumber(); }
   void FindFaults();
   void MakeOutput();
 
@@ -116,14 +151,12 @@ private:
   std::vector<char> IsNew;
   /** One for each point of the surface: whether it may be moved in its facet or along its edge. */
   std::vector<char> IsSurfaceFree;
-  /** Flat tetrahedra when they were fewest, since there are others than those left. */
-  std::size_t FewestFlat = std::numeric_limits<std::size_t>::max() / 4;
-  /** Slivers when they were fewest since the boundary was last split for them. */
-  std::size_t FewestSlivers = std::numeric_limits<std::size_t>::max();
-  /** So many moves of the surface's points in a row have not helped. */
-  int FailedMoves = 0;
-  /** So many roundings in a row have not helped. */
-  int FailedRoundings = 0;
+  /** Over flat tetrahedra, while there are others than those left. */
+  Patience Roundings{ MaximumRoundings, RoundingGain };
+  /** Over slivers, until the boundary is split for them. */
+  Patience Moves{ MaximumMoves };
+  /** Over slivers. */
+  Patience SliverRounds{ MaximumSliverRounds };
   /** Points of flat tetrahedra that rounding has left, sorted. */
   std::vector<TetrahedronIds> LeftFlat;
   /** Whether points may come closer to others for slivers. */
@@ -145,115 +178,6 @@ Id Refiner::GetMaximumNewPoints(
   return hasSizes
     ? largest
     : static_cast<Id>(std::min<std::size_t>(largest, 50000 + 200 * input.Mesh->Points.size()));
-}
-
-Status Refiner::CheckInput() const
-{
-  const TetMesh& mesh = *this->Input.Mesh;
-  Status status = CheckMeshInvariants(mesh, this->Options.NumberOfThreads);
-  if (!status.IsOk())
-  {
-    return status;
-  }
-  std::vector<Id> outside;
-  for (Id t = 0; t < static_cast<Id>(mesh.Regions.size()); ++t)
-  {
-    if (mesh.Regions[t] < 0)
-    {
-      outside.push_back(t);
-    }
-  }
-  if (!outside.empty())
-  {
-    return Status::InvalidInput(std::to_string(outside.size()) +
-        " tetrahedra have a negative region id, which stands for the outside; number the regions "
-        "from 0 on.",
-      std::move(outside));
-  }
-  std::vector<Id> wrong;
-  for (Id p = 0; p < static_cast<Id>(this->Input.NewPoints.size()); ++p)
-  {
-    if (!IsFinite(this->Input.NewPoints[p]))
-    {
-      wrong.push_back(p);
-    }
-  }
-  return wrong.empty() ? Status()
-                       : Status::InvalidInput(std::to_string(wrong.size()) +
-                             " points to be inserted have coordinates that are not finite.",
-                           {}, std::move(wrong));
-}
-
-/** The triangles given have to be all facets between regions, and besides them only facets. */
-Status Refiner::CheckBoundary() const
-{
-  const TetMesh& mesh = *this->Input.Mesh;
-  const TriangleMesh& boundary = *this->Input.Boundary;
-  const Status status = CheckMeshInput(mesh, &boundary);
-  if (!status.IsOk())
-  {
-    return status;
-  }
-  if (boundary.Labels.empty() || boundary.Points != mesh.Points)
-  {
-    return Status::InvalidInput("The boundary needs the points of the mesh, in the same order, and "
-                                "labels: use the one that belongs to it.");
-  }
-  const auto sort = [](TriangleIds ids)
-  {
-    std::sort(ids.begin(), ids.end());
-    return ids;
-  };
-  std::vector<std::pair<TriangleIds, Id>> facets;
-  for (Id t = 0; t < static_cast<Id>(boundary.Triangles.size()); ++t)
-  {
-    facets.emplace_back(sort(boundary.Triangles[t]), t);
-  }
-  std::sort(facets.begin(), facets.end());
-  const auto find = [&](const TriangleIds& ids)
-  {
-    const auto found =
-      std::lower_bound(facets.begin(), facets.end(), std::pair<TriangleIds, Id>(sort(ids), NoId));
-    return found != facets.end() && found->first == sort(ids) ? found->second : NoId;
-  };
-  std::vector<char> isFacet(boundary.Triangles.size(), 0);
-  std::size_t missing = 0;
-  for (Id t = 0; t < static_cast<Id>(mesh.Tetrahedra.size()); ++t)
-  {
-    for (int i = 0; i < 4; ++i)
-    {
-      const Id neighbor = mesh.Neighbors[t][i];
-      const Id triangle = find(GetFacet(mesh.Tetrahedra[t], i));
-      if (triangle != NoId)
-      {
-        isFacet[triangle] = 1;
-      }
-      else if (neighbor == NoId || mesh.Regions[neighbor / 4] != mesh.Regions[t])
-      {
-        ++missing;
-      }
-    }
-  }
-  if (missing > 0)
-  {
-    return Status::InvalidInput(std::to_string(missing) +
-      " facets between regions or at the outside are not among the triangles of the boundary: use "
-      "the one that belongs to the mesh, or none.");
-  }
-  std::vector<Id> cells;
-  for (std::size_t t = 0; t < isFacet.size(); ++t)
-  {
-    if (!isFacet[t])
-    {
-      cells.push_back(static_cast<Id>(t));
-    }
-  }
-  return cells.empty()
-    ? Status()
-    : Status::InvalidInput(std::to_string(cells.size()) +
-          " triangles of the boundary are no facets of the mesh: use the one that "
-          "belongs to it, or none.",
-        std::move(cells));
 }
 
 void Refiner::ExtractSurface()
@@ -346,8 +270,8 @@ Status Refiner::StartRound()
   if (this->Round)
   {
     this->Interior = this->Round->GetInterior();
-    input.TrianglesToSplit = this->Round->GetRequestedTriangles();
-    input.EdgesToSplit = this->Round->GetRequestedEdges();
+    input.TrianglesToSplit = this->Round->GetRequests().Triangles;
+    input.EdgesToSplit = this->Round->GetRequests().Edges;
   }
   std::vector<Vec3> points;
   for (const InteriorPoint& point : this->Interior)
@@ -439,7 +363,7 @@ Status Refiner::SplitBoundary()
   }
   const std::size_t before = this->Surface.Points.size();
   Status status;
-  const bool isDone = this->Round->SplitBoundary(this->Surface, this->Edges,
+  const bool isDone = this->Round->SplitBoundary(
     this->GetSurfaceOptions(), this->Input.Sizing, this->GetRoundContext(), status);
   const std::size_t after = this->Surface.Points.size();
   this->Output.Report.BoundaryPoints += static_cast<Id>(after - before);
@@ -522,19 +446,24 @@ Status Refiner::RefineRound(bool isShapeTested)
   return this->Round->RefineByLimits(isShapeTested, this->GetRoundContext());
 }
 
+/**
+ * Rounding may leave a few flat tetrahedra, for which the boundary is split then; many are those of
+ * a device that is turned, and splits would not end there.
+ */
+bool Refiner::AreManyFlat() const
+{
+  const TetMesh& mesh = this->Round->GetMesh();
+  const std::vector<Id> flat = this->Round->FindFlatTetrahedra();
+  return std::count_if(flat.begin(), flat.end(),
+           [&](Id t)
+           { return !this->IsInevitable(mesh.Tetrahedra[t], mesh.Regions[t]); }) > FewFlat;
+}
+
 Status Refiner::PerturbSlivers(SliverMeans means)
 {
-  // Rounding may leave a few flat tetrahedra, for which the boundary is split then; many are those
-  // of a device that is turned, and splits would not end there.
-  const std::vector<Id> flat = this->Round->FindFlatTetrahedra();
-  const auto slivers = std::count_if(flat.begin(), flat.end(),
-    [this](Id t)
-    {
-      const TetMesh& mesh = this->Round->GetMesh();
-      return !this->IsInevitable(mesh.Tetrahedra[t], mesh.Regions[t]);
-    });
+  const bool areFlatLeft = means == SliverMeans::Requests && this->AreManyFlat();
   return this->Round->PerturbSlivers(this->Options.DihedralAngleTarget, means,
-    slivers <= FewFlat ? std::vector<char>() : this->IsSurfaceFree, this->GetRoundContext());
+    areFlatLeft ? this->IsSurfaceFree : std::vector<char>(), this->GetRoundContext());
 }
 
 /** Points that were put in for shapes after the slivers' points were moved leave slivers, too. */
@@ -586,15 +515,13 @@ bool Refiner::RoundFlatTetrahedraAway()
   {
     return false;
   }
-  this->FailedRoundings = 4 * flat.size() > 3 * this->FewestFlat ? this->FailedRoundings + 1 : 0;
-  if (this->FailedRoundings > MaximumFailedRoundings)
+  if (this->Roundings.IsOver(flat.size()))
   {
     this->LeftFlat = std::move(found);
-    this->FailedRoundings = 0;
-    this->FewestFlat = std::numeric_limits<std::size_t>::max() / 4;
+    this->Roundings.Renew();
     return false;
   }
-  this->FewestFlat = std::min(this->FewestFlat, flat.size());
+  this->Roundings.NoteTry();
   const PointRounding rounding(this->Round->GetMesh(), this->Surface, flat);
   std::vector<Vec3> places = this->Surface.Points;
   rounding.Move(this->IsSurfaceFree, places);
@@ -608,15 +535,12 @@ bool Refiner::RoundFlatTetrahedraAway()
  */
 bool Refiner::MoveSurfacePoints()
 {
-  const std::size_t slivers = this->Round->CountSlivers(this->Options.DihedralAngleTarget);
-  this->FailedMoves = slivers < this->FewestSlivers ? 0 : this->FailedMoves + 1;
-  this->FewestSlivers = std::min(this->FewestSlivers, slivers);
-  if (this->FailedMoves > MaximumFailedMoves)
+  if (this->Moves.IsOver(this->Round->CountSlivers(this->Options.DihedralAngleTarget)))
   {
-    this->FailedMoves = 0;
-    this->FewestSlivers = std::numeric_limits<std::size_t>::max();
+    this->Moves.Renew();
     return false;
   }
+  this->Moves.NoteTry();
   return this->MoveSurface(
     this->Round->MoveSurfacePoints(this->Options.DihedralAngleTarget, this->IsSurfaceFree,
       this->Edges, this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges));
@@ -735,98 +659,129 @@ void Refiner::MakeOutput()
   }
 }
 
+/** Until no tetrahedron is too large. */
+Status Refiner::RefineSizes()
+{
+  Status status = this->RefineRound(false);
+  while (status.IsOk() && !this->IsStuck && this->CountRequests() > 0 && !this->Round->IsFull() &&
+    this->Output.Report.Rounds < MaximumRounds)
+  {
+    status = this->SplitBoundary();
+    status = status.IsOk() ? this->RefineRound(false) : status;
+  }
+  if (status.IsOk())
+  {
+    this->MeasureSizes();
+    this->IsStuck = false;
+  }
+  return status;
+}
+
+/** Until nothing that may be done helps bad shapes and slivers. */
+Status Refiner::RefineShapes()
+{
+  Status status;
+  Outcome outcome = Outcome::Open;
+  while (status.IsOk() && outcome != Outcome::Done)
+  {
+    status = this->RefineRound(true);
+    outcome = Outcome::Open;
+    if (status.IsOk() &&
+      (this->IsStuck || this->Round->IsFull() || this->CountRequests() <= FewRequests))
+    {
+      status = this->MendSlivers(outcome);
+    }
+    if (outcome != Outcome::Moved && this->Output.Report.Rounds >= MaximumRounds)
+    {
+      outcome = Outcome::Done;
+    }
+    if (status.IsOk() && outcome != Outcome::Done)
+    {
+      status = this->SplitBoundary();
+      this->IsStuck = this->IsStuck && outcome != Outcome::Moved;
+    }
+  }
+  return status;
+}
+
+/** Where few shapes need the boundary split, or none that can be. */
+Status Refiner::MendSlivers(Outcome& outcome)
+{
+  Status status;
+  const bool isFull = this->Round->IsFull();
+  const Id inserted = this->Round->GetReport().InsertedPoints;
+  const double target = this->Options.DihedralAngleTarget;
+  if (target > 0.0 && !this->SliverRounds.IsOver(this->Round->CountSlivers(target)))
+  {
+    if (!isFull && this->RoundFlatTetrahedraAway())
+    {
+      outcome = Outcome::Moved;
+      return status;
+    }
+    status = this->MoveOrRequest(outcome);
+    if (outcome != Outcome::Open)
+    {
+      this->SliverRounds.NoteTry();
+    }
+    if (outcome == Outcome::Moved)
+    {
+      return status;
+    }
+    status = status.IsOk() ? this->RefineRound(true) : status;
+  }
+  const bool isLeft =
+    this->CountRequests() > 0 || this->Round->GetReport().InsertedPoints != inserted;
+  if (!status.IsOk() || outcome == Outcome::Requested || (!this->IsStuck && !isFull && isLeft))
+  {
+    return status;
+  }
+  if (!isFull && this->AllowCloserPoints())
+  {
+    this->SliverRounds.Renew();
+    return this->RefineRound(true);
+  }
+  outcome = Outcome::Done;
+  return target > 0.0 ? this->PerturbLastSlivers() : status;
+}
+
+/** Moves of points inside, of points of the surface if these help, at last requests. */
+Status Refiner::MoveOrRequest(Outcome& outcome)
+{
+  const bool isFull = this->Round->IsFull();
+  Status status = this->PerturbSlivers(isFull ? SliverMeans::Moves : SliverMeans::Points);
+  if (!status.IsOk() || isFull)
+  {
+    return status;
+  }
+  if (this->MoveSurfacePoints())
+  {
+    outcome = Outcome::Moved;
+    return status;
+  }
+  // Splits for shapes do away with slivers, too.
+  const std::size_t requests = this->CountRequests();
+  if (this->IsStuck || requests == 0)
+  {
+    status = this->PerturbSlivers(SliverMeans::Requests);
+    outcome = this->CountRequests() > requests ? Outcome::Requested : outcome;
+  }
+  return status;
+}
+
 Status Refiner::Run()
 {
-  Status status = this->CheckInput();
-  if (!status.IsOk())
+  Status status = CheckSteinerPointInput(this->Input, this->Options.NumberOfThreads);
+  if (status.IsOk())
   {
-    return status;
+    this->ExtractSurface();
+    status = this->StartRound();
   }
-  status = this->Input.Boundary != nullptr ? this->CheckBoundary() : status;
-  if (!status.IsOk())
+  if (status.IsOk())
   {
-    return status;
+    this->Round->RemoveClosePoints(this->Options.MinimumEdgeLength, this->Input.Sizing);
+    status = this->RefineSizes();
   }
-  this->ExtractSurface();
-  status = this->StartRound();
-  if (!status.IsOk())
-  {
-    return status;
-  }
-  this->Round->RemoveClosePoints(this->Options.MinimumEdgeLength, this->Input.Sizing);
-
-  bool areSizesDone = false;
-  int sliverRounds = 0;
-  std::size_t fewestSlivers = std::numeric_limits<std::size_t>::max();
-  bool isDone = false;
-  while (status.IsOk() && !isDone)
-  {
-    // Whether points of the surface have got other places.
-    bool areMoved = false;
-    if (!areSizesDone)
-    {
-      status = this->RefineRound(false);
-      areSizesDone =
-        status.IsOk() && (this->IsStuck || !this->HasRequests() || this->Round->IsFull());
-      if (areSizesDone)
-      {
-        this->MeasureSizes();
-        this->IsStuck = false;
-      }
-    }
-    if (areSizesDone && status.IsOk())
-    {
-      status = this->RefineRound(true);
-      const bool isFull = this->Round->IsFull();
-      if (status.IsOk() && (this->IsStuck || isFull || this->CountRequests() <= FewRequests))
-      {
-        const Id inserted = this->Round->GetReport().InsertedPoints;
-        const std::size_t slivers = this->Round->CountSlivers(this->Options.DihedralAngleTarget);
-        sliverRounds = slivers < fewestSlivers ? 0 : sliverRounds;
-        fewestSlivers = std::min(fewestSlivers, slivers);
-        const bool areMeant =
-          this->Options.DihedralAngleTarget > 0.0 && sliverRounds < MaximumSliverRounds;
-        areMoved = areMeant && !isFull && this->RoundFlatTetrahedraAway();
-        bool areRequested = false;
-        if (areMeant && !areMoved)
-        {
-          status = this->PerturbSlivers(isFull ? SliverMeans::Moves : SliverMeans::Points);
-          if (status.IsOk() && !isFull)
-          {
-            areMoved = this->MoveSurfacePoints();
-            // Splits for shapes do away with slivers, too.
-            const std::size_t requests = this->CountRequests();
-            if (!areMoved && (this->IsStuck || requests == 0))
-            {
-              status = this->PerturbSlivers(SliverMeans::Requests);
-              areRequested = this->CountRequests() > requests;
-            }
-          }
-          sliverRounds += areMoved || areRequested ? 1 : 0;
-          status = status.IsOk() && !areMoved ? this->RefineRound(true) : status;
-        }
-        isDone = !areMoved && !areRequested &&
-          (this->IsStuck || isFull ||
-            (!this->HasRequests() && this->Round->GetReport().InsertedPoints == inserted));
-        if (isDone && !isFull && status.IsOk() && this->AllowCloserPoints())
-        {
-          isDone = false;
-          sliverRounds = 0;
-          status = this->RefineRound(true);
-        }
-        if (isDone && this->Options.DihedralAngleTarget > 0.0 && status.IsOk())
-        {
-          status = this->PerturbLastSlivers();
-        }
-      }
-    }
-    if (status.IsOk())
-    {
-      isDone = isDone || this->Output.Report.Rounds >= MaximumRounds;
-      status = isDone && !areMoved ? status : this->SplitBoundary();
-      this->IsStuck = this->IsStuck && !areMoved;
-    }
-  }
+  status = status.IsOk() ? this->RefineShapes() : status;
   if (status.IsOk())
   {
     this->CollectReport();

@@ -51,41 +51,17 @@ TetMesh ReservePoints(TetMesh mesh, std::size_t first, Id reserve)
 }
 } // namespace
 
-void SliverMemory::SetChanged(const TetrahedronIds& names)
-{
-  ++this->Time;
-  for (Id name : names)
-  {
-    this->Changes[name] = this->Time;
-  }
-}
-
-void SliverMemory::SetHopeless(const TetrahedronIds& names, SliverAttempt last)
-{
-  this->Failures[names] = { this->Time, last };
-}
-
-bool SliverMemory::IsHopeless(const TetrahedronIds& names, SliverAttempt last) const
-{
-  const auto failure = this->Failures.find(names);
-  return failure != this->Failures.end() && failure->second.Last >= last &&
-    std::none_of(names.begin(), names.end(),
-      [&](Id name)
-      {
-        const auto change = this->Changes.find(name);
-        return change != this->Changes.end() && change->second > failure->second.Time;
-      });
-}
-
-VolumeRefinement::VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
-  const std::vector<StructuralEdge>& edges, const std::vector<double>& surfaceSizes,
+VolumeRefinement::VolumeRefinement(TetMesh mesh, TriangleMesh& surface,
+  std::vector<StructuralEdge>& edges, const std::vector<double>& surfaceSizes,
   const std::vector<InteriorPoint>& interior, const TetrahedronLimits& limits, Id maximumNewPoints,
   SliverMemory& memory, Id reserve)
   : Mesh(ReservePoints(std::move(mesh), surface.Points.size(), reserve)), Surface(surface),
     Edges(edges), Limits(limits), FirstInside(static_cast<Id>(surface.Points.size()) + reserve),
     MaximumNewPoints(maximumNewPoints), Memory(memory),
     Shape(std::make_unique<BoundaryShape>(surface, edges)),
-    IsTriangleRequested(surface.Triangles.size(), 0), IsEdgeRequested(edges.size(), 0)
+    Requests(surface, edges,
+      [this](Id point, double distance)
+      { return distance >= this->SizeRatio * this->Points[point].Size; })
 {
   for (std::size_t p = 0; p < surface.Points.size(); ++p)
   {
@@ -394,147 +370,6 @@ double VolumeRefinement::GetSizeRatio(Id tetrahedron) const
     : UsualSizeRatio;
 }
 
-/** Whether a point at this distance from others is as far away as their sizes ask for. */
-template <typename Ids>
-bool VolumeRefinement::KeepsSizes(double distance, const Ids& ids) const
-{
-  return std::all_of(ids.begin(), ids.end(),
-    [&](Id id) { return distance >= this->SizeRatio * this->Points[id].Size; });
-}
-
-/** To split an edge of the boundary, if the sizes of its ends allow it. */
-bool VolumeRefinement::RequestEdge(Id edge, bool isSizeKept)
-{
-  const EdgeIds& ends = this->Edges[edge].Points;
-  const double half = 0.5 * Distance(this->Surface.Points[ends[0]], this->Surface.Points[ends[1]]);
-  if (isSizeKept && !this->KeepsSizes(half, ends))
-  {
-    return false;
-  }
-  if (!this->IsEdgeRequested[edge])
-  {
-    this->IsEdgeRequested[edge] = 1;
-    this->RequestedEdges.push_back(ends);
-  }
-  return true;
-}
-
-/**
- * Where two triangles of the boundary that lie almost in a plane have a common circumcircle,
- * almost, they share a flat tetrahedron. No point inside destroys it; a point on their edge does.
- */
-bool VolumeRefinement::RequestEdge(const TetrahedronIds& ids)
-{
-  for (const auto& positions : TetrahedronEdges)
-  {
-    const EdgeIds ends = MakeEdge(ids[positions[0]], ids[positions[1]]);
-    const StructuralEdge* const edge = FindStructuralEdge(this->Edges, ends);
-    if (edge == nullptr)
-    {
-      continue;
-    }
-    int count = 0;
-    for (Id t : this->Shape->PointTriangles[ends[0]])
-    {
-      const TriangleIds& triangle = this->Surface.Triangles[t];
-      count += std::all_of(triangle.begin(), triangle.end(),
-                 [&](Id id) { return std::find(ids.begin(), ids.end(), id) != ids.end(); }) &&
-        std::find(triangle.begin(), triangle.end(), ends[1]) != triangle.end();
-    }
-    if (count == 2 && this->RequestEdge(static_cast<Id>(edge - this->Edges.data()), true))
-    {
-      return true;
-    }
-  }
-  return false;
-}
-
-void VolumeRefinement::RequestTriangle(Id triangle)
-{
-  if (triangle != NoId)
-  {
-    this->IsTriangleRequested[triangle] = 1;
-    this->RequestedTriangles.push_back(triangle);
-  }
-}
-
-/** To split the largest triangle at the tetrahedron's points on the boundary, if sizes allow it. */
-void VolumeRefinement::RequestLargestTriangle(const TetrahedronIds& ids)
-{
-  double largest = 0.0;
-  Id best = NoId;
-  for (Id id : ids)
-  {
-    if (id >= static_cast<Id>(this->Surface.Points.size()))
-    {
-      continue;
-    }
-    for (Id t : this->Shape->PointTriangles[id])
-    {
-      const TriangleIds& corners = this->Surface.Triangles[t];
-      const double radius = Norm(GetCircumcenterOffset(this->Surface.Points[corners[0]],
-        this->Surface.Points[corners[1]], this->Surface.Points[corners[2]]));
-      if (radius > largest && this->KeepsSizes(radius, corners))
-      {
-        largest = radius;
-        best = t;
-      }
-    }
-  }
-  this->RequestTriangle(best);
-}
-
-/** To split what the position disturbs most; edges before triangles. */
-void VolumeRefinement::Request(const Vec3& position, bool isSizeKept)
-{
-  this->Shape->Spheres.Find(position, this->Disturbed);
-  double deepest = Infinity;
-  Id best = NoId;
-  for (Id e : this->Disturbed.Edges)
-  {
-    if (this->IsEdgeRequested[e])
-    {
-      return;
-    }
-    const EdgeIds& ends = this->Edges[e].Points;
-    const Vec3& a = this->Surface.Points[ends[0]];
-    const Vec3& b = this->Surface.Points[ends[1]];
-    const double radius = 0.5 * Distance(a, b);
-    const double depth = Distance(position, 0.5 * (a + b)) / radius;
-    if (depth < deepest && (!isSizeKept || this->KeepsSizes(radius, ends)))
-    {
-      deepest = depth;
-      best = e;
-    }
-  }
-  if (best != NoId)
-  {
-    this->RequestEdge(best, isSizeKept);
-  }
-  if (!this->Disturbed.Edges.empty())
-  {
-    return;
-  }
-  for (Id t : this->Disturbed.Triangles)
-  {
-    if (this->IsTriangleRequested[t])
-    {
-      return;
-    }
-    const TriangleIds& ids = this->Surface.Triangles[t];
-    const Vec3& a = this->Surface.Points[ids[0]];
-    const Vec3 offset =
-      GetCircumcenterOffset(a, this->Surface.Points[ids[1]], this->Surface.Points[ids[2]]);
-    const double depth = Distance(position, a + offset) / Norm(offset);
-    if (depth < deepest && (!isSizeKept || this->KeepsSizes(Norm(offset), ids)))
-    {
-      deepest = depth;
-      best = t;
-    }
-  }
-  this->RequestTriangle(best);
-}
-
 void VolumeRefinement::SetSizes(const std::vector<double>& sizes)
 {
   for (std::size_t p = 0; p < sizes.size(); ++p)
@@ -620,7 +455,7 @@ Status VolumeRefinement::RefineByLimits(bool isShapeTested, const ExecutionConte
     this->Shape->Spheres.Find(target, this->Disturbed);
     if (!this->Disturbed.IsEmpty())
     {
-      this->Request(target, isSizeKept);
+      this->Requests.AddDisturbed(target, this->Disturbed, isSizeKept);
     }
     else if (this->Mesh.FindHole(
                target, this->Mesh.GetNumberOfPoints(), task.Tetrahedron, this->Hole) &&
@@ -636,21 +471,20 @@ Status VolumeRefinement::RefineByLimits(bool isShapeTested, const ExecutionConte
   return Status();
 }
 
-bool VolumeRefinement::SplitBoundary(TriangleMesh& surface, std::vector<StructuralEdge>& edges,
-  const DelaunaySurfaceRefinerOptions& options, const SizingField& sizing,
-  const ExecutionContext& context, Status& status)
+bool VolumeRefinement::SplitBoundary(const DelaunaySurfaceRefinerOptions& options,
+  const SizingField& sizing, const ExecutionContext& context, Status& status)
 {
   if (!this->Splits)
   {
     this->Splits = std::make_unique<BoundarySplits>(
-      this->Mesh, this->FirstInside, surface, edges, options, sizing);
+      this->Mesh, this->FirstInside, this->Surface, this->Edges, options, sizing);
   }
-  const Id first = static_cast<Id>(surface.Points.size());
-  status = this->Splits->Run(this->RequestedTriangles, this->RequestedEdges, context);
-  const Id end = static_cast<Id>(surface.Points.size());
+  const Id first = static_cast<Id>(this->Surface.Points.size());
+  status = this->Splits->Run(this->Requests.Triangles, this->Requests.Edges, context);
+  const Id end = static_cast<Id>(this->Surface.Points.size());
   for (Id p = first; p < end; ++p)
   {
-    this->Points[p] = { surface.Points[p], 0.0, false, NoId, p };
+    this->Points[p] = { this->Surface.Points[p], 0.0, false, NoId, p };
   }
   this->MaximumNewPoints -= end - first;
   for (Id t : this->Splits->GetChanged())
@@ -664,10 +498,9 @@ bool VolumeRefinement::SplitBoundary(TriangleMesh& surface, std::vector<Structur
   {
     return false;
   }
-  this->Shape = std::make_unique<BoundaryShape>(surface, edges);
+  this->Shape = std::make_unique<BoundaryShape>(this->Surface, this->Edges);
   ++this->ShapeRound;
-  this->IsTriangleRequested.assign(surface.Triangles.size(), 0);
-  this->IsEdgeRequested.assign(edges.size(), 0);
+  this->Requests.Clear();
   return true;
 }
 
@@ -948,9 +781,11 @@ Status VolumeRefinement::PerturbSlivers(double target, SliverMeans means,
         unmet.push_back(ids);
         const std::array<Vec3, 4> v = this->GetVertices(ids);
         const Vec3 center = GetCircumcenter(v[0], v[1], v[2], v[3]);
-        if (!this->RequestEdge(ids) && IsFinite(center))
+        if (!this->Requests.AddEdgeOfTwoTriangles(ids, this->Shape->PointTriangles) &&
+          IsFinite(center))
         {
-          this->Request(center, true);
+          this->Shape->Spheres.Find(center, this->Disturbed);
+          this->Requests.AddDisturbed(center, this->Disturbed, true);
         }
       }
     }
@@ -964,7 +799,7 @@ Status VolumeRefinement::PerturbSlivers(double target, SliverMeans means,
   }
   // No edge or triangle of the boundary is at fault: another point at one of them gives a
   // sliver beside it another chance; one for those that have a point in common.
-  if (this->RequestedEdges.empty() && this->RequestedTriangles.empty())
+  if (this->Requests.GetNumber() == 0)
   {
     std::vector<Id> near;
     this->SizeRatio = this->SliverTarget > 0.0 ? this->SliverSizeRatio : UsualSizeRatio;
@@ -973,7 +808,7 @@ Status VolumeRefinement::PerturbSlivers(double target, SliverMeans means,
       if (std::none_of(ids.begin(), ids.end(),
             [&near](Id id) { return std::find(near.begin(), near.end(), id) != near.end(); }))
       {
-        this->RequestLargestTriangle(ids);
+        this->Requests.AddLargestTriangle(ids, this->Shape->PointTriangles);
         near.insert(near.end(), ids.begin(), ids.end());
       }
     }

@@ -38,13 +38,13 @@
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 #include "Core/Sizing/TetrahedronLimits.h"
 #include "Core/Surface/SharpAngles.h"
+#include "Core/Volume/BoundaryRequests.h"
 #include "Core/Volume/BoundarySpheres.h"
 #include "Core/Volume/BoundarySplits.h"
+#include "Core/Volume/SliverMemory.h"
 #include "Core/Volume/ThinLayers.h"
 
-#include <map>
 #include <memory>
-#include <unordered_map>
 #include <vector>
 
 namespace cdm
@@ -61,46 +61,6 @@ struct InteriorPoint
   Id Source = NoId;
   /** See SliverMemory. */
   Id Name = NoId;
-};
-
-/** What is tried for a sliver, in this order. */
-enum class SliverAttempt
-{
-  /** To move or take out one of its free points inside. */
-  Move,
-  /** To put in a point. */
-  Insertion,
-  /** To move one of its points on the surface. */
-  SurfaceMove
-};
-
-/**
- * What has been tried in vain, so that it is not tried again before something has changed there.
- */
-class SliverMemory
-{
-public:
-  /** A name for a point inside of a region, for good. */
-  Id MakeName() { return this->NextName++; }
-  /** Names of new points are larger than ids of points of the surface, which are their names. */
-  static constexpr Id FirstName = 1 << 29;
-
-  /** That the points of a tetrahedron have got other neighbors. */
-  void SetChanged(const TetrahedronIds& names);
-  /** That nothing up to this has helped the tetrahedron. */
-  void SetHopeless(const TetrahedronIds& names, SliverAttempt last);
-  bool IsHopeless(const TetrahedronIds& names, SliverAttempt last) const;
-
-private:
-  struct Failure
-  {
-    std::int64_t Time = 0;
-    SliverAttempt Last = SliverAttempt::Move;
-  };
-  Id NextName = FirstName;
-  std::int64_t Time = 0;
-  std::unordered_map<Id, std::int64_t> Changes;
-  std::map<TetrahedronIds, Failure> Failures;
 };
 
 /** What may be done about slivers; each also what is above it. */
@@ -129,14 +89,14 @@ public:
    * pulling rule it stays if it is. The surface's triangles are those of its outer and interface
    * facets whose smallest spheres are empty, and stay so; points are put in only where no other
    * outer facet is near.
+   * @param surface outlives the object, as its edges do; both change with SplitBoundary() only
    * @param surfaceSizes as InteriorPoint::Size, one for each point of the surface, or empty
    * @param memory is kept from one boundary to the next, which has more points
    * @param reserve so many points may be added to the surface by SplitBoundary()
    */
-  VolumeRefinement(TetMesh mesh, const TriangleMesh& surface,
-    const std::vector<StructuralEdge>& edges, const std::vector<double>& surfaceSizes,
-    const std::vector<InteriorPoint>& interior, const TetrahedronLimits& limits,
-    Id maximumNewPoints, SliverMemory& memory, Id reserve = 0);
+  VolumeRefinement(TetMesh mesh, TriangleMesh& surface, std::vector<StructuralEdge>& edges,
+    const std::vector<double>& surfaceSizes, const std::vector<InteriorPoint>& interior,
+    const TetrahedronLimits& limits, Id maximumNewPoints, SliverMemory& memory, Id reserve = 0);
 
   /** One for each point of the surface: whether it has not been there, or has been elsewhere. */
   void NoteNewPoints(const std::vector<char>& isNew);
@@ -179,18 +139,15 @@ public:
     const std::vector<StructuralEdge>& structural, bool areEdgesKept);
 
   /** What is to be split in the boundary. */
-  const std::vector<Id>& GetRequestedTriangles() const { return this->RequestedTriangles; }
-  const std::vector<EdgeIds>& GetRequestedEdges() const { return this->RequestedEdges; }
+  const BoundaryRequests& GetRequests() const { return this->Requests; }
 
   /**
    * Splits what is requested in the boundary, and whatever that disturbs, in the mesh itself.
-   * @param surface the one given at first, and its edges
    * @param options those that have made the surface
    * @return whether all is done: if not, the surface is as far as the mesh is, what is left is
    *   still requested, and a new mesh has to be made; this object is good for nothing more
    */
-  bool SplitBoundary(TriangleMesh& surface, std::vector<StructuralEdge>& edges,
-    const DelaunaySurfaceRefinerOptions& options, const SizingField& sizing,
+  bool SplitBoundary(const DelaunaySurfaceRefinerOptions& options, const SizingField& sizing,
     const ExecutionContext& context, Status& status);
   /** As InteriorPoint::Size, of new points of the surface, from the first one on. */
   void SetSurfaceSizes(Id first, const std::vector<double>& sizes);
@@ -242,18 +199,10 @@ private:
   bool DisturbsBoundary(const Vec3& position);
   bool TouchesOpenFacet() const;
   void AddPoint(const Vec3& position);
-  void Request(const Vec3& position, bool isSizeKept);
-  /** NoId: nothing. */
-  void RequestTriangle(Id triangle);
-  void RequestLargestTriangle(const TetrahedronIds& ids);
   bool Move(Id point, double target);
   bool InsertBest(Id tetrahedron, double target);
   TetrahedronIds GetNames(const TetrahedronIds& ids) const;
   void NoteChanges();
-  bool RequestEdge(const TetrahedronIds& ids);
-  bool RequestEdge(Id edge, bool isSizeKept);
-  template <typename Ids>
-  bool KeepsSizes(double distance, const Ids& ids) const;
   struct Sliver
   {
     double Angle;
@@ -265,8 +214,8 @@ private:
   bool Mend(Id tetrahedron, double target, bool mayInsert);
 
   DynamicTetrahedralization Mesh;
-  const TriangleMesh& Surface;
-  const std::vector<StructuralEdge>& Edges;
+  TriangleMesh& Surface;
+  std::vector<StructuralEdge>& Edges;
   const TetrahedronLimits& Limits;
   /** Of the mesh's points; those of the surface, and places for new ones, come before. */
   const Id FirstInside;
@@ -296,10 +245,7 @@ private:
   /** Of the tetrahedron that is being refined. */
   double SizeRatio = 0.0;
 
-  std::vector<Id> RequestedTriangles;
-  std::vector<EdgeIds> RequestedEdges;
-  std::vector<char> IsTriangleRequested;
-  std::vector<char> IsEdgeRequested;
+  BoundaryRequests Requests;
   /**
    * What a tetrahedron was like when it was last asked for. To ask again and again whether it is
    * across a layer was two fifths of the time of late rounds.
