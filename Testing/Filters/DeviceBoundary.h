@@ -371,9 +371,10 @@ inline void CheckBoundary(
 }
 
 /** Rotated, a device has the same polygons; only the coordinates differ. */
-inline void CheckRotations(vtkTechnologyStructureSource* source, const Boundary& straight,
-  const std::vector<ExpectedRegion>& regions)
+inline void CheckRotations(
+  vtkTechnologyStructureSource* source, const std::vector<ExpectedRegion>& regions)
 {
+  const Boundary straight = GetBoundary(source);
   const double angles[] = { 10.0, 45.0, -123.456, 1e-6, 725.0 };
   const double axes[][3] = { { 0.0, 0.0, 1.0 }, { 1.0, 0.0, 0.0 }, { 1.0, 2.0, 3.0 },
     { -1e-200, 3e-200, 0.0 } };
@@ -414,8 +415,7 @@ inline void CheckRotations(vtkTechnologyStructureSource* source, const Boundary&
     }
   }
 
-  const double z[3] = { 0.0, 0.0, 2.0 };
-  source->SetRotationAxis(z);
+  source->SetRotationAxis(0.0, 0.0, 2.0);
   source->SetRotationAngle(-270.0);
   const Boundary quarter = GetBoundary(source);
   for (std::size_t i = 0; i < straight.Points.size(); ++i)

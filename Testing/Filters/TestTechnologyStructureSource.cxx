@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DeviceBoundary.h"
-#include "DeviceParameters.h"
+#include "DeviceRegions.h"
 #include "vtkConformingDelaunayMesher.h"
 #include "vtkTechnologyStructureSource.h"
 
@@ -17,6 +17,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -26,90 +27,158 @@ using namespace testing_devices;
 
 namespace
 {
-template <typename Parameters>
-void CheckRounded(const std::vector<Parameters>& devices)
+using Source = vtkTechnologyStructureSource;
+using Changes = std::vector<std::function<void(Source*)>>;
+using Check = std::function<void(Source*, const Boundary&)>;
+
+/** Checks the default device with each of the changes; no two of them may make the same device. */
+void CheckDevices(
+  int structure, const Changes& changes, bool isRounded = false, const Check& check = nullptr)
 {
-  for (std::size_t i = 0; i < devices.size(); ++i)
+  std::set<std::vector<Point>> different;
+  for (std::size_t i = 0; i < changes.size(); ++i)
   {
     SCOPED_TRACE(i);
-    vtkNew<vtkTechnologyStructureSource> source;
-    const std::vector<ExpectedRegion> regions = Apply(devices[i], source);
-    const Boundary straight = GetBoundary(source);
-    CheckBoundary(straight, regions, true);
-    if (i == 0)
+    vtkNew<Source> source;
+    source->SetStructure(structure);
+    changes[i](source);
+    const Boundary boundary = GetBoundary(source);
+    EXPECT_TRUE(different.insert(boundary.Points).second) << "the same device again";
+    CheckBoundary(boundary, GetExpectedRegions(source), isRounded);
+    if (check)
     {
-      CheckRotations(source, straight, regions);
+      check(source, boundary);
     }
   }
 }
 
+/** Coordinates of these devices are sums of several lengths. The default one is also rotated. */
+void CheckRounded(int structure, const Changes& changes)
+{
+  CheckDevices(structure, changes, true);
+  vtkNew<Source> source;
+  source->SetStructure(structure);
+  CheckRotations(source, GetExpectedRegions(source));
+}
+
 TEST(TechnologyStructureSource, Locos)
 {
-  std::vector<Locos> devices(6);
-  devices[1].ProfileSegments = 1;
-  devices[2].ProfileSegments = 31;
-  devices[3].PadOxideThickness = 0.001;
-  devices[4].StepLength = 0.39;
-  devices[5].FieldOxideThickness = 1.1;
-  CheckRounded(devices);
+  CheckRounded(Source::LOCOS,
+    {
+      [](Source*) {},
+      [](Source* s) { s->SetProfileSegments(1); },
+      [](Source* s) { s->SetProfileSegments(31); },
+      [](Source* s) { s->SetPadOxideThickness(0.001); },
+      [](Source* s) { s->SetStepLength(0.39); },
+      [](Source* s) { s->SetFieldOxideThickness(1.1); },
+    });
 }
 
 TEST(TechnologyStructureSource, DramInterconnect)
 {
-  std::vector<Dram> devices(6);
-  devices[1].NumberOfWordLines = 1;
-  devices[2].NumberOfBitLines = 1;
-  devices[3].SidewallAngle = 0.5;
-  devices[4].NumberOfWordLines = 3;
-  devices[4].NumberOfBitLines = 3;
-  devices[5] = { 1.0, 0.45, 0.1, 0.05, 30.0, 2, 4 };
-  CheckRounded(devices);
+  CheckRounded(Source::DRAM_INTERCONNECT,
+    {
+      [](Source*) {},
+      [](Source* s) { s->SetNumberOfWordLines(1); },
+      [](Source* s) { s->SetNumberOfBitLines(1); },
+      [](Source* s) { s->SetSidewallAngle(0.5); },
+      [](Source* s)
+      {
+        s->SetNumberOfWordLines(3);
+        s->SetNumberOfBitLines(3);
+      },
+      [](Source* s)
+      {
+        s->SetLinePitch(1.0);
+        s->SetLineWidth(0.45);
+        s->SetLineThickness(0.1);
+        s->SetInsulatorThickness(0.05);
+        s->SetSidewallAngle(30.0);
+        s->SetNumberOfWordLines(2);
+        s->SetNumberOfBitLines(4);
+      },
+    });
 }
 
 TEST(TechnologyStructureSource, TwoLayerInterconnect)
 {
-  std::vector<TwoLayer> devices(5);
-  devices[1].ProfileSegments = 1;
-  devices[2].ProfileSegments = 45;
-  devices[3].InsulatorThickness = 0.01;
-  devices[4] = { 1.0 / 3.0, 0.1, 0.07, 1.0, 0.01, 0.1, 7 };
-  CheckRounded(devices);
+  CheckRounded(Source::TWO_LAYER_INTERCONNECT,
+    {
+      [](Source*) {},
+      [](Source* s) { s->SetProfileSegments(1); },
+      [](Source* s) { s->SetProfileSegments(45); },
+      [](Source* s) { s->SetInsulatorThickness(0.01); },
+      [](Source* s)
+      {
+        s->SetLinePitch(1.0 / 3.0);
+        s->SetLineWidth(0.1);
+        s->SetLineThickness(0.07);
+        s->SetInsulatorThickness(1.0);
+        s->SetBulkDepth(0.01);
+        s->SetStepLength(0.1);
+        s->SetProfileSegments(7);
+      },
+    });
 }
 
 TEST(TechnologyStructureSource, ViaWithBarrier)
 {
-  std::vector<LinedVia> devices(5);
-  devices[1].NumberOfSegments = 3;
-  devices[1].BarrierAsymmetry = 0.4;
-  devices[2].NumberOfSegments = 90;
-  devices[2].BarrierAsymmetry = 0.9;
-  devices[3].BarrierThickness = 0.001;
-  devices[4].ViaDiameter = 0.999;
-  CheckRounded(devices);
+  CheckRounded(Source::VIA_WITH_BARRIER,
+    {
+      [](Source*) {},
+      [](Source* s)
+      {
+        s->SetNumberOfSegments(3);
+        s->SetBarrierAsymmetry(0.4);
+      },
+      [](Source* s)
+      {
+        s->SetNumberOfSegments(90);
+        s->SetBarrierAsymmetry(0.9);
+      },
+      [](Source* s) { s->SetBarrierThickness(0.001); },
+      [](Source* s) { s->SetViaDiameter(0.999); },
+    });
 }
 
 TEST(TechnologyStructureSource, Damascene)
 {
-  std::vector<LinedVia> devices(4);
-  devices[1].NumberOfSegments = 5;
-  devices[2].BarrierAsymmetry = 0.8;
-  devices[3].TrenchWidth = 0.361;
-  for (LinedVia& via : devices)
-  {
-    via.HasTrench = true;
-  }
-  CheckRounded(devices);
+  CheckRounded(Source::DAMASCENE,
+    {
+      [](Source*) {},
+      [](Source* s) { s->SetNumberOfSegments(5); },
+      [](Source* s) { s->SetBarrierAsymmetry(0.8); },
+      [](Source* s) { s->SetTrenchWidth(0.361); },
+    });
 }
 
 TEST(TechnologyStructureSource, CmosInverter)
 {
-  std::vector<Cmos> devices(6);
-  devices[1].PassivationThickness = 0.1;
-  devices[2].SpacerSegments = 1;
-  devices[3].SpacerSegments = 20;
-  devices[4].ContactWidth = 0.01;
-  devices[5] = { 0.1, 0.13, 0.002, 0.05, 4, 1.0, 0.7, 0.2, 0.09, 0.3, 0.4, 0.1, 0.15, 0.2 };
-  CheckRounded(devices);
+  CheckRounded(Source::CMOS_INVERTER,
+    {
+      [](Source*) {},
+      [](Source* s) { s->SetPassivationThickness(0.1); },
+      [](Source* s) { s->SetSpacerSegments(1); },
+      [](Source* s) { s->SetSpacerSegments(20); },
+      [](Source* s) { s->SetContactWidth(0.01); },
+      [](Source* s)
+      {
+        s->SetGateLength(0.1);
+        s->SetGateHeight(0.13);
+        s->SetGateOxideThickness(0.002);
+        s->SetSpacerWidth(0.05);
+        s->SetSpacerSegments(4);
+        s->SetBulkDepth(1.0);
+        s->SetChannelWidth(0.7);
+        s->SetDiffusionLength(0.2);
+        s->SetContactWidth(0.09);
+        s->SetTrenchWidth(0.3);
+        s->SetTrenchDepth(0.4);
+        s->SetInsulatorThickness(0.1);
+        s->SetLineThickness(0.15);
+        s->SetPassivationThickness(0.2);
+      },
+    });
 }
 
 std::map<int, double> GetContactAreas(vtkPolyData* surface)
@@ -130,12 +199,11 @@ std::map<int, double> GetContactAreas(vtkPolyData* surface)
 /** Contacts are whole facets, and come out of the mesher with their names and areas. */
 TEST(TechnologyStructureSource, ContactsReachTheBoundaryOfTheMesh)
 {
-  for (int structure = vtkTechnologyStructureSource::MOS_TRANSISTOR;
-       structure <= vtkTechnologyStructureSource::CMOS_INVERTER; ++structure)
+  for (int structure = Source::MOS_TRANSISTOR; structure <= Source::CMOS_INVERTER; ++structure)
   {
     for (const double angle : { 0.0, 33.0 })
     {
-      vtkNew<vtkTechnologyStructureSource> source;
+      vtkNew<Source> source;
       source->SetStructure(structure);
       source->SetRotationAngle(angle);
       source->SetRotationAxis(1.0, 2.0, 3.0);
@@ -185,126 +253,184 @@ TEST(TechnologyStructureSource, ContactsReachTheBoundaryOfTheMesh)
 
 TEST(TechnologyStructureSource, NmosWithFieldOxideSweep)
 {
-  std::vector<Nmos> devices(9);
-  devices[1].GateOxideThickness = 0.0005;
-  devices[2].GateOxideThickness = 0.05;  // thicker than the cover
-  devices[3].CoverOxideThickness = 0.08; // as thick as the field oxide is high
-  devices[4].FieldOxideThickness = 0.36; // the gate's top is in the field oxide's cover
-  devices[5].DeviceWidth = 0.60;
-  devices[6].GateLength = 0.03;
-  devices[7].CoverOxideThickness = 0.001;
-  devices[8].BulkDepth = 5.0;
-  for (const Nmos& nmos : devices)
-  {
-    SCOPED_TRACE(nmos.GateOxideThickness);
-    SCOPED_TRACE(nmos.CoverOxideThickness);
-    SCOPED_TRACE(nmos.FieldOxideThickness);
-    vtkNew<vtkTechnologyStructureSource> source;
-    const std::vector<ExpectedRegion> regions = Apply(nmos, source);
-    CheckBoundary(GetBoundary(source), regions);
-  }
+  CheckDevices(Source::NMOS_WITH_FIELD_OXIDE,
+    {
+      [](Source*) {},
+      [](Source* s) { s->SetGateOxideThickness(0.0005); },
+      [](Source* s) { s->SetGateOxideThickness(0.05); },  // thicker than the cover
+      [](Source* s) { s->SetCoverOxideThickness(0.08); }, // as thick as the field oxide is high
+      // The gate's top is in the field oxide's cover.
+      [](Source* s) { s->SetFieldOxideThickness(0.36); },
+      [](Source* s) { s->SetDeviceWidth(0.60); },
+      [](Source* s) { s->SetGateLength(0.03); },
+      [](Source* s) { s->SetCoverOxideThickness(0.001); },
+      [](Source* s) { s->SetBulkDepth(5.0); },
+    });
 }
 
 TEST(TechnologyStructureSource, NmosWithFieldOxideRotated)
 {
-  vtkNew<vtkTechnologyStructureSource> source;
-  const std::vector<ExpectedRegion> regions = Apply(Nmos{}, source);
-  CheckRotations(source, GetBoundary(source), regions);
+  vtkNew<Source> source;
+  source->SetStructureToNmosWithFieldOxide();
+  CheckRotations(source, GetExpectedRegions(source));
 }
 
 TEST(TechnologyStructureSource, DefaultIsTheMosTransistor)
 {
-  vtkNew<vtkTechnologyStructureSource> untouched;
+  vtkNew<Source> untouched;
   EXPECT_STREQ(untouched->GetStructureAsString(), "MosTransistor");
-  vtkNew<vtkTechnologyStructureSource> source;
-  const std::vector<ExpectedRegion> regions = Apply(Mos{}, source);
+  vtkNew<Source> source;
+  source->SetStructureToMosTransistor();
+  source->SetGateLength(0.18);
+  source->SetGateHeight(0.2);
+  source->SetGateOxideThickness(0.005);
+  source->SetSpacerWidth(0.08);
+  source->SetSpacerSegments(3);
+  source->SetBulkLength(0.8);
+  source->SetBulkDepth(0.5);
+  source->SetDeviceWidth(0.3);
   const Boundary boundary = GetBoundary(untouched);
-  CheckBoundary(boundary, regions);
+  CheckBoundary(boundary, GetExpectedRegions(source));
   EXPECT_EQ(boundary.Points, GetBoundary(source).Points);
 }
 
 TEST(TechnologyStructureSource, MosTransistorSweep)
 {
-  std::vector<Mos> devices;
+  Changes changes;
   for (const double thickness : { 0.02, 0.01, 0.005, 0.001, 0.0005 })
   {
-    devices.emplace_back().GateOxideThickness = thickness;
+    changes.emplace_back([=](Source* s) { s->SetGateOxideThickness(thickness); });
   }
   for (const int segments : { 1, 2, 7, 90 })
   {
-    devices.emplace_back().SpacerSegments = segments;
+    changes.emplace_back([=](Source* s) { s->SetSpacerSegments(segments); });
   }
-  devices.push_back({ 0.013, 0.05, 0.0003, 0.007, 4, 0.0271, 2.0, 10.0 });
-  devices.push_back({ 4.0, 0.3, 0.1, 0.2, 1, 1000.0, 500.0, 1e-3 });
-  devices.push_back({ 1.0 / 3.0, 1e-3, 1e-7, 1e-3, 5, 0.4, 1e-3, 1.0 / 7.0 });
-  for (const Mos& mos : devices)
-  {
-    SCOPED_TRACE(mos.GateOxideThickness);
-    SCOPED_TRACE(mos.SpacerSegments);
-    vtkNew<vtkTechnologyStructureSource> source;
-    const std::vector<ExpectedRegion> regions = Apply(mos, source);
-    const Boundary boundary = GetBoundary(source);
-    CheckBoundary(boundary, regions);
-    // No vertex and no polygon more than the device needs.
-    const std::size_t segments = mos.SpacerSegments;
-    EXPECT_EQ(boundary.Points.size(), 20 + 4 * segments);
-    EXPECT_EQ(boundary.Polygons.size(), 24 + 2 * segments);
-    EXPECT_EQ(std::set<int>(boundary.FacetIds.begin(), boundary.FacetIds.end()).size(),
-      boundary.Polygons.size());
-  }
+  changes.emplace_back(
+    [](Source* s)
+    {
+      s->SetGateLength(0.013);
+      s->SetGateHeight(0.05);
+      s->SetGateOxideThickness(0.0003);
+      s->SetSpacerWidth(0.007);
+      s->SetSpacerSegments(4);
+      s->SetBulkLength(0.0271);
+      s->SetBulkDepth(2.0);
+      s->SetDeviceWidth(10.0);
+    });
+  changes.emplace_back(
+    [](Source* s)
+    {
+      s->SetGateLength(4.0);
+      s->SetGateHeight(0.3);
+      s->SetGateOxideThickness(0.1);
+      s->SetSpacerWidth(0.2);
+      s->SetSpacerSegments(1);
+      s->SetBulkLength(1000.0);
+      s->SetBulkDepth(500.0);
+      s->SetDeviceWidth(1e-3);
+    });
+  changes.emplace_back(
+    [](Source* s)
+    {
+      s->SetGateLength(1.0 / 3.0);
+      s->SetGateHeight(1e-3);
+      s->SetGateOxideThickness(1e-7);
+      s->SetSpacerWidth(1e-3);
+      s->SetSpacerSegments(5);
+      s->SetBulkLength(0.4);
+      s->SetBulkDepth(1e-3);
+      s->SetDeviceWidth(1.0 / 7.0);
+    });
+  CheckDevices(Source::MOS_TRANSISTOR, changes, false,
+    [](Source* source, const Boundary& boundary)
+    {
+      // No vertex and no polygon more than the device needs.
+      const std::size_t segments = source->GetSpacerSegments();
+      EXPECT_EQ(boundary.Points.size(), 20 + 4 * segments);
+      EXPECT_EQ(boundary.Polygons.size(), 24 + 2 * segments);
+      EXPECT_EQ(std::set<int>(boundary.FacetIds.begin(), boundary.FacetIds.end()).size(),
+        boundary.Polygons.size());
+    });
 }
 
 TEST(TechnologyStructureSource, MosTransistorRotated)
 {
   for (const double thickness : { 0.005, 0.0005 })
   {
-    Mos mos;
-    mos.GateOxideThickness = thickness;
-    vtkNew<vtkTechnologyStructureSource> source;
-    const std::vector<ExpectedRegion> regions = Apply(mos, source);
-    CheckRotations(source, GetBoundary(source), regions);
+    vtkNew<Source> source;
+    source->SetGateOxideThickness(thickness);
+    CheckRotations(source, GetExpectedRegions(source));
   }
 }
 
 TEST(TechnologyStructureSource, ViaPlugSweep)
 {
-  std::vector<Via> devices;
+  Changes changes;
   for (const int segments : { 3, 4, 5, 6, 7, 8, 24, 61, 180 })
   {
-    devices.emplace_back().NumberOfSegments = segments;
+    changes.emplace_back([=](Source* s) { s->SetNumberOfSegments(segments); });
   }
-  devices.push_back({ 0.1, 3.0, 12, 0.1001, 0.05, 5.0, 0.7, 5.0001 });
-  devices.push_back({ 0.02, 0.001, 16, 0.9, 0.3, 0.03, 1e-4, 1.0 });
-  devices.push_back({ 1.0 / 3.0, 1e-3, 9, 0.5, 1.0, 0.35, 1e-3, 2.0 / 3.0 });
-  for (const Via& via : devices)
-  {
-    SCOPED_TRACE(via.NumberOfSegments);
-    SCOPED_TRACE(via.ViaHeight);
-    vtkNew<vtkTechnologyStructureSource> source;
-    const std::vector<ExpectedRegion> regions = Apply(via, source);
-    const Boundary boundary = GetBoundary(source);
-    CheckBoundary(boundary, regions);
-    const std::size_t segments = via.NumberOfSegments;
-    EXPECT_EQ(boundary.Points.size(), 28 + 2 * segments);
-    EXPECT_EQ(boundary.Polygons.size(), 24 + segments);
-    // The rings around the two ends of the plug are in two pieces.
-    EXPECT_EQ(std::set<int>(boundary.FacetIds.begin(), boundary.FacetIds.end()).size(),
-      boundary.Polygons.size() - 2);
-  }
+  changes.emplace_back(
+    [](Source* s)
+    {
+      s->SetViaDiameter(0.1);
+      s->SetViaHeight(3.0);
+      s->SetNumberOfSegments(12);
+      s->SetBottomLineWidth(0.1001);
+      s->SetBottomLineThickness(0.05);
+      s->SetTopLineWidth(5.0);
+      s->SetTopLineThickness(0.7);
+      s->SetBoxSize(5.0001);
+    });
+  changes.emplace_back(
+    [](Source* s)
+    {
+      s->SetViaDiameter(0.02);
+      s->SetViaHeight(0.001);
+      s->SetNumberOfSegments(16);
+      s->SetBottomLineWidth(0.9);
+      s->SetBottomLineThickness(0.3);
+      s->SetTopLineWidth(0.03);
+      s->SetTopLineThickness(1e-4);
+      s->SetBoxSize(1.0);
+    });
+  changes.emplace_back(
+    [](Source* s)
+    {
+      s->SetViaDiameter(1.0 / 3.0);
+      s->SetViaHeight(1e-3);
+      s->SetNumberOfSegments(9);
+      s->SetBottomLineWidth(0.5);
+      s->SetBottomLineThickness(1.0);
+      s->SetTopLineWidth(0.35);
+      s->SetTopLineThickness(1e-3);
+      s->SetBoxSize(2.0 / 3.0);
+    });
+  CheckDevices(Source::VIA_PLUG, changes, false,
+    [](Source* source, const Boundary& boundary)
+    {
+      const std::size_t segments = source->GetNumberOfSegments();
+      EXPECT_EQ(boundary.Points.size(), 28 + 2 * segments);
+      EXPECT_EQ(boundary.Polygons.size(), 24 + segments);
+      // The rings around the two ends of the plug are in two pieces.
+      EXPECT_EQ(std::set<int>(boundary.FacetIds.begin(), boundary.FacetIds.end()).size(),
+        boundary.Polygons.size() - 2);
+    });
 }
 
 TEST(TechnologyStructureSource, ViaPlugRotated)
 {
-  vtkNew<vtkTechnologyStructureSource> source;
-  const std::vector<ExpectedRegion> regions = Apply(Via{}, source);
-  CheckRotations(source, GetBoundary(source), regions);
+  vtkNew<Source> source;
+  source->SetStructureToViaPlug();
+  CheckRotations(source, GetExpectedRegions(source));
 }
 
 TEST(TechnologyStructureSource, ViaPlugFillsItsBox)
 {
-  vtkNew<vtkTechnologyStructureSource> source;
+  vtkNew<Source> source;
+  source->SetStructureToViaPlug();
   double volume = 0.0;
-  for (const ExpectedRegion& region : Apply(Via{}, source))
+  for (const ExpectedRegion& region : GetExpectedRegions(source))
   {
     volume += region.Volume;
   }
@@ -318,9 +444,36 @@ TEST(TechnologyStructureSource, ViaPlugFillsItsBox)
   EXPECT_EQ(bounds[5], 0.6 + 0.3);
 }
 
+/** The closed forms are those of what the source keeps: no count may be clamped too early. */
+TEST(TechnologyStructureSource, CountsReachTheEndsOfTheirRanges)
+{
+  vtkNew<Source> source;
+  for (const int count : { 1, 90 })
+  {
+    source->SetSpacerSegments(count);
+    source->SetProfileSegments(count);
+    EXPECT_EQ(source->GetSpacerSegments(), count);
+    EXPECT_EQ(source->GetProfileSegments(), count);
+  }
+  for (const int count : { 3, 720 })
+  {
+    source->SetNumberOfSegments(count);
+    EXPECT_EQ(source->GetNumberOfSegments(), count);
+  }
+  for (const int count : { 1, 100 })
+  {
+    source->SetNumberOfWordLines(count);
+    source->SetNumberOfBitLines(count);
+    EXPECT_EQ(source->GetNumberOfWordLines(), count);
+    EXPECT_EQ(source->GetNumberOfBitLines(), count);
+  }
+  source->SetBarrierAsymmetry(0.95);
+  EXPECT_EQ(source->GetBarrierAsymmetry(), 0.95);
+}
+
 TEST(TechnologyStructureSource, ParametersOfTheOtherStructureDoNotMatter)
 {
-  vtkNew<vtkTechnologyStructureSource> source;
+  vtkNew<Source> source;
   source->SetViaDiameter(-1.0);
   source->Update();
   EXPECT_GT(source->GetOutput()->GetNumberOfCells(), 0);
