@@ -4,22 +4,19 @@
  * @brief Points for the inside of the regions, as dense as a sizing field asks for.
  *
  * Placements (thesis 3.6 and 6.2):
- *  - octree: the leaves of SizingOctree.h, each with a template of points (Fig. 6.2): its corners,
- *    its center, or the unit cell of a body- or face-centered lattice;
- *  - ortho-product: planes across the axes, at given ticks or as the sizing asks for: the distance
- *    of two planes is the smallest spacing between them. The same templates in each cell: with
- *    equal distances these are the cubic, body- and face-centered lattices;
- *  - random: darts are thrown into the leaves of the octree, and stay if no other one is near
- *    (Poisson disks in the metric of the sizing); then Lloyd's iteration: each point moves to the
- *    center of its Voronoi cell, found by counting samples;
- *  - layers off chosen interfaces, besides any of these: the surface is refined as the sizing asks
- *    for (DelaunaySurfaceRefiner.h); on the normal of each vertex of the interface stand
- *    points at distances d, d + d q, d + d q + d q^2, ... from it. Above the same vertices these
- *    make prisms, which are Delaunay however flat they are.
+ *  - octree (OctreePoints.h): the leaves of SizingOctree.h, each with a template of points
+ *    (PointTemplates.h): its corners, its center, or the unit cell of a body- or face-centered
+ *    lattice;
+ *  - ortho-product (OrthoProductPoints.h): planes across the axes, at given ticks or as the sizing
+ *    asks for, with the same templates in each cell;
+ *  - random (RandomPoints.h): darts, none near to others, then Lloyd's iteration;
+ *  - layers off chosen interfaces (LayerPoints.h), besides any of these: points on the normals of
+ *    the vertices that the refined surface has there.
  *
  * Steps: layers first; then the placement, without the points that come near the layers. A point
  * stays if it is clear of the boundary, measured in its own spacing: that between the points
- * around it, not that of the sizing; and if it lies strictly inside of a region (RegionLocator.h).
+ * around it, not that of the sizing; and if it lies strictly inside of a region
+ * (MeshPointPlacer.h).
  *
  * Anisotropic sizing: octree and ortho-product follow the spacing along the axes, random points the
  * whole tensor, layers its largest length along the interface.
@@ -34,10 +31,7 @@
  * takes about a millisecond, one of the octree some microseconds.
  *
  * References: P. Fleischmann, thesis, 6.2 (octree with templates, smoothed random points, boundary
- * fitted points); R. L. Cook, "Stochastic sampling in computer graphics", 1986,
- * doi:10.1145/7529.8927 (darts); Q. Du, V. Faber, M. Gunzburger, "Centroidal Voronoi
- * tessellations", 1999, doi:10.1137/S0036144599352836 (Lloyd's iteration with a density by
- * samples).
+ * fitted points).
  */
 #ifndef cdmMeshPointGenerator_h
 #define cdmMeshPointGenerator_h
