@@ -28,7 +28,8 @@
  * Outputs: port 0: vtkUnstructuredGrid of VTK_TETRA with the cell array RegionId (int), the point
  * data of the input, interpolated at new points, and the string array Certificate in the field data:
  * one line that says what the check found. Port 1: the boundary of the mesh and its regions as
- * triangles, with BoundaryLabels (int, 2 components) and the cell data of the input polygons.
+ * triangles, with BoundaryLabels (int, 2 components), StructuralFacetId (int: see
+ * vtkDelaunaySurfaceRefiner) and the cell data of the input polygons.
  * Port 2: the problems found in the input, see vtkBoundaryTriangulator.
  *
  * Guarantees: those of the stages. Tetrahedra are positively oriented, none is flat, circumspheres

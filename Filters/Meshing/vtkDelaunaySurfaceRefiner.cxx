@@ -130,10 +130,15 @@ int vtkDelaunaySurfaceRefiner::RequestData(
       {
         step = vtkCoreBridge::ToSizing(sizingInput, engineInput.Sizing);
       }
+      cdm::DelaunaySurfaceRefinerOptions options = MakeOptions(this);
+      if (step.IsOk())
+      {
+        step = vtkCoreBridge::ToFacets(input, options.StructuralEdges.Facets);
+      }
       if (step.IsOk())
       {
         step = cdm::RefineDelaunaySurface(
-          engineInput, MakeOptions(this), vtkCoreBridge::MakeContext(this), result);
+          engineInput, options, vtkCoreBridge::MakeContext(this), result);
         vtkCoreBridge::OffsetCells(step, vtkCoreBridge::GetFirstPolygon(input));
       }
       return step;
@@ -151,6 +156,10 @@ int vtkDelaunaySurfaceRefiner::RequestData(
   vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
   vtkCoreBridge::FromTriangleMesh(result.Surface, output);
   vtkCoreBridge::CopyTriangleTuples(input, result.Surface.SourceCells, output);
+  vtkCoreBridge::FromFacets(
+    cdm::NumberFacets(cdm::SortEdgeUses(result.Surface.Triangles, result.Surface.Points.size()),
+      result.StructuralEdges),
+    output);
   std::vector<vtkIdType> inputPoints(surface.Points.size());
   std::iota(inputPoints.begin(), inputPoints.end(), 0);
   vtkCoreBridge::InterpolateTuples(input->GetPointData(), inputPoints, result.NewPoints,

@@ -12,7 +12,8 @@
  *  4. test again the triangles that the new point disturbs.
  *
  * Inputs: port 0: vtkPolyData of triangles (run vtkBoundaryTriangulator first), optionally with the
- * two-component cell array BoundaryLabels. Port 1, optional: vtkPointSet, mesh points that the
+ * two-component cell array BoundaryLabels and the cell array StructuralFacetId of an output of this
+ * filter, which keeps its structural edges. Port 1, optional: vtkPointSet, mesh points that the
  * tetrahedra are to use inside. Port 2, optional: vtkDataSet with the point array Sizing: target
  * edge length at a position, in model units, positive; between its points it is interpolated,
  * outside of it the nearest value holds. Of several lengths (3 components: along the axes; 6 or 9:
@@ -21,7 +22,8 @@
  * Outputs: port 0: the Delaunay surface: input points with their ids, new points after them.
  * Point data are interpolated at new points (id arrays excepted: they are dropped), cell data are
  * those of the input triangle. An array FreePoint is 1 at new points: vtkSteinerPointRefiner may
- * move them. Only if triangles are left that do not fulfil the criterion: cell
+ * move them. Cell array StructuralFacetId (int): the same for triangles between which there is no
+ * structural edge, from 0. Only if triangles are left that do not fulfil the criterion: cell
  * array Unresolved (unsigned char), 1 for them and 0 for the others.
  * Port 1: its structural edges, with the arrays of vtkStructuralEdgeExtractor; ChainId is that of
  * the input surface. Port 2: the mesh points kept, as vertices, with their point data. Mesh points

@@ -136,12 +136,16 @@ int vtkSteinerPointRefiner::RequestData(
         step = vtkCoreBridge::ToTriangleMesh(boundaryInput, boundary);
         engineInput.Boundary = &boundary;
       }
+      cdm::SteinerPointRefinerOptions options;
+      if (step.IsOk() && engineInput.Boundary)
+      {
+        step = vtkCoreBridge::ToFacets(boundaryInput, options.StructuralEdges.Facets);
+      }
       if (!step.IsOk())
       {
         return step;
       }
       engineInput.AreInteriorPointsFree = this->FreeInteriorPoints;
-      cdm::SteinerPointRefinerOptions options;
       options.RadiusEdgeRatio = this->RadiusEdgeRatio;
       options.DihedralAngleTarget = this->DihedralAngleTarget;
       options.MaximumVolume = this->MaximumVolume;

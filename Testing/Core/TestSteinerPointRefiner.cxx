@@ -551,6 +551,64 @@ TEST(SteinerPointRefiner, KeepsSheetsOfTheBoundaryGiven)
   EXPECT_EQ(output.PointSources[first], first);
 }
 
+/**
+ * A needle in the lid of a box, tilted by a ten-thousandth: small triangles at its ends bend by no more
+ * than rounded coordinates do, but the edges stay, and with them the facets.
+ */
+TEST(SteinerPointRefiner, NeedlesKeepTheirFacets)
+{
+  PolygonSoup soup = MakeBox({ 1.0, 1.0, 1.0 });
+  soup.Labels.clear();
+  const auto lid = std::find_if(soup.Offsets.begin() + 1, soup.Offsets.end(),
+    [&](Id end)
+    {
+      return std::all_of(soup.Connectivity.begin() + end - 4, soup.Connectivity.begin() + end,
+        [&](Id id) { return soup.Points[id].Z == 1.0; });
+    });
+  ASSERT_NE(lid, soup.Offsets.end());
+  const std::vector<Id> corners(
+    soup.Connectivity.begin() + *lid - 4, soup.Connectivity.begin() + *lid);
+  soup.Connectivity.erase(soup.Connectivity.begin() + *lid - 4, soup.Connectivity.begin() + *lid);
+  std::transform(lid, soup.Offsets.end(), lid - 1, [](Id end) { return end - 4; });
+  soup.Offsets.pop_back();
+  const Id top = static_cast<Id>(soup.Points.size());
+  soup.Points.push_back({ 0.5, 1e-4, 1.0 + 1e-8 });
+  for (int i = 0; i < 4; ++i)
+  {
+    soup.Connectivity.insert(soup.Connectivity.end(), { corners[i], corners[(i + 1) % 4], top });
+    soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+  }
+  const Stage3 mesh = MakeMesh(soup);
+  SteinerPointRefinerInput input;
+  input.Mesh = &mesh.Output.Mesh;
+  SteinerPointRefinerOptions options;
+  options.MaximumEdgeLength = 0.08;
+  const SteinerPointRefinerOutput output = Refine(input, options);
+  // Each triangle is in the plane of one that there was.
+  for (const TriangleIds& ids : output.Boundary.Triangles)
+  {
+    double nearest = 1.0;
+    for (int i = 0; i < 4; ++i)
+    {
+      const Vec3& a = soup.Points[corners[i]];
+      const Vec3 normal = Cross(soup.Points[corners[(i + 1) % 4]] - a, soup.Points[top] - a);
+      double farthest = 0.0;
+      for (Id id : ids)
+      {
+        farthest =
+          std::max(farthest, std::abs(Dot(output.Mesh.Points[id] - a, normal)) / Norm(normal));
+      }
+      nearest = std::min(nearest, farthest);
+    }
+    if (std::all_of(ids.begin(), ids.end(), [&](Id id) { return output.Mesh.Points[id].Z >= 1.0; }))
+    {
+      EXPECT_LT(nearest, 1e-14);
+    }
+  }
+  std::printf("%zu tetrahedra, %d inevitable\n", output.Mesh.Tetrahedra.size(),
+    static_cast<int>(output.Report.Inevitable));
+}
+
 TEST(SteinerPointRefiner, DoesNotDependOnThreads)
 {
   std::mt19937_64 generator(3);

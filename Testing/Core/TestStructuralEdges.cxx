@@ -217,6 +217,27 @@ TEST(StructuralEdges, FlatnessNeedsBothVerticesNearAndLessThanADegree)
   EXPECT_FALSE(IsSmoothEdge(a, b, { 0, 0.5, 0 }, near, 90.0, 1.0));
 }
 
+TEST(StructuralEdges, FacetsAreKeptWhereTrianglesAreSmall)
+{
+  // The hinge bends by half a degree, and is small beside the triangle far away.
+  TriangleMesh surface = MakeHinge(0.5);
+  surface.Points.insert(surface.Points.end(), { { 1e9, 0, 0 }, { 1e9, 1, 0 }, { 1e9, 0, 1 } });
+  surface.Triangles.push_back({ 4, 5, 6 });
+  const StructuralEdgesOutput lost = Extract(surface);
+  EXPECT_EQ(lost.Edges.size(), 7u);
+  const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
+  EXPECT_EQ(NumberFacets(uses, lost.Edges), (std::vector<Id>{ 0, 0, 1 }));
+  StructuralEdgeOptions options;
+  options.Facets = { 5, 3, 3 };
+  const StructuralEdgesOutput kept = Extract(surface, options);
+  EXPECT_EQ(kept.Edges.size(), 8u);
+  const StructuralEdge* const edge = Find(kept, 0, 1);
+  ASSERT_NE(edge, nullptr);
+  EXPECT_EQ(edge->Kind, StructuralEdgeKind::Sharp);
+  EXPECT_NEAR(edge->DihedralAngle, 179.5, 1e-9);
+  EXPECT_EQ(NumberFacets(uses, kept.Edges), (std::vector<Id>{ 0, 1, 2 }));
+}
+
 TEST(StructuralEdges, TinyAndHugeModelsAreJudgedAlike)
 {
   for (const double scale : { 1e-120, 1e-9, 1e9, 1e120 })

@@ -95,7 +95,8 @@ TEST(ConformingDelaunayMesherFilter, MeshesTwoMaterials)
   EXPECT_NEAR(GetArea(boundary, -1, 3), 5.0, 1e-12);
   EXPECT_NEAR(GetArea(boundary, -1, 7), 9.0, 1e-12);
   FindArray(boundary->GetCellData(), "PolygonId", 1, VTK_INT);
-  EXPECT_EQ(boundary->GetCellData()->GetNumberOfArrays(), 2);
+  FindArray(boundary->GetCellData(), "StructuralFacetId", 1, VTK_INT);
+  EXPECT_EQ(boundary->GetCellData()->GetNumberOfArrays(), 3);
   EXPECT_EQ(GetSurface(filter, 2)->GetNumberOfCells(), 0);
   FindArray(GetSurface(filter, 2)->GetCellData(), "ProblemKind", 1, VTK_INT);
 }

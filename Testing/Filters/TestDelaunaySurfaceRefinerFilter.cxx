@@ -5,8 +5,10 @@
 #include <vtkDelaunaySurfaceRefiner.h>
 #include <vtkImageData.h>
 #include <vtkMath.h>
+#include <vtkPolygon.h>
 #include <vtkSphereSource.h>
 
+#include <map>
 #include <set>
 
 using namespace testing_filters;
@@ -254,6 +256,59 @@ TEST(DelaunaySurfaceRefinerFilter, KeepsMeshPointsWithTheirData)
   EXPECT_EQ(kept->GetNumberOfVerts(), 2);
   EXPECT_EQ(kept->GetPoint(1)[0], 0.25);
   ExpectLinear(kept, 0.0);
+}
+
+TEST(DelaunaySurfaceRefinerFilter, NumbersFacetsAndKeepsThem)
+{
+  SurfaceBuilder builder;
+  builder.AddBox({ 0, 0, 0 }, { 1, 1, 1 });
+  Pipeline run(builder.Build());
+  run.Refiner->SetMaximumEdgeLength(0.3);
+  run.Refiner->Update();
+  vtkPolyData* output = run.GetOutput(0);
+  vtkDataArray* facets = FindArray(output->GetCellData(), "StructuralFacetId", 1, VTK_INT);
+  ASSERT_NE(facets, nullptr);
+  // One number for each side of the box.
+  std::map<double, Point> normals;
+  for (vtkIdType i = 0; i < output->GetNumberOfCells(); ++i)
+  {
+    Point normal;
+    vtkPolygon::ComputeNormal(output->GetCell(i)->GetPoints(), normal.data());
+    const Point& first = normals.emplace(facets->GetComponent(i, 0), normal).first->second;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      EXPECT_NEAR(normal[axis], first[axis], 1e-12);
+    }
+  }
+  EXPECT_EQ(normals.size(), 6u);
+  EXPECT_EQ(normals.begin()->first, 0.0);
+  EXPECT_EQ(normals.rbegin()->first, 5.0);
+
+  // Given facets are kept: each triangle its own, and all edges are structural.
+  vtkNew<vtkPolyData> given;
+  given->ShallowCopy(output);
+  vtkNew<vtkIntArray> own;
+  own->SetName("StructuralFacetId");
+  for (vtkIdType i = 0; i < given->GetNumberOfCells(); ++i)
+  {
+    own->InsertNextValue(static_cast<int>(i));
+  }
+  given->GetCellData()->AddArray(own);
+  vtkNew<vtkDelaunaySurfaceRefiner> again;
+  again->SetInputData(given);
+  again->Update();
+  const vtkIdType triangles = given->GetNumberOfCells();
+  EXPECT_GE(vtkPolyData::SafeDownCast(again->GetOutputDataObject(1))->GetNumberOfLines(),
+    3 * triangles / 2);
+  EXPECT_EQ(again->GetOutput()->GetCellData()->GetArray("StructuralFacetId")->GetRange()[1],
+    triangles - 1.0);
+
+  vtkNew<vtkIntArray> pairs;
+  pairs->SetName("StructuralFacetId");
+  pairs->SetNumberOfComponents(2);
+  pairs->SetNumberOfTuples(triangles);
+  given->GetCellData()->AddArray(pairs);
+  ExpectFailure(again, { "StructuralFacetId" });
 }
 
 TEST(DelaunaySurfaceRefinerFilter, ReportsUnresolvedTriangles)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Surface/SharpAngles.h"
 
-#include "Core/Basics/DisjointSets.h"
 #include "Core/Basics/SortedIds.h"
 #include "Core/Meshes/EdgeUses.h"
 
@@ -43,7 +42,6 @@ void SharpAngles::FindFacets(const TriangleMesh& surface, const std::vector<Stru
   const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
   // Triangles at each edge that is sharp.
   std::vector<std::pair<EdgeIds, std::vector<Id>>> sharp;
-  DisjointSets facets(surface.Triangles.size());
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end)
   {
     while (end < uses.size() && uses[end].Edge == uses[begin].Edge)
@@ -52,14 +50,7 @@ void SharpAngles::FindFacets(const TriangleMesh& surface, const std::vector<Stru
     }
     const EdgeIds ends = uses[begin].GetPoints();
     const StructuralEdge* const edge = FindStructuralEdge(edges, ends);
-    if (edge == nullptr)
-    {
-      for (std::size_t i = begin + 1; i < end; ++i)
-      {
-        facets.Unite(uses[begin].Use / 3, uses[i].Use / 3);
-      }
-    }
-    else if (edge->DihedralAngle >= 0.0 && edge->DihedralAngle < SharpDihedralAngle)
+    if (edge != nullptr && edge->DihedralAngle >= 0.0 && edge->DihedralAngle < SharpDihedralAngle)
     {
       sharp.push_back({ ends, {} });
       for (std::size_t i = begin; i < end; ++i)
@@ -69,6 +60,7 @@ void SharpAngles::FindFacets(const TriangleMesh& surface, const std::vector<Stru
     }
   }
 
+  const std::vector<Id> facets = sharp.empty() ? std::vector<Id>() : NumberFacets(uses, edges);
   for (const auto& [ends, around] : sharp)
   {
     this->IsCorner[ends[0]] = 1;
@@ -88,8 +80,7 @@ void SharpAngles::FindFacets(const TriangleMesh& surface, const std::vector<Stru
       {
         if (Dot(across[i], across[j]) > SharpDihedralCosine)
         {
-          this->FacetPairs.push_back(
-            std::minmax(facets.Find(around[i] / 3), facets.Find(around[j] / 3)));
+          this->FacetPairs.push_back(std::minmax(facets[around[i] / 3], facets[around[j] / 3]));
         }
       }
     }
@@ -105,7 +96,7 @@ void SharpAngles::FindFacets(const TriangleMesh& surface, const std::vector<Stru
   std::vector<std::pair<Id, Id>> pairs;
   for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()) && !sharp.empty(); ++t)
   {
-    const Id facet = facets.Find(t);
+    const Id facet = facets[t];
     for (Id point : surface.Triangles[t])
     {
       if (isSharp[facet] != 0)

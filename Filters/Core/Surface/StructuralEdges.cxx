@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Surface/StructuralEdges.h"
 
+#include "Core/Basics/DisjointSets.h"
 #include "Core/Geometry/WideVec3.h"
-#include "Core/Meshes/EdgeUses.h"
 
 #include <algorithm>
 #include <cmath>
@@ -149,6 +149,11 @@ bool HaveDifferentLabels(const TriangleMesh& surface, Id first, Id second)
   return surface.Labels[first / 3] != label;
 }
 
+bool HaveDifferentFacets(const StructuralEdgeOptions& options, Id first, Id second)
+{
+  return !options.Facets.empty() && options.Facets[first / 3] != options.Facets[second / 3];
+}
+
 /** The points' structural edges, as one list with a range for each point. */
 struct Incidences
 {
@@ -254,6 +259,31 @@ bool IsSurelySharp(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, d
   return std::atan2(sine, cosine) * static_cast<double>(DegreesPerRadian) > limit + SafeAngle;
 }
 } // namespace
+
+std::vector<Id> NumberFacets(
+  const std::vector<EdgeUse>& uses, const std::vector<StructuralEdge>& edges)
+{
+  // Each triangle has three uses.
+  DisjointSets sets(uses.size() / 3);
+  for (std::size_t i = 1; i < uses.size(); ++i)
+  {
+    if (uses[i].Edge == uses[i - 1].Edge &&
+      FindStructuralEdge(edges, uses[i].GetPoints()) == nullptr)
+    {
+      sets.Unite(uses[i - 1].Use / 3, uses[i].Use / 3);
+    }
+  }
+  std::vector<Id> numbers(uses.size() / 3, NoId);
+  std::vector<Id> facets;
+  Id count = 0;
+  for (Id t = 0; t < static_cast<Id>(numbers.size()); ++t)
+  {
+    Id& number = numbers[sets.Find(t)];
+    number = number == NoId ? count++ : number;
+    facets.push_back(number);
+  }
+  return facets;
+}
 
 const StructuralEdge* FindStructuralEdge(
   const std::vector<StructuralEdge>& edges, const EdgeIds& points)
@@ -366,9 +396,10 @@ Status ExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeO
       {
         edge.Kind = StructuralEdgeKind::LabelChange;
       }
-      else if (!IsSmoothEdge(surface.Points[edge.Points[0]], surface.Points[edge.Points[1]],
-                 GetOpposite(surface, first.Use), GetOpposite(surface, second),
-                 isExact(first.Use) || isExact(second) ? 0.0 : options.AccuracyAngle, flatness))
+      else if (HaveDifferentFacets(options, first.Use, second) ||
+        !IsSmoothEdge(surface.Points[edge.Points[0]], surface.Points[edge.Points[1]],
+          GetOpposite(surface, first.Use), GetOpposite(surface, second),
+          isExact(first.Use) || isExact(second) ? 0.0 : options.AccuracyAngle, flatness))
       {
         edge.Kind = StructuralEdgeKind::Sharp;
       }

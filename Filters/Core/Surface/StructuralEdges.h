@@ -14,7 +14,8 @@
  * 180 folded back). The edge is smooth if it bends by no more than the accuracy angle, or by no
  * more than one degree with both distances within FlatnessRatio * diagonal. A triangle without area
  * has no normal: its edges are never smooth. Labels are compared after turning them with the
- * triangle; surfaces without labels have no label change.
+ * triangle; surfaces without labels have no label change. Where triangles have been refined, small
+ * ones bend within FlatnessRatio at edges that were structural: facets known from before keep them.
  *
  * Method:
  *  1. sort all edges of all triangles, judge each group of equal edges;
@@ -32,6 +33,7 @@
 
 #include "Core/Basics/ExecutionContext.h"
 #include "Core/Basics/Status.h"
+#include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/TriangleMesh.h"
 
 #include <vector>
@@ -67,6 +69,11 @@ struct StructuralEdgeOptions
   double AccuracyAngle = 0.0;
   /** Distance, as a ratio of the bounding box diagonal, within which triangles count as flat. */
   double FlatnessRatio = 1e-9;
+  /**
+   * Facet of each triangle, as from NumberFacets() for the surface that this one refines: edges
+   * between different ones are structural; empty: not known.
+   */
+  std::vector<Id> Facets = {};
   /** Marks triangles at whose edges the accuracy angle does not count; empty: none. */
   std::vector<char> IsExact = {};
 };
@@ -81,6 +88,14 @@ struct StructuralEdgesOutput
 
 Status ExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeOptions& options,
   const ExecutionContext& context, StructuralEdgesOutput& output);
+
+/**
+ * Facets are what is connected across edges that are not structural: one number for each triangle,
+ * from 0, in the order of their first triangles.
+ * @param uses of the surface's triangles
+ */
+std::vector<Id> NumberFacets(
+  const std::vector<EdgeUse>& uses, const std::vector<StructuralEdge>& edges);
 
 /** The edge between two points, the smaller id first, in a sorted list; null if it is not there. */
 const StructuralEdge* FindStructuralEdge(

@@ -244,32 +244,38 @@ void BoundarySplits::CollectTriangles(const std::vector<Id>& touched)
 /** The facets that are a triangle of the surface, as part of Sides. False if there are none. */
 bool BoundarySplits::FindSides(const TriangleIds& ids)
 {
-  // Those at a point hang together across facets, but where outer facets meet in an edge only.
+  // Tetrahedra at a point hang together across facets, but where outer facets meet in an edge only.
+  // New points have fewer of them than corners of the input, which may have thousands.
   const TetMesh& mesh = this->Mesh.GetMesh();
-  const std::size_t before = this->Sides.size();
-  for (Id point : ids)
+  for (auto point = ids.rbegin(); point != ids.rend(); ++point)
   {
-    std::vector<Id> star(1, this->Mesh.GetTetrahedronAt(point));
-    for (std::size_t k = 0; k < star.size(); ++k)
+    ++this->Search;
+    this->Open.assign(1, this->Mesh.GetTetrahedronAt(*point));
+    this->Visits[this->Open.front()] = this->Search;
+    while (!this->Open.empty())
     {
-      const TetrahedronIds& vertices = mesh.Tetrahedra[star[k]];
+      const Id t = this->Open.back();
+      this->Open.pop_back();
+      const TetrahedronIds& vertices = mesh.Tetrahedra[t];
       for (int i = 0; i < 4; ++i)
       {
+        const Id neighbor = mesh.Neighbors[t][i];
         if (Sorted(GetFacet(vertices, i)) == ids)
         {
-          this->Sides.push_back(4 * star[k] + i);
+          this->Sides.push_back(4 * t + i);
+          if (neighbor != NoId)
+          {
+            this->Sides.push_back(neighbor);
+          }
+          this->Open.clear();
+          return true;
         }
-        const Id neighbor = mesh.Neighbors[star[k]][i];
-        if (neighbor != NoId && vertices[i] != point &&
-          std::find(star.begin(), star.end(), neighbor / 4) == star.end())
+        if (neighbor != NoId && vertices[i] != *point && this->Visits[neighbor / 4] != this->Search)
         {
-          star.push_back(neighbor / 4);
+          this->Visits[neighbor / 4] = this->Search;
+          this->Open.push_back(neighbor / 4);
         }
       }
-    }
-    if (this->Sides.size() > before)
-    {
-      return true;
     }
   }
   return false;
@@ -307,6 +313,7 @@ bool BoundarySplits::CollectConflicts(
   const std::vector<Vec3>& points, const std::vector<Id>& touched)
 {
   this->Sides.clear();
+  this->Visits.resize(this->Mesh.GetNumberOfTetrahedra(), 0);
   for (const TriangleIds& ids : this->Vanished)
   {
     if (!this->FindSides(ids))
@@ -316,7 +323,6 @@ bool BoundarySplits::CollectConflicts(
   }
   this->Tetrahedra.clear();
   this->IsInCavity.resize(this->Mesh.GetNumberOfTetrahedra(), 0);
-  this->Visits.resize(this->Mesh.GetNumberOfTetrahedra(), 0);
   const auto search = [this](const std::vector<Id>& sides, Id point, const Vec3& position)
   {
     ++this->Search;

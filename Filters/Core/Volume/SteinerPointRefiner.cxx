@@ -90,6 +90,7 @@ private:
   static Id GetMaximumNewPoints(
     const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options);
   void ExtractSurface();
+  Status FindFacets();
   ExecutionContext GetRoundContext() const;
   Status Translate(Status status, const std::vector<Id>& sources) const;
   DelaunaySurfaceRefinerOptions GetSurfaceOptions() const;
@@ -135,8 +136,11 @@ private:
   const TetrahedronLimits Limits;
   const Id MaximumNewPoints;
 
-  /** SourceCells: as those of the output's boundary. */
+  /** SourceCells: triangles of the first surface. */
   TriangleMesh Surface;
+  /** Of each triangle of the first surface: what it is in the input, and its facet. */
+  std::vector<Id> InputCells;
+  std::vector<Id> Facets;
   std::vector<StructuralEdge> Edges;
   /** Input point of each of the surface's first points. */
   std::vector<Id> SurfaceSources;
@@ -186,13 +190,16 @@ void Refiner::ExtractSurface()
   if (this->Input.Boundary == nullptr)
   {
     this->Surface = ExtractBoundary(mesh);
+    this->InputCells = std::move(this->Surface.SourceCells);
   }
   else
   {
     this->Surface = *this->Input.Boundary;
-    this->Surface.SourceCells.resize(this->Surface.Triangles.size());
-    std::iota(this->Surface.SourceCells.begin(), this->Surface.SourceCells.end(), 0);
+    this->InputCells.resize(this->Surface.Triangles.size());
+    std::iota(this->InputCells.begin(), this->InputCells.end(), 0);
   }
+  this->Surface.SourceCells.resize(this->Surface.Triangles.size());
+  std::iota(this->Surface.SourceCells.begin(), this->Surface.SourceCells.end(), 0);
   const auto isMarkedFree = [this](Id p)
   { return !this->Input.IsFree.empty() && this->Input.IsFree[p] != 0; };
   this->SurfaceSources = RemoveUnusedPoints(this->Surface);
@@ -216,6 +223,20 @@ void Refiner::ExtractSurface()
   }
 }
 
+/** Of the surface as it comes: in small triangles, as later ones are, edges could get lost. */
+Status Refiner::FindFacets()
+{
+  StructuralEdgesOutput edges;
+  const Status status = ExtractStructuralEdges(
+    this->Surface, this->Options.StructuralEdges, this->Context.Part(0.0, 0.0), edges);
+  if (status.IsOk())
+  {
+    this->Facets =
+      NumberFacets(SortEdgeUses(this->Surface.Triangles, this->Surface.Points.size()), edges.Edges);
+  }
+  return this->Translate(status, {});
+}
+
 /** Rounds get smaller: each takes a part of what is left. */
 ExecutionContext Refiner::GetRoundContext() const
 {
@@ -230,7 +251,8 @@ Status Refiner::Translate(Status status, const std::vector<Id>& sources) const
   std::vector<Id> cells;
   for (Id triangle : status.Cells)
   {
-    cells.push_back(this->Surface.SourceCells[sources.empty() ? triangle : sources[triangle]]);
+    const Id source = sources.empty() ? triangle : sources[triangle];
+    cells.push_back(this->InputCells[this->Surface.SourceCells[source]]);
   }
   SortUnique(cells);
   if (!status.IsAborted())
@@ -246,7 +268,8 @@ DelaunaySurfaceRefinerOptions Refiner::GetSurfaceOptions() const
 {
   DelaunaySurfaceRefinerOptions options;
   options.Criterion = std::max(this->Options.Criterion, SurfaceCriterion::SmallestSphere);
-  options.StructuralEdges = this->Options.StructuralEdges;
+  options.StructuralEdges.AccuracyAngle = this->Options.StructuralEdges.AccuracyAngle;
+  options.StructuralEdges.FlatnessRatio = this->Options.StructuralEdges.FlatnessRatio;
   options.MaximumEdgeLength = this->Options.MaximumEdgeLength;
   options.MeshPointClearanceRatio = 0.0;
   options.NumberOfThreads = this->Options.NumberOfThreads;
@@ -267,6 +290,11 @@ Status Refiner::StartRound()
   DelaunaySurfaceRefinerInput input;
   input.Surface = &this->Surface;
   input.Sizing = this->Input.Sizing;
+  DelaunaySurfaceRefinerOptions options = this->GetSurfaceOptions();
+  for (Id first : this->Surface.SourceCells)
+  {
+    options.StructuralEdges.Facets.push_back(this->Facets[first]);
+  }
   if (this->Round)
   {
     this->Interior = this->Round->GetInterior();
@@ -280,8 +308,7 @@ Status Refiner::StartRound()
   }
   input.MeshPoints = &points;
   DelaunaySurfaceRefinerOutput refined;
-  Status status =
-    RefineDelaunaySurface(input, this->GetSurfaceOptions(), context.Part(0.0, 0.3), refined);
+  Status status = RefineDelaunaySurface(input, options, context.Part(0.0, 0.3), refined);
   if (!status.IsOk())
   {
     return this->Translate(std::move(status), {});
@@ -648,6 +675,10 @@ void Refiner::MakeOutput()
   }
   this->Output.Mesh.Points = std::move(points);
   this->Output.Boundary = std::move(this->Surface);
+  for (Id& source : this->Output.Boundary.SourceCells)
+  {
+    source = this->InputCells[source];
+  }
   this->Output.Boundary.Points = this->Output.Mesh.Points;
   for (TriangleIds& ids : this->Output.Boundary.Triangles)
   {
@@ -774,8 +805,9 @@ Status Refiner::Run()
   if (status.IsOk())
   {
     this->ExtractSurface();
-    status = this->StartRound();
+    status = this->FindFacets();
   }
+  status = status.IsOk() ? this->StartRound() : status;
   if (status.IsOk())
   {
     this->Round->RemoveClosePoints(this->Options.MinimumEdgeLength, this->Input.Sizing);

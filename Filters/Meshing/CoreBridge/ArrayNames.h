@@ -14,6 +14,8 @@ constexpr const char* BoundaryLabelsName = "BoundaryLabels";
 constexpr const char* RegionIdName = "RegionId";
 /** Point array of the sizing input: a length, one for each axis, or a tensor. */
 constexpr const char* SizingName = "Sizing";
+/** Cell array of refined surfaces: structural edges are between different ones. */
+constexpr const char* StructuralFacetIdName = "StructuralFacetId";
 /** Point array: not 0 for points that may be moved. */
 constexpr const char* FreePointName = "FreePoint";
 /** Point array of structural edges: ids of the surface's points. */

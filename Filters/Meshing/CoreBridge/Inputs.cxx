@@ -323,6 +323,28 @@ cdm::Status ToFlags(vtkUnstructuredGrid* input, const char* name, std::vector<ch
 }
 
 //--------------------------------------------------------------------------------------------------
+cdm::Status ToFacets(vtkPolyData* input, std::vector<cdm::Id>& facets)
+{
+  vtkDataArray* array = input->GetCellData()->GetArray(StructuralFacetIdName);
+  if (!array)
+  {
+    return {};
+  }
+  if (array->GetNumberOfComponents() != 1 ||
+    array->GetNumberOfTuples() != input->GetNumberOfCells())
+  {
+    return cdm::Status::InvalidInput(std::string("The cell array ") + StructuralFacetIdName +
+      " needs one component and one value for each cell: correct or remove it.");
+  }
+  const vtkIdType first = GetFirstPolygon(input);
+  for (vtkIdType i = 0; i < input->GetNumberOfPolys(); ++i)
+  {
+    facets.push_back(static_cast<cdm::Id>(array->GetComponent(first + i, 0)));
+  }
+  return {};
+}
+
+//--------------------------------------------------------------------------------------------------
 cdm::Status ToSeeds(vtkPointSet* input, std::vector<cdm::RegionSeed>& seeds)
 {
   std::vector<cdm::Vec3> points;

@@ -33,6 +33,9 @@ cdm::Status ToPolygonSoup(
 /** All polygons must be triangles. */
 cdm::Status ToTriangleMesh(vtkPolyData* input, cdm::TriangleMesh& surface);
 
+/** Structural facet of each triangle, from the cell array; empty without the array. */
+cdm::Status ToFacets(vtkPolyData* input, std::vector<cdm::Id>& facets);
+
 /** Finite points; name says in messages which input they are. */
 cdm::Status ToPoints(vtkPointSet* input, const char* name, std::vector<cdm::Vec3>& points);
 

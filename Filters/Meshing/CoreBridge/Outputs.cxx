@@ -97,6 +97,13 @@ void FromTetMesh(const cdm::TetMesh& mesh, vtkUnstructuredGrid* output)
 }
 
 //--------------------------------------------------------------------------------------------------
+void FromFacets(const std::vector<cdm::Id>& facets, vtkPolyData* output)
+{
+  output->GetCellData()->AddArray(MakeArray<vtkIntArray>(
+    StructuralFacetIdName, facets.size(), [&](std::size_t i) { return facets[i]; }));
+}
+
+//--------------------------------------------------------------------------------------------------
 void FromStructuralEdges(
   const std::vector<cdm::StructuralEdge>& edges, vtkPolyData* surface, vtkPolyData* output)
 {

@@ -75,6 +75,9 @@ void FromTetMesh(const cdm::TetMesh& mesh, vtkUnstructuredGrid* output);
  * Lines with Kind, DihedralAngle and ChainId on those points of the surface that they use, with
  * their point data and SurfacePointId.
  */
+/** One value for each triangle: see StructuralFacetIdName. */
+void FromFacets(const std::vector<cdm::Id>& facets, vtkPolyData* output);
+
 void FromStructuralEdges(
   const std::vector<cdm::StructuralEdge>& edges, vtkPolyData* surface, vtkPolyData* output);
 
