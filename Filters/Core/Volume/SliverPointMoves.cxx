@@ -165,8 +165,9 @@ Status SliverPointMoves::MoveInside(const ExecutionContext& context)
     return Status::Aborted();
   }
   VolumeRefinement refinement = MakeRefinement(parts);
-  const Status status =
-    refinement.PerturbSlivers(this->Target, SliverMeans::Moves, {}, context.Part(0.1, 1.0));
+  Status status =
+    refinement.PerturbSlivers(this->Target, SliverMeans::Moves, {}, context.Part(0.1, 0.9));
+  status = status.IsOk() ? refinement.PerturbSharp(this->Target, context.Part(0.9, 1.0)) : status;
   this->PutTogether(parts, refinement.GetMesh());
   this->MovedPoints += refinement.GetReport().MovedPoints;
   return status;

@@ -38,8 +38,6 @@ constexpr int MaximumLastPasses = 5;
 constexpr std::size_t FewRequests = 16;
 /** The boundary is split for flat tetrahedra if no more than these are left. */
 constexpr std::ptrdiff_t FewFlat = 16;
-/** What is left of a point's size between it and new ones at last, if nothing else helps. */
-constexpr double SliverSizeRatio = 0.05;
 /**
  * Edges of the boundary for a largest volume, in edges of the regular tetrahedron of that volume.
  */
@@ -123,7 +121,6 @@ private:
   bool RoundFlatTetrahedraAway();
   bool MoveSurfacePoints();
   bool MoveSurface(const std::vector<Vec3>& places);
-  bool AllowCloserPoints();
   bool IsInevitable(const TetrahedronIds& ids, Id region) const;
   std::size_t CountRequests() const { return this->Round->GetRequests().GetNumber(); }
   void FindFaults();
@@ -163,8 +160,6 @@ private:
   Patience SliverRounds{ MaximumSliverRounds };
   /** Points of flat tetrahedra that rounding has left, sorted. */
   std::vector<TetrahedronIds> LeftFlat;
-  /** Whether points may come closer to others for slivers. */
-  bool AreCloserPointsAllowed = false;
   /** Whether the last round has split nothing of what was requested. */
   bool IsStuck = false;
 };
@@ -361,10 +356,6 @@ Status Refiner::StartRound()
     this->MaximumNewPoints - this->Output.Report.BoundaryPoints -
       this->Output.Report.InteriorPoints,
     this->Memory, FewestReservedPoints + static_cast<Id>(this->Surface.Points.size()) / 4);
-  if (this->AreCloserPointsAllowed)
-  {
-    this->Round->SetSliverSizes(SliverSizeRatio, this->Options.DihedralAngleTarget);
-  }
   this->IsSurfaceFree.resize(this->Surface.Points.size(), 1);
   this->IsNew.resize(this->Surface.Points.size(), 1);
   this->Round->NoteNewPoints(this->IsNew);
@@ -509,7 +500,9 @@ Status Refiner::PerturbLastSlivers()
     }
     status = status.IsOk() ? this->RefineRound(true) : status;
   }
-  return status;
+  return status.IsOk()
+    ? this->Round->PerturbSharp(this->Options.DihedralAngleTarget, this->GetRoundContext())
+    : status;
 }
 
 void Refiner::CollectReport()
@@ -571,19 +564,6 @@ bool Refiner::MoveSurfacePoints()
   return this->MoveSurface(
     this->Round->MoveSurfacePoints(this->Options.DihedralAngleTarget, this->IsSurfaceFree,
       this->Edges, this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges));
-}
-
-/** For slivers that nothing else helps. False if there are none, or if it has been done. */
-bool Refiner::AllowCloserPoints()
-{
-  if (this->Options.DihedralAngleTarget == 0.0 || this->AreCloserPointsAllowed ||
-    this->Round->CountSlivers(this->Options.DihedralAngleTarget) == 0)
-  {
-    return false;
-  }
-  this->AreCloserPointsAllowed = true;
-  this->Round->SetSliverSizes(SliverSizeRatio, this->Options.DihedralAngleTarget);
-  return true;
 }
 
 /** False if all points stay where they are. */
@@ -765,11 +745,6 @@ Status Refiner::MendSlivers(Outcome& outcome)
   if (!status.IsOk() || outcome == Outcome::Requested || (!this->IsStuck && !isFull && isLeft))
   {
     return status;
-  }
-  if (!isFull && this->AllowCloserPoints())
-  {
-    this->SliverRounds.Renew();
-    return this->RefineRound(true);
   }
   outcome = Outcome::Done;
   return target > 0.0 ? this->PerturbLastSlivers() : status;

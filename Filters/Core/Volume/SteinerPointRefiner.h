@@ -13,16 +13,15 @@
  *     (BoundarySplits.h), with the same result for the same points;
  *  3. for this boundary the inside is refined (VolumeRefinement.h): Steiner points in tetrahedra
  *     that are too large, then also in badly shaped ones, where each comes no closer to others than
- *     a fifth of the shortest edge that was there before; what disturbs the boundary is requested
- *     to be split instead;
+ *     a twentieth of the shortest edge that was there before; what disturbs the boundary is
+ *     requested to be split instead;
  *  4. if little is requested any more: points of slivers are moved, taken out or added, first those
  *     inside. Then new and free points of the surface are moved within their facets and along their
  *     edges, where that makes the smallest angle larger (SurfacePointMoves.h). Before that, where
  *     tetrahedra are flat because points lie on a circle but for rounding, such points are rounded
  *     in another way (PointRounding.h). The boundary is split for slivers that nothing else helps,
- *     and for flat tetrahedra only if their points are all given or few are left. If slivers are
- *     left at last, points for them may come as close to others as a twentieth of that shortest
- *     edge.
+ *     and for flat tetrahedra only if their points are all given or few are left. At last points
+ *     of tetrahedra across sharp angles are moved, as far as all others stay as good.
  * It ends when a round requests nothing, or nothing that can be done, or when forty rounds for
  * slivers in a row have not made these fewer.
  *

@@ -28,8 +28,11 @@ constexpr double CloseRatio = 0.3;
 constexpr double FlatAngle = 1e-6;
 /** First step of the search for a new point's place, in radii of the sphere that it destroys. */
 constexpr double FirstInsertion = 0.3;
-/** What is left of a point's size between it and a new one. */
-constexpr double UsualSizeRatio = 0.2;
+/**
+ * What is left of a point's size between it and a new one. With a tenth more slivers are left, with
+ * less, more at needles in the surface.
+ */
+constexpr double SizeRatio = 0.05;
 /** Passes over the slivers that are left. */
 constexpr int MaximumPasses = 20;
 
@@ -61,7 +64,7 @@ VolumeRefinement::VolumeRefinement(TetMesh mesh, TriangleMesh& surface,
     Shape(std::make_unique<BoundaryShape>(surface, edges)),
     Requests(surface, edges,
       [this](Id point, double distance)
-      { return distance >= this->SizeRatio * this->Points[point].Size; })
+      { return distance >= SizeRatio * this->Points[point].Size; })
 {
   for (std::size_t p = 0; p < surface.Points.size(); ++p)
   {
@@ -217,19 +220,45 @@ bool VolumeRefinement::IsFlat(Id tetrahedron) const
     this->GetAngle(tetrahedron) < FlatAngle;
 }
 
-/** Smallest angle that the hole's cone would have; gives up below what is required. */
-double VolumeRefinement::RateHole(const Vec3& position, double required) const
+/** Whether a change is for a tetrahedron with such an angle; angles over the target always count. */
+bool VolumeRefinement::IsAimed(const Aim& aim, double angle, const TetrahedronIds& ids) const
 {
+  return angle >= aim.Target || this->Shape->Sharp.IsAcross(ids) == aim.IsSharp;
+}
+
+void VolumeRefinement::Include(const Aim& aim, Id tetrahedron, SmallestAngles& smallest) const
+{
+  const double angle = this->GetAngle(tetrahedron);
+  double& one = this->IsAimed(aim, angle, this->GetMesh().Tetrahedra[tetrahedron]) ? smallest.Aimed
+                                                                                   : smallest.Other;
+  one = std::min(one, angle);
+}
+
+/** What tetrahedra that a change is not for have to keep. */
+double VolumeRefinement::GetFloor(const Aim& aim, const SmallestAngles& before)
+{
+  return aim.IsSharp ? std::min(before.Other, aim.Target) : std::min(before.Aimed, before.Other);
+}
+
+/**
+ * Smallest angle that the hole's cone would have among those aimed at; 0 if another one falls below
+ * the floor, or as soon as it is not larger than required.
+ */
+double VolumeRefinement::RateHole(
+  const Vec3& position, const Aim& aim, double floor, double required) const
+{
+  constexpr Id inside = std::numeric_limits<Id>::max();
   double smallest = 180.0;
   for (const TriangleIds& facet : this->Hole.Facets)
   {
-    smallest = std::min(smallest,
-      GetSmallestDihedralAngle(this->Mesh.GetPoint(facet[0]), this->Mesh.GetPoint(facet[1]),
-        this->Mesh.GetPoint(facet[2]), position));
-    if (smallest < required)
+    const double angle = GetSmallestDihedralAngle(this->Mesh.GetPoint(facet[0]),
+      this->Mesh.GetPoint(facet[1]), this->Mesh.GetPoint(facet[2]), position);
+    const bool isAimed = this->IsAimed(aim, angle, { facet[0], facet[1], facet[2], inside });
+    if (isAimed ? angle <= required : angle < floor)
     {
-      break;
+      return 0.0;
     }
+    smallest = isAimed ? std::min(smallest, angle) : smallest;
   }
   return smallest;
 }
@@ -271,7 +300,7 @@ bool VolumeRefinement::IsClear(const Vec3& position) const
   {
     for (Id id : facet)
     {
-      if (Distance(position, this->Mesh.GetPoint(id)) < this->SizeRatio * this->Points[id].Size)
+      if (Distance(position, this->Mesh.GetPoint(id)) < SizeRatio * this->Points[id].Size)
       {
         return false;
       }
@@ -362,14 +391,6 @@ void VolumeRefinement::AddPoint(const Vec3& position)
   ++this->Report.InsertedPoints;
 }
 
-/** What counts for points that are put in for a tetrahedron. */
-double VolumeRefinement::GetSizeRatio(Id tetrahedron) const
-{
-  return this->SliverTarget > 0.0 && this->GetAngle(tetrahedron) < this->SliverTarget
-    ? this->SliverSizeRatio
-    : UsualSizeRatio;
-}
-
 void VolumeRefinement::SetSizes(const std::vector<double>& sizes)
 {
   for (std::size_t p = 0; p < sizes.size(); ++p)
@@ -451,7 +472,6 @@ Status VolumeRefinement::RefineByLimits(bool isShapeTested, const ExecutionConte
       continue;
     }
     const bool isSizeKept = task.Fault == TetrahedronFault::Shape;
-    this->SizeRatio = this->GetSizeRatio(task.Tetrahedron);
     this->Shape->Spheres.Find(target, this->Disturbed);
     if (!this->Disturbed.IsEmpty())
     {
@@ -521,7 +541,7 @@ void VolumeRefinement::SetSurfaceSizes(Id first, const std::vector<double>& size
   this->BoundSizes(changed);
 }
 
-bool VolumeRefinement::Move(Id point, double target)
+bool VolumeRefinement::Move(Id point, const Aim& aim)
 {
   std::vector<Id> star;
   if (!this->Mesh.FindStar(point, star))
@@ -530,7 +550,7 @@ bool VolumeRefinement::Move(Id point, double target)
   }
   const Vec3 old = this->Mesh.GetPoint(point);
   Id broken = 0;
-  double smallest = 180.0;
+  SmallestAngles before;
   double nearest = Infinity;
   Vec3 sum;
   double count = 0.0;
@@ -538,7 +558,7 @@ bool VolumeRefinement::Move(Id point, double target)
   {
     const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
     broken += this->BreaksLimit(t);
-    smallest = std::min(smallest, this->GetAngle(t));
+    this->Include(aim, t, before);
     for (Id id : ids)
     {
       if (id != point)
@@ -554,11 +574,15 @@ bool VolumeRefinement::Move(Id point, double target)
     return false;
   }
   const std::vector<Id> filled = this->Mesh.GetChanged();
+  const double floor = GetFloor(aim, before);
+  // Of those aimed at; the others are either fine or bad.
   std::vector<double> angles;
   std::vector<char> isBroken;
   for (Id t : filled)
   {
-    angles.push_back(this->GetAngle(t));
+    SmallestAngles after;
+    this->Include(aim, t, after);
+    angles.push_back(after.Other < floor ? 0.0 : after.Aimed);
     isBroken.push_back(this->BreaksLimit(t));
   }
   const auto rate = [&](const Vec3& position, double required)
@@ -583,15 +607,15 @@ bool VolumeRefinement::Move(Id point, double target)
         ++brokenThere;
       }
     }
-    const double angle = this->RateHole(position, required);
+    const double angle = this->RateHole(position, aim, floor, required);
     return angle > required && this->IsClear(position) &&
         (broken > 0 || brokenThere + this->CountBroken(position) == 0) &&
         !this->DisturbsBoundary(position)
       ? angle
       : 0.0;
   };
-  Place best{ old, smallest + SmallestGain, false };
-  SearchMove(old, (1.0 / count) * sum, nearest, target, rate, best);
+  Place best{ old, before.Aimed + SmallestGain, false };
+  SearchMove(old, (1.0 / count) * sum, nearest, aim.Target, rate, best);
 
   if (this->Means != SliverMeans::Moves &&
     std::count(isBroken.begin(), isBroken.end(), 1) <= broken &&
@@ -616,7 +640,7 @@ bool VolumeRefinement::Move(Id point, double target)
   return true;
 }
 
-bool VolumeRefinement::InsertBest(Id tetrahedron, double target)
+bool VolumeRefinement::InsertBest(Id tetrahedron, const Aim& aim)
 {
   const std::array<Vec3, 4> vertices = this->GetVertices(this->GetMesh().Tetrahedra[tetrahedron]);
   const Vec3 center = GetCircumcenter(vertices[0], vertices[1], vertices[2], vertices[3]);
@@ -631,7 +655,12 @@ bool VolumeRefinement::InsertBest(Id tetrahedron, double target)
     {
       return 0.0;
     }
-    const double angle = this->RateHole(position, required);
+    SmallestAngles before;
+    for (Id t : this->Hole.Tetrahedra)
+    {
+      this->Include(aim, t, before);
+    }
+    const double angle = this->RateHole(position, aim, GetFloor(aim, before), required);
     return angle > required && this->IsClear(position) && this->CountBroken(position) == 0 &&
         !this->DisturbsBoundary(position)
       ? angle
@@ -639,8 +668,8 @@ bool VolumeRefinement::InsertBest(Id tetrahedron, double target)
   };
   Place best{ center, this->GetAngle(tetrahedron) + SmallestGain, false };
   TryPlace(center, rate, best);
-  SearchPlace(center, FirstInsertion * Distance(center, vertices[0]), MakeCubeDirections(), target,
-    rate, best);
+  SearchPlace(center, FirstInsertion * Distance(center, vertices[0]), MakeCubeDirections(),
+    aim.Target, rate, best);
   if (!best.IsFound || !this->Mesh.FindHole(best.Position, number, tetrahedron, this->Hole))
   {
     return false;
@@ -649,22 +678,34 @@ bool VolumeRefinement::InsertBest(Id tetrahedron, double target)
   return true;
 }
 
-/** False if nothing helps; then nothing has changed. */
-bool VolumeRefinement::Mend(Id tetrahedron, double target, bool mayInsert)
+/** False if nothing helps, or is known not to; then nothing has changed. */
+bool VolumeRefinement::Mend(const Sliver& sliver, const Aim& aim, SliverAttempt last)
 {
-  const TetrahedronIds ids = this->GetMesh().Tetrahedra[tetrahedron];
-  return std::any_of(ids.begin(), ids.end(),
-           [&](Id id) { return this->IsFree(id) && this->Move(id, target); }) ||
-    (mayInsert && this->InsertBest(tetrahedron, target));
+  const TetrahedronIds ids = this->GetMesh().Tetrahedra[sliver.Tetrahedron];
+  const TetrahedronIds names = this->GetNames(ids);
+  if (this->Memory.IsHopeless(names, last))
+  {
+    return false;
+  }
+  if (std::any_of(
+        ids.begin(), ids.end(), [&](Id id) { return this->IsFree(id) && this->Move(id, aim); }) ||
+    (last == SliverAttempt::Insertion && this->InsertBest(sliver.Tetrahedron, aim)))
+  {
+    return true;
+  }
+  this->Memory.SetHopeless(names, last);
+  return false;
 }
 
-std::vector<VolumeRefinement::Sliver> VolumeRefinement::FindSlivers(double target) const
+/** Those that an aim is for, worst first; without those across thin layers. */
+std::vector<VolumeRefinement::Sliver> VolumeRefinement::FindSlivers(const Aim& aim) const
 {
   std::vector<Sliver> slivers;
   for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
   {
     const double angle = this->Mesh.IsDead(t) ? 180.0 : this->GetAngle(t);
-    if (angle < target && !this->IsInLayer(t))
+    if (angle < aim.Target && this->IsAimed(aim, angle, this->GetMesh().Tetrahedra[t]) &&
+      !this->IsInLayer(t))
     {
       slivers.push_back({ angle, t, this->Mesh.GetStamp(t) });
     }
@@ -677,10 +718,7 @@ std::vector<VolumeRefinement::Sliver> VolumeRefinement::FindSlivers(double targe
 
 std::size_t VolumeRefinement::CountSlivers(double target) const
 {
-  const std::vector<Sliver> slivers = this->FindSlivers(target);
-  return static_cast<std::size_t>(std::count_if(slivers.begin(), slivers.end(),
-    [this](const Sliver& sliver)
-    { return !this->Shape->Sharp.IsAcross(this->GetMesh().Tetrahedra[sliver.Tetrahedron]); }));
+  return this->FindSlivers({ target, false }).size();
 }
 
 std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(double target,
@@ -691,7 +729,7 @@ std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(double target,
   { return !this->Shape->Layers.IsAcross(ids, region) && !this->Shape->Sharp.IsAcross(ids); };
   rules.BreaksLimit = [this](const TetrahedronIds& ids, const std::array<Vec3, 4>& vertices)
   { return this->BreaksLimit(ids, vertices); };
-  rules.GetClearance = [this](Id point) { return UsualSizeRatio * this->Points[point].Size; };
+  rules.GetClearance = [this](Id point) { return SizeRatio * this->Points[point].Size; };
   const std::vector<StructuralEdge> none;
   SurfacePointMoves moves(this->Mesh, this->Surface, this->Shape->PointTriangles, structural,
     areEdgesKept ? this->Edges : none, rules);
@@ -700,7 +738,7 @@ std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(double target,
   for (int pass = 0; pass < MaximumPasses && isMended; ++pass)
   {
     isMended = false;
-    for (const Sliver& sliver : this->FindSlivers(target))
+    for (const Sliver& sliver : this->FindSlivers({ target, false }))
     {
       if (this->Mesh.GetStamp(sliver.Tetrahedron) != sliver.Stamp)
       {
@@ -708,8 +746,7 @@ std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(double target,
       }
       const TetrahedronIds ids = this->GetMesh().Tetrahedra[sliver.Tetrahedron];
       const TetrahedronIds names = this->GetNames(ids);
-      if (this->Shape->Sharp.IsAcross(ids) ||
-        this->Memory.IsHopeless(names, SliverAttempt::SurfaceMove))
+      if (this->Memory.IsHopeless(names, SliverAttempt::SurfaceMove))
       {
         continue;
       }
@@ -736,13 +773,14 @@ Status VolumeRefinement::PerturbSlivers(double target, SliverMeans means,
   const std::vector<char>& isFree, const ExecutionContext& context)
 {
   this->Means = means;
+  const Aim aim{ MoveRatio * target, false };
   // First moves, then new points as well; when neither helps any more, requests.
   bool mayInsert = false;
   bool isLast = false;
   std::vector<TetrahedronIds> unmet;
   for (int pass = 0; pass < MaximumPasses; ++pass)
   {
-    const std::vector<Sliver> slivers = this->FindSlivers(MoveRatio * target);
+    const std::vector<Sliver> slivers = this->FindSlivers(aim);
     bool isMended = false;
     for (std::size_t i = 0; i < slivers.size(); ++i)
     {
@@ -758,23 +796,16 @@ Status VolumeRefinement::PerturbSlivers(double target, SliverMeans means,
         continue;
       }
       const TetrahedronIds ids = this->GetMesh().Tetrahedra[sliver.Tetrahedron];
-      const TetrahedronIds names = this->GetNames(ids);
-      this->SizeRatio = this->GetSizeRatio(sliver.Tetrahedron);
-      const bool isBad = sliver.Angle < target && !this->Shape->Sharp.IsAcross(ids);
+      const bool isBad = sliver.Angle < target;
       const bool mayRequest = means == SliverMeans::Requests &&
         (isFree.empty() || !this->IsFlat(sliver.Tetrahedron) ||
           std::none_of(ids.begin(), ids.end(),
             [&](Id id) { return id >= this->FirstInside || isFree[id] != 0; }));
-      const SliverAttempt last =
-        isBad && mayInsert ? SliverAttempt::Insertion : SliverAttempt::Move;
-      if (!this->Memory.IsHopeless(names, last))
+      if (this->Mend(
+            sliver, aim, isBad && mayInsert ? SliverAttempt::Insertion : SliverAttempt::Move))
       {
-        if (this->Mend(sliver.Tetrahedron, MoveRatio * target, last == SliverAttempt::Insertion))
-        {
-          isMended = isMended || isBad;
-          continue;
-        }
-        this->Memory.SetHopeless(names, last);
+        isMended = isMended || isBad;
+        continue;
       }
       if (isBad && isLast && mayRequest)
       {
@@ -802,7 +833,6 @@ Status VolumeRefinement::PerturbSlivers(double target, SliverMeans means,
   if (this->Requests.GetNumber() == 0)
   {
     std::vector<Id> near;
-    this->SizeRatio = this->SliverTarget > 0.0 ? this->SliverSizeRatio : UsualSizeRatio;
     for (const TetrahedronIds& ids : unmet)
     {
       if (std::none_of(ids.begin(), ids.end(),
@@ -811,6 +841,26 @@ Status VolumeRefinement::PerturbSlivers(double target, SliverMeans means,
         this->Requests.AddLargestTriangle(ids, this->Shape->PointTriangles);
         near.insert(near.end(), ids.begin(), ids.end());
       }
+    }
+  }
+  return Status();
+}
+
+Status VolumeRefinement::PerturbSharp(double target, const ExecutionContext& context)
+{
+  this->Means = SliverMeans::Moves;
+  const Aim aim{ MoveRatio * target, true };
+  const std::vector<Sliver> slivers = this->FindSlivers(aim);
+  for (std::size_t i = 0; i < slivers.size(); ++i)
+  {
+    if (i % ReportInterval == 0 &&
+      !context.Continue(static_cast<double>(i) / slivers.size(), "Moving points at sharp angles"))
+    {
+      return Status::Aborted();
+    }
+    if (this->Mesh.GetStamp(slivers[i].Tetrahedron) == slivers[i].Stamp)
+    {
+      this->Mend(slivers[i], aim, SliverAttempt::Move);
     }
   }
   return Status();

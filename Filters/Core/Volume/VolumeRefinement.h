@@ -13,16 +13,17 @@
  *    better. A place is rated by the smallest dihedral angle of all tetrahedra that it would make,
  *    before anything is changed. If no point's move helps, a new point is tried in the same way, at
  *    last the boundary that is in the way is requested to be split. Each change makes the smallest
- *    angle of what it replaces larger, and breaks no limit where all were kept.
+ *    angle of what it replaces larger, and breaks no limit where all were kept. Tetrahedra across
+ *    sharp input angles do not count, they only must not get worse; their turn is the last.
  *
  * Sharp input angles would be refined for ever: a tetrahedron across one (SharpAngles.h) is refined
- * for its size only; if it is a sliver, its points are moved. Each point has a size, the
- * shortest edge at it before any shape was refined, or how close edges of the boundary come to each
- * other there (FeatureSizes.h), and at most the size of another point and the way from there; no
- * point comes closer to it than a fifth of that, but for size limits and, at last, for slivers. Of
- * tetrahedra across a thin layer (ThinLayers.h) only the size counts. Nor is a tetrahedron refined
- * for its shape whose points all belong to the boundary and lie in one plane but for rounding, as
- * those of turned devices do: new points on the boundary would have more of the kind.
+ * for its size only; if it is a sliver, its points are moved. Each point has a size, the shortest
+ * edge at it before any shape was refined, or how close edges of the boundary come to each other
+ * there (FeatureSizes.h), and at most the size of another point and the way from there; no point
+ * comes closer to it than a twentieth of that, but for size limits. Of tetrahedra across a thin
+ * layer (ThinLayers.h) only the size counts. Nor is a tetrahedron refined for its shape whose
+ * points all belong to the boundary and lie in one plane but for rounding, as those of turned
+ * devices do: new points on the boundary would have more of the kind.
  *
  * References: J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998,
  * doi:10.1145/276884.276894 (what is split instead, and why it ends); J. Tournois, R. Srinivasan,
@@ -53,7 +54,7 @@ namespace cdm
 struct InteriorPoint
 {
   Vec3 Position;
-  /** No other point comes closer than a fifth of this; 0: no bound. */
+  /** No other point comes closer than a twentieth of this; 0: no bound. */
   double Size = 0.0;
   /** Whether it may be moved and removed. */
   bool IsFree = false;
@@ -102,15 +103,6 @@ public:
   void NoteNewPoints(const std::vector<char>& isNew);
   /** As InteriorPoint::Size, one for each point of the mesh. */
   void SetSizes(const std::vector<double>& sizes);
-  /**
-   * For tetrahedra with smaller angles than the target points may come closer to others than to a
-   * fifth of their sizes.
-   */
-  void SetSliverSizes(double ratio, double target)
-  {
-    this->SliverSizeRatio = ratio;
-    this->SliverTarget = target;
-  }
   /** Free points closer to another one than this, or than 0.3 of the sizing, which may be empty. */
   void RemoveClosePoints(double smallest, const SizingField& sizing);
   /** Until no tetrahedron breaks a limit, but for those that need the boundary split. */
@@ -122,6 +114,9 @@ public:
    */
   Status PerturbSlivers(double target, SliverMeans means, const std::vector<char>& isFree,
     const ExecutionContext& context);
+
+  /** Moves points of tetrahedra across sharp angles, as far as all others stay as good. */
+  Status PerturbSharp(double target, const ExecutionContext& context);
 
   /** Tetrahedra with a smaller angle, but for those across thin layers and sharp angles. */
   std::size_t CountSlivers(double target) const;
@@ -187,11 +182,28 @@ private:
   bool IsFree(Id point) const;
   std::array<Vec3, 4> GetVertices(const TetrahedronIds& ids) const;
   /** The smallest dihedral angle. */
-  double GetSizeRatio(Id tetrahedron) const;
   double GetAngle(Id tetrahedron) const { return this->GetShape(tetrahedron).Angle; }
   bool IsInLayer(Id tetrahedron) const;
   bool IsFlat(Id tetrahedron) const;
-  double RateHole(const Vec3& position, double required) const;
+  /** What a change is for. */
+  struct Aim
+  {
+    /** Degrees; larger angles are as good. */
+    double Target;
+    /** Whether tetrahedra across sharp angles are to get better ones, or all others. */
+    bool IsSharp;
+  };
+  /** The smallest angles of tetrahedra that a change replaces, or makes. */
+  struct SmallestAngles
+  {
+    /** Of those that it is for. */
+    double Aimed = 180.0;
+    double Other = 180.0;
+  };
+  bool IsAimed(const Aim& aim, double angle, const TetrahedronIds& ids) const;
+  void Include(const Aim& aim, Id tetrahedron, SmallestAngles& smallest) const;
+  static double GetFloor(const Aim& aim, const SmallestAngles& before);
+  double RateHole(const Vec3& position, const Aim& aim, double floor, double required) const;
   bool BreaksLimit(const TetrahedronIds& ids, const std::array<Vec3, 4>& vertices) const;
   bool BreaksLimit(Id tetrahedron) const;
   Id CountBroken(const Vec3& position) const;
@@ -199,8 +211,8 @@ private:
   bool DisturbsBoundary(const Vec3& position);
   bool TouchesOpenFacet() const;
   void AddPoint(const Vec3& position);
-  bool Move(Id point, double target);
-  bool InsertBest(Id tetrahedron, double target);
+  bool Move(Id point, const Aim& aim);
+  bool InsertBest(Id tetrahedron, const Aim& aim);
   TetrahedronIds GetNames(const TetrahedronIds& ids) const;
   void NoteChanges();
   struct Sliver
@@ -209,9 +221,8 @@ private:
     Id Tetrahedron;
     std::int64_t Stamp;
   };
-  /** Worst first; without those across thin layers. */
-  std::vector<Sliver> FindSlivers(double target) const;
-  bool Mend(Id tetrahedron, double target, bool mayInsert);
+  std::vector<Sliver> FindSlivers(const Aim& aim) const;
+  bool Mend(const Sliver& sliver, const Aim& aim, SliverAttempt last);
 
   DynamicTetrahedralization Mesh;
   TriangleMesh& Surface;
@@ -240,10 +251,6 @@ private:
   std::vector<InteriorPoint> Points;
   VolumeRefinementReport Report;
   SliverMeans Means = SliverMeans::Moves;
-  double SliverSizeRatio = 0.0;
-  double SliverTarget = 0.0;
-  /** Of the tetrahedron that is being refined. */
-  double SizeRatio = 0.0;
 
   BoundaryRequests Requests;
   /**
