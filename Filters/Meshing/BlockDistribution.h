@@ -4,8 +4,8 @@
  * @brief Polygons in blocks: which process gets which block, and composite outputs like the input.
  *
  * Private to this module. A block is a partitioned data set of a collection, with all of its
- * partitions, which are pieces of one surface; or a leaf of blocks in blocks. Where several processes
- * have pieces of a block they are appended, from the first process to the last.
+ * partitions, which are pieces of one surface; or a leaf of blocks in blocks. Where several
+ * processes have pieces of a block they are appended, from the first process to the last.
  *
  * Blocks go to processes by their number of cells: the largest one that is left to the process that
  * has least so far.

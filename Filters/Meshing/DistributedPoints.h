@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file DistributedPoints.h
- * @brief Points of which processes have any pieces: numbers them, deals them out by where they lie, and
- * gets their data to where they are needed.
+ * @brief Points of which processes have any pieces: numbers them, deals them out by where they lie,
+ * and gets their data to where they are needed.
  *
- * Private to this module. Numbers are the global ids, if all points of an input have some, otherwise
- * they count the points from the first process to the last; those of the mesh points follow.
+ * Private to this module. Numbers are the global ids, if all points of an input have some,
+ * otherwise they count the points from the first process to the last; those of the mesh points
+ * follow.
  */
 #ifndef DistributedPoints_h
 #define DistributedPoints_h
@@ -46,9 +47,9 @@ public:
   std::int64_t GetFirstMeshPoint() const { return this->FirstMeshPoint; }
 
   /**
-   * Called by all processes: cuts space, and sends each point with its data to the process in whose cell
-   * it lies. own receives those of this process, ascending by number; numberOfCopies how many points
-   * with at least the number firstCounted are left out because they are copies of others.
+   * Called by all processes: cuts space, and sends each point with its data to the process in whose
+   * cell it lies. own receives those of this process, ascending by number; numberOfCopies how many
+   * points with at least the number firstCounted are left out because they are copies of others.
    */
   cdm::Status Distribute(
     std::int64_t firstCounted, std::vector<cdm::NumberedPoint>& own, vtkIdType& numberOfCopies);

@@ -3,8 +3,9 @@
  * @file DistributedSurface.h
  * @brief A surface of which processes have pieces, whole on all of them.
  *
- * Private to this module. Points at the same place are one, and triangles that two processes have as
- * well; diagonals in flat cocircular facets are those of the pulling rule, by the points' numbers.
+ * Private to this module. Points at the same place are one, and triangles that two processes have
+ * as well; diagonals in flat cocircular facets are those of the pulling rule, by the points'
+ * numbers.
  */
 #ifndef DistributedSurface_h
 #define DistributedSurface_h
@@ -46,7 +47,9 @@ public:
   const std::vector<cdm::RegionPair>& GetSideRegions() const { return this->SideRegions; }
   /** A row for each triangle. */
   const vtkSmartPointer<vtkTable>& GetCellData() const { return this->CellData; }
-  /** Triangles of a status as cells of the input, or in the message with the process they are of. */
+  /**
+   * Triangles of a status as cells of the input, or in the message with the process they are of.
+   */
   void NameTriangles(cdm::Status& status) const;
 
 private:

@@ -3,13 +3,14 @@
  * @file ProcessGroup.h
  * @brief What filters that run on several processes at once say to each other.
  *
- * Private to this module; on top of vtkMultiProcessController, whatever its kind. Every method has to
- * be called by all processes. So that none waits for one that has given up, a process that meets an
- * error goes on to the next Agree(), where all learn of it and stop together.
+ * Private to this module; on top of vtkMultiProcessController, whatever its kind. Every method has
+ * to be called by all processes. So that none waits for one that has given up, a process that meets
+ * an error goes on to the next Agree(), where all learn of it and stop together.
  *
  * Processes exchange messages in pairs: in step s of n, process r meets process (s - r) mod n, and
- * the one with the lower rank sends first. Nobody waits for a third one, and no buffer of MPI's has to
- * hold a message. Numbers travel as they are in memory: all processes are of one kind of machine.
+ * the one with the lower rank sends first. Nobody waits for a third one, and no buffer of MPI's has
+ * to hold a message. Numbers travel as they are in memory: all processes are of one kind of
+ * machine.
  */
 #ifndef ProcessGroup_h
 #define ProcessGroup_h
@@ -33,7 +34,10 @@ class ProcessGroup
 public:
   using Bytes = std::vector<char>;
 
-  /** null: a process by itself. Gather() takes messages that are longer in all than the limit in pieces. */
+  /**
+   * null: a process by itself. Gather() takes messages that are longer in all than the limit in
+   * pieces.
+   */
   explicit ProcessGroup(
     vtkMultiProcessController* controller, std::int64_t largestGather = LargestGather);
 
@@ -42,8 +46,9 @@ public:
   bool IsAlone() const { return this->Size == 1; }
 
   /**
-   * The same outcome everywhere: Ok if all are. A process keeps what went wrong on itself; the others
-   * get the message of the first process that has an error, with its rank, or else are aborted.
+   * The same outcome everywhere: Ok if all are. A process keeps what went wrong on itself; the
+   * others get the message of the first process that has an error, with its rank, or else are
+   * aborted.
    */
   cdm::Status Agree(const cdm::Status& own) const;
 

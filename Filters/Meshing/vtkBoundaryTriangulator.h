@@ -3,8 +3,8 @@
  * @class   vtkBoundaryTriangulator
  * @brief   Stage 0: turns any list of polygons into a clean, well connected triangulated surface.
  *
- * One unsorted list of polygons is enough: of any orientation, convex or not, open or closed, of one
- * or of several materials, with more than two polygons at an edge.
+ * One unsorted list of polygons is enough: of any orientation, convex or not, open or closed, of
+ * one or of several materials, with more than two polygons at an edge.
  *
  * Method (Fleischmann 1999, sections 3.5 and 6.3):
  *  1. merge coincident points; drop repeated vertices, degenerate and duplicate polygons;
@@ -15,16 +15,16 @@
  *     them along their intersections;
  *  6. turn over the triangles that are reversed, where BoundaryLabels or closure tell.
  *
- * Inputs: port 0: vtkPolyData. Polygons and triangle strips are used; vertices and lines are ignored
- * with a warning. Optional cell array BoundaryLabels (two whole numbers for each cell): the region
- * ids on the front and the back side, -1 for outside.
+ * Inputs: port 0: vtkPolyData. Polygons and triangle strips are used; vertices and lines are
+ * ignored with a warning. Optional cell array BoundaryLabels (two whole numbers for each cell): the
+ * region ids on the front and the back side, -1 for outside.
  *
- * Outputs: port 0: the surface, triangles only, coordinates in double precision. Cell data are those
- * of the polygon that a triangle comes from (for a patched gap: of the polygon at its first edge),
- * BoundaryLabels is a vtkIntArray; point data are those of the input points, interpolated where
- * triangles were split.
- * Port 1: the problems found, to look at: line segments, or vertices where a segment is a point, and
- * the polygons concerned. Cell arrays: ProblemKind (int, see ProblemKinds), Cell and OtherCell
+ * Outputs: port 0: the surface, triangles only, coordinates in double precision. Cell data are
+ * those of the polygon that a triangle comes from (for a patched gap: of the polygon at its first
+ * edge), BoundaryLabels is a vtkIntArray; point data are those of the input points, interpolated
+ * where triangles were split.
+ * Port 1: the problems found, to look at: line segments, or vertices where a segment is a point,
+ * and the polygons concerned. Cell arrays: ProblemKind (int, see ProblemKinds), Cell and OtherCell
  * (vtkIdType): the cells of the input that it is about, -1 for none.
  *
  * Repairs that drop something are told in a warning that names the cells, and counted.
@@ -39,8 +39,9 @@
  *
  * Cost: O(n log n) for n triangles that overlap in few places.
  *
- * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
- * recursive splitting, gaps, T-junctions. Filters/Core/Surface/BoundaryTriangulator.h is the engine.
+ * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
+ * 1999: recursive splitting, gaps, T-junctions. Filters/Core/Surface/BoundaryTriangulator.h is the
+ * engine.
  */
 #ifndef vtkBoundaryTriangulator_h
 #define vtkBoundaryTriangulator_h
@@ -111,8 +112,8 @@ public:
 
   ///@{
   /**
-   * Split triangles that intersect along their intersections, instead of refusing them. The cuts are
-   * rounded to double precision, so a cut triangle moves by that much. Default off.
+   * Split triangles that intersect along their intersections, instead of refusing them. The cuts
+   * are rounded to double precision, so a cut triangle moves by that much. Default off.
    */
   vtkSetMacro(ResolveSelfIntersections, bool);
   vtkGetMacro(ResolveSelfIntersections, bool);
@@ -121,9 +122,9 @@ public:
 
   ///@{
   /**
-   * What stays of a surface without labels whose self-intersections were resolved. Off: the boundary
-   * of the union; on: pieces inside of it too, as sheets between regions. With labels all pieces stay
-   * in any case. Default off.
+   * What stays of a surface without labels whose self-intersections were resolved. Off: the
+   * boundary of the union; on: pieces inside of it too, as sheets between regions. With labels all
+   * pieces stay in any case. Default off.
    */
   vtkSetMacro(KeepInternalPieces, bool);
   vtkGetMacro(KeepInternalPieces, bool);

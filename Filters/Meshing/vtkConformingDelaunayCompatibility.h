@@ -4,8 +4,8 @@
  * @brief The differences between VTK 9.1 and 9.2 that the filters meet, in one place.
  *
  * VTK 9.2 has vtkAlgorithm::CheckAbort(), which also sees aborts of filters upstream. After it
- * returned true the executive empties the outputs, unless AbortOutput is taken back. VTK 9.1 has the
- * flag AbortExecute only, and leaves the outputs as the filter made them.
+ * returned true the executive empties the outputs, unless AbortOutput is taken back. VTK 9.1 has
+ * the flag AbortExecute only, and leaves the outputs as the filter made them.
  */
 #ifndef vtkConformingDelaunayCompatibility_h
 #define vtkConformingDelaunayCompatibility_h

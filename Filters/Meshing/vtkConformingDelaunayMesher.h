@@ -6,29 +6,31 @@
  * Method (Fleischmann 1999, chapters 3, 5 and 6): the stages as a pipeline inside of this filter,
  *  1. vtkBoundaryTriangulator: one clean triangulated surface (3.5, 6.3); vtkMeshPointGenerator, if
  *     GenerateMeshPoints is on (3.6, 6.2);
- *  2. vtkDelaunaySurfaceRefiner: structural edges, flips and new points until the surface is part of
- *     its Delaunay mesh (6.3);
+ *  2. vtkDelaunaySurfaceRefiner: structural edges, flips and new points until the surface is part
+ *     of its Delaunay mesh (6.3);
  *  3. vtkAdvancingFrontTetrahedralizer: tetrahedra for every enclosed region (6.4);
- *  4. vtkSteinerPointRefiner, if AddSteinerPoints is on (5.6, 6.5): generated points are free, those
- *     of port 1 are not;
+ *  4. vtkSteinerPointRefiner, if AddSteinerPoints is on (5.6, 6.5): generated points are free,
+ *     those of port 1 are not;
  *  5. vtkSliverRemover, if RemoveSlivers is on (3.4.7, 5.7);
  *  6. a check of the result, from the output alone.
  *
  * Inputs: port 0: vtkPolyData, any list of polygons, optionally with the two-component cell array
- * BoundaryLabels (region ids on the front and back side, -1 outside). Port 1, optional: vtkPointSet,
- * mesh points, beside those that are generated. Port 2, optional: vtkDataSet with the point array
+ * BoundaryLabels (region ids on the front and back side, -1 outside). Port 1, optional:
+ * vtkPointSet, mesh points, beside those that are generated. Port 2, optional: vtkDataSet with the
+ * point array
  * Sizing: target edge length in model units.
  *
- * Blocks: port 0 may be a vtkPartitionedDataSetCollection or a vtkMultiBlockDataSet of vtkPolyData. Each
- * block is meshed by itself; all get the same mesh points and sizing. On several processes blocks are
- * spread over them: the largest one that is left goes to the process with the fewest polygons so far.
- * Pieces of a block on several processes, and partitions, become one surface. The outputs are of the
- * same kind and structure, with a block where its process is, and nothing on the others.
+ * Blocks: port 0 may be a vtkPartitionedDataSetCollection or a vtkMultiBlockDataSet of vtkPolyData.
+ * Each block is meshed by itself; all get the same mesh points and sizing. On several processes
+ * blocks are spread over them: the largest one that is left goes to the process with the fewest
+ * polygons so far. Pieces of a block on several processes, and partitions, become one surface. The
+ * outputs are of the same kind and structure, with a block where its process is, and nothing on the
+ * others.
  *
  * Outputs: port 0: vtkUnstructuredGrid of VTK_TETRA with the cell array RegionId (int), the point
- * data of the input, interpolated at new points, and the string array Certificate in the field data:
- * one line that says what the check found. Port 1: the boundary of the mesh and its regions as
- * triangles, with BoundaryLabels (int, 2 components), StructuralFacetId (int: see
+ * data of the input, interpolated at new points, and the string array Certificate in the field
+ * data: one line that says what the check found. Port 1: the boundary of the mesh and its regions
+ * as triangles, with BoundaryLabels (int, 2 components), StructuralFacetId (int: see
  * vtkDelaunaySurfaceRefiner) and the cell data of the input polygons.
  * Port 2: the problems found in the input, see vtkBoundaryTriangulator.
  *
@@ -37,12 +39,13 @@
  * check finds at fault comes with a warning. Deterministic.
  *
  * Failure: the error of the stage that failed, with the cells of this filter's input, and empty
- * outputs; port 2 still lists what was found. An aborted run has empty outputs. An error in a block names
- * it, and ends the filter on all processes.
+ * outputs; port 2 still lists what was found. An aborted run has empty outputs. An error in a block
+ * names it, and ends the filter on all processes.
  *
  * Cost: O(n log n) for n tetrahedra, if the surface is not much finer than its smallest features.
  *
- * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999.
+ * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
+ * 1999.
  */
 #ifndef vtkConformingDelaunayMesher_h
 #define vtkConformingDelaunayMesher_h
@@ -97,8 +100,8 @@ public:
 
   ///@{
   /**
-   * Split triangles that intersect along their intersections, instead of refusing them. The cuts are
-   * rounded to double precision, so a cut triangle moves by that much. Default off.
+   * Split triangles that intersect along their intersections, instead of refusing them. The cuts
+   * are rounded to double precision, so a cut triangle moves by that much. Default off.
    */
   vtkSetMacro(ResolveSelfIntersections, bool);
   vtkGetMacro(ResolveSelfIntersections, bool);
@@ -107,9 +110,9 @@ public:
 
   ///@{
   /**
-   * What stays of a surface without labels whose self-intersections were resolved. Off: the boundary
-   * of the union; on: pieces inside of it too, as sheets between regions. With labels all pieces stay
-   * in any case. Default off.
+   * What stays of a surface without labels whose self-intersections were resolved. Off: the
+   * boundary of the union; on: pieces inside of it too, as sheets between regions. With labels all
+   * pieces stay in any case. Default off.
    */
   vtkSetMacro(KeepInternalPieces, bool);
   vtkGetMacro(KeepInternalPieces, bool);
@@ -128,7 +131,8 @@ public:
   ///@{
   /**
    * Edges that bend by no more than this are smooth and may be flipped, which changes the shape of
-   * the surface by that much. Degrees; default 0: only numerically flat edges are smooth; range 0 to
+   * the surface by that much. Degrees; default 0: only numerically flat edges are smooth; range 0
+   * to
    * 180.
    */
   vtkSetClampMacro(AccuracyAngle, double, 0.0, 180.0);
@@ -220,10 +224,11 @@ public:
 
   ///@{
   /**
-   * Whether to run vtkSteinerPointRefiner: new points on the boundary and inside until no tetrahedron
-   * has an edge longer than MaximumEdgeLength or the sizing, is larger than MaximumVolume, has a
-   * larger radius-edge ratio or a smaller dihedral angle than asked for, but for those at sharp input
-   * angles and across thin layers. Criterion Delaunay counts as SmallestSphere. Default off.
+   * Whether to run vtkSteinerPointRefiner: new points on the boundary and inside until no
+   * tetrahedron has an edge longer than MaximumEdgeLength or the sizing, is larger than
+   * MaximumVolume, has a larger radius-edge ratio or a smaller dihedral angle than asked for, but
+   * for those at sharp input angles and across thin layers. Criterion Delaunay counts as
+   * SmallestSphere. Default off.
    */
   vtkSetMacro(AddSteinerPoints, bool);
   vtkGetMacro(AddSteinerPoints, bool);
@@ -241,8 +246,8 @@ public:
 
   ///@{
   /**
-   * Largest volume of a tetrahedron, with AddSteinerPoints. Cubic model units; default 0: off; range
-   * >= 0.
+   * Largest volume of a tetrahedron, with AddSteinerPoints. Cubic model units; default 0: off;
+   * range >= 0.
    */
   vtkSetClampMacro(MaximumVolume, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(MaximumVolume, double);
@@ -250,8 +255,8 @@ public:
 
   ///@{
   /**
-   * Tetrahedra with a smaller dihedral angle are treated by the sliver remover and, up to 40 degrees,
-   * by the Steiner point refiner. Degrees; default
+   * Tetrahedra with a smaller dihedral angle are treated by the sliver remover and, up to 40
+   * degrees, by the Steiner point refiner. Degrees; default
    * 15; range 0 to 70.
    */
   vtkSetClampMacro(DihedralAngleTarget, double, 0.0, 70.0);

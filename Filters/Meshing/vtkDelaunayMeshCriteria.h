@@ -10,22 +10,24 @@
  *     and tetrahedra whose circumcenter lies beyond such a facet: open control volumes;
  *  4. for each edge the sum of the cotangents of the opposite dihedral angles, weighted with the
  *     lengths there (3.3; negative: an entry of the finite element matrix has the wrong sign), and
- *     for each edge and region the coupling of the box method, the signed area of the Voronoi facet;
+ *     for each edge and region the coupling of the box method, the signed area of the Voronoi
+ *     facet;
  *  5. the volume of each region.
- * Spheres are decided exactly; 3.3 and the couplings with a tolerance of 1e-12 of the lengths involved,
- * couplings also of what rounding the coordinates changes.
+ * Spheres are decided exactly; 3.3 and the couplings with a tolerance of 1e-12 of the lengths
+ * involved, couplings also of what rounding the coordinates changes.
  *
  * Inputs:
  *  - port 0: vtkUnstructuredGrid of VTK_TETRA from any source; cells of up to two dimensions are
  *    passed over. Cell array RegionId (whole numbers from 0 on) where there are several regions.
- *  - port 1 (optional): vtkPolyData, the boundary of the regions with the cell array BoundaryLabels:
- *    the volumes that it encloses are compared with those of the tetrahedra. Without it the volumes
- *    within the mesh's own outer and interface facets are.
+ *  - port 1 (optional): vtkPolyData, the boundary of the regions with the cell array
+ *    BoundaryLabels: the volumes that it encloses are compared with those of the tetrahedra.
+ *    Without it the volumes within the mesh's own outer and interface facets are.
  *
  * Outputs:
- *  - port 0: the tetrahedra with their data and the cell arrays Q1, Q2, Q3, Q4, Q5, AspectRatio (R/r,
- *    1/Q3), RadiusEdgeRatio (1/Q1), SmallestDihedralAngle, LargestDihedralAngle (double, degrees),
- *    IsDelaunay (unsigned char, Crit. 5.3) and IsOpen (unsigned char: an open control volume).
+ *  - port 0: the tetrahedra with their data and the cell arrays Q1, Q2, Q3, Q4, Q5, AspectRatio
+ *    (R/r, 1/Q3), RadiusEdgeRatio (1/Q1), SmallestDihedralAngle, LargestDihedralAngle (double,
+ *    degrees), IsDelaunay (unsigned char, Crit. 5.3) and IsOpen (unsigned char: an open control
+ *    volume).
  *    Field data: Certificate (one line of text), IsClean (0 or 1), one count for each kind of
  *    fault (InvertedTetrahedra, FlatTetrahedra, OverfullFacets, NonDelaunayTetrahedra,
  *    NonDelaunayFacets, FacetSphereViolations, EdgeSphereViolations, OpenControlVolumes,
@@ -46,8 +48,8 @@
  * Cost: O(n log n) on all processor cores: 5 million tetrahedra of random points take 25 s of
  * processor time; 160 bytes per tetrahedron, outputs included.
  *
- * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
- * the criteria. Filters/Core/Certificate/MeshCriteria.h is the engine.
+ * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
+ * 1999: the criteria. Filters/Core/Certificate/MeshCriteria.h is the engine.
  */
 #ifndef vtkDelaunayMeshCriteria_h
 #define vtkDelaunayMeshCriteria_h

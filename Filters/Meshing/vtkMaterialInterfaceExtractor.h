@@ -12,8 +12,9 @@
  *     within MaximumDeviation. Lines where materials meet, edges sharper than FeatureAngle, the
  *     edges of the image and the corners of all these are kept.
  * Without smoothing and with a MaximumDeviation of 0 the result is the exact staircase with its
- * coplanar faces merged. vtkSurfaceNets3D of VTK 9.3 and later is not used: it smooths without a look
- * at self-intersections, which no mesh could conform to, and leaves some neighborhoods unresolved.
+ * coplanar faces merged. vtkSurfaceNets3D of VTK 9.3 and later is not used: it smooths without a
+ * look at self-intersections, which no mesh could conform to, and leaves some neighborhoods
+ * unresolved.
  *
  * Inputs: port 0: vtkImageData or vtkRectilinearGrid, a volume. The array to process (default: the
  * active scalars of the points, otherwise of the cells) has one component with whole numbers: the
@@ -22,26 +23,27 @@
  *
  * Outputs: port 0: vtkPolyData, triangles with points in double precision and the cell array
  * BoundaryLabels (int, 2 components): labels on the front and on the back side, -1 outside. Normals
- * point to the smaller label. This is what vtkConformingDelaunayMesher takes: RegionId is the label.
+ * point to the smaller label. This is what vtkConformingDelaunayMesher takes: RegionId is the
+ * label.
  *
  * Guarantees: watertight around each material; no two triangles intersect, decided exactly; each
  * region keeps its topology, and touches the others where its voxels do. Where a region touches
  * itself at an edge or a corner of voxels only, the surface is no manifold, as at junctions. With
  * smoothing off and MaximumDeviation 0 volumes are those of the voxels. Layers one voxel thick keep
  * at least half of their thickness in smoothing. Deterministic. An image with a direction matrix is
- * turned at the end, which rounds coordinates. In a parallel run the first process asks for all voxels
- * and makes all interfaces; the others have none.
+ * turned at the end, which rounds coordinates. In a parallel run the first process asks for all
+ * voxels and makes all interfaces; the others have none.
  *
- * Failure: an error that names the voxels, and an empty output, for labels that are no whole numbers
- * from -1 on, an array that is missing or has several components, an image without a label other
- * than outside, without a volume, or with more than 2^31 - 1 corners. An aborted run has an empty
- * output.
+ * Failure: an error that names the voxels, and an empty output, for labels that are no whole
+ * numbers from -1 on, an array that is missing or has several components, an image without a label
+ * other than outside, without a volume, or with more than 2^31 - 1 corners. An aborted run has an
+ * empty output.
  *
- * Cost: O(n log n) for n faces between labels: 256^3 voxels with 0.6 million faces take 37 s and 420
- * MB; see Filters/Core/Interfaces/MaterialInterfaces.h, the engine.
+ * Cost: O(n log n) for n faces between labels: 256^3 voxels with 0.6 million faces take 37 s and
+ * 420 MB; see Filters/Core/Interfaces/MaterialInterfaces.h, the engine.
  *
- * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999;
- * S. F. Gibson, "Constrained elastic surface nets", 1998, doi:10.1007/BFb0056277; G. Taubin,
+ * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
+ * 1999; S. F. Gibson, "Constrained elastic surface nets", 1998, doi:10.1007/BFb0056277; G. Taubin,
  * T. Zhang, G. Golub, "Optimal surface smoothing as filter design", 1996, doi:10.1007/BFb0015544.
  */
 #ifndef vtkMaterialInterfaceExtractor_h
@@ -65,8 +67,8 @@ public:
 
   ///@{
   /**
-   * Waves of the surface shorter than this are taken for stairs and smoothed. In voxels; default 10;
-   * range 0 (the exact faces of the voxels) to 1000.
+   * Waves of the surface shorter than this are taken for stairs and smoothed. In voxels; default
+   * 10; range 0 (the exact faces of the voxels) to 1000.
    */
   vtkSetClampMacro(SmoothingLength, double, 0.0, 1000.0);
   vtkGetMacro(SmoothingLength, double);
@@ -81,8 +83,9 @@ public:
 
   ///@{
   /**
-   * How far the reduced surface may lie from the full one, anywhere and in both directions. In units
-   * of the shortest voxel edge; default 0.25; range >= 0; 0: only what is exactly flat is merged.
+   * How far the reduced surface may lie from the full one, anywhere and in both directions. In
+   * units of the shortest voxel edge; default 0.25; range >= 0; 0: only what is exactly flat is
+   * merged.
    */
   vtkSetClampMacro(MaximumDeviation, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(MaximumDeviation, double);

@@ -23,11 +23,12 @@
  * Inputs: port 0: vtkPolyData of triangles (run vtkBoundaryTriangulator first), closed, optionally
  * with the two-component cell array BoundaryLabels. Give the mesher that comes after it the same
  * surface and sizing; layers nearer to the boundary than MeshPointClearanceRatio of
- * vtkDelaunaySurfaceRefiner would be dropped there: lower it for them. Port 1, optional: vtkDataSet with the point array Sizing: target edge length
- * at a position, in model units, positive; one component, 3 (along x, y and z), or 6 (xx, yy, zz, xy,
- * yz, xz) or 9 (a symmetric tensor whose principal values are lengths). Between its points it is
- * interpolated, outside of it the nearest value holds. Octree and ortho-product follow the lengths
- * along the axes, random points the tensor. Without it Spacing holds everywhere.
+ * vtkDelaunaySurfaceRefiner would be dropped there: lower it for them. Port 1, optional: vtkDataSet
+ * with the point array Sizing: target edge length at a position, in model units, positive; one
+ * component, 3 (along x, y and z), or 6 (xx, yy, zz, xy, yz, xz) or 9 (a symmetric tensor whose
+ * principal values are lengths). Between its points it is interpolated, outside of it the nearest
+ * value holds. Octree and ortho-product follow the lengths along the axes, random points the
+ * tensor. Without it Spacing holds everywhere.
  *
  * Outputs: port 0: vtkPolyData of vertices, coordinates in double precision: the mesh points, for
  * port 1 of vtkDelaunaySurfaceRefiner or vtkConformingDelaunayMesher. Point arrays RegionId (int):
@@ -38,16 +39,16 @@
  * nearer than BoundaryClearance spacings; layers have their distance from the interface, to
  * rounding. Deterministic, random points too: the same Seed, the same points.
  *
- * Failure: an error that names the cells, and an empty output, for an empty input, cells that are not
- * triangles, labels that contradict each other, a surface that encloses nothing, layers at an
+ * Failure: an error that names the cells, and an empty output, for an empty input, cells that are
+ * not triangles, labels that contradict each other, a surface that encloses nothing, layers at an
  * interface that does not exist, a Sizing that is not positive, or more points than
  * MaximumNumberOfPoints. A warning if no point, or none of the layers, finds place.
  *
  * Cost: O(n log n); some 10 microseconds for a point of the octree, a millisecond for a random one
  * with the default number of iterations.
  *
- * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
- * the placements. Filters/Core/Volume/MeshPointGenerator.h is the engine.
+ * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
+ * 1999: the placements. Filters/Core/Volume/MeshPointGenerator.h is the engine.
  */
 #ifndef vtkMeshPointGenerator_h
 #define vtkMeshPointGenerator_h

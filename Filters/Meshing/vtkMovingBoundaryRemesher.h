@@ -9,18 +9,18 @@
  *     distance of FollowRatio times the largest displacement;
  *  2. the moved boundary is checked, exactly, for triangles that cross, overlap or touch. Where
  *     neighbors fold over each other half a step is taken first;
- *  3. points inside are kept if they are still strictly inside of a region and nothing has come much
- *     closer to them (PointClearance); the surface is refined until it is Delaunay with them, and
- *     filled with the tetrahedra of all points;
- *  4. where the topology changes, since parts of the boundary meet or a layer vanishes, the boundary
- *     is cut along its intersections, and each cell of space gets the region that the moved boundary
- *     winds around it most often, of several the one with the lowest id.
+ *  3. points inside are kept if they are still strictly inside of a region and nothing has come
+ *     much closer to them (PointClearance); the surface is refined until it is Delaunay with them,
+ *     and filled with the tetrahedra of all points;
+ *  4. where the topology changes, since parts of the boundary meet or a layer vanishes, the
+ *     boundary is cut along its intersections, and each cell of space gets the region that the
+ *     moved boundary winds around it most often, of several the one with the lowest id.
  *
- * Inputs: port 0: vtkUnstructuredGrid of VTK_TETRA only, from any source; cell array RegionId (whole
- * numbers from 0 on) where there are several regions. The point array to process (default: the active
- * vectors) has three components: how far each point is to move, in model units. Points inside of
- * regions are not moved by it; on a wall along which an interface moves leave it zero, and the
- * points of the wall make way.
+ * Inputs: port 0: vtkUnstructuredGrid of VTK_TETRA only, from any source; cell array RegionId
+ * (whole numbers from 0 on) where there are several regions. The point array to process (default:
+ * the active vectors) has three components: how far each point is to move, in model units. Points
+ * inside of regions are not moved by it; on a wall along which an interface moves leave it zero,
+ * and the points of the wall make way.
  *
  * Outputs: port 0: the tetrahedra, with the cell array RegionId (int) and the arrays of the input.
  * Point data are those of the input, interpolated at new points; cell data those of the input
@@ -33,14 +33,14 @@
  * steps there are; others that do not follow keep their coordinates. Deterministic.
  *
  * Failure: an error that names cells or points, and empty outputs, for an empty input, cells of
- * another type, tetrahedra that are inverted, flat or overlap, displacements that are missing or not
- * finite, and a moved boundary that cannot be meshed. A warning if triangles do not fulfil
+ * another type, tetrahedra that are inverted, flat or overlap, displacements that are missing or
+ * not finite, and a moved boundary that cannot be meshed. A warning if triangles do not fulfil
  * the criterion. An aborted run has empty outputs.
  *
  * Cost: that of refining the surface and meshing all regions, in each step.
  *
- * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
- * moving boundaries. Filters/Core/Volume/MovingBoundaryRemesher.h is the engine.
+ * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
+ * 1999: moving boundaries. Filters/Core/Volume/MovingBoundaryRemesher.h is the engine.
  */
 #ifndef vtkMovingBoundaryRemesher_h
 #define vtkMovingBoundaryRemesher_h
@@ -102,7 +102,8 @@ public:
   ///@{
   /**
    * Edges that bend by no more than this are smooth and may be flipped, which changes the shape of
-   * the surface by that much. Degrees; default 0: only numerically flat edges are smooth; range 0 to
+   * the surface by that much. Degrees; default 0: only numerically flat edges are smooth; range 0
+   * to
    * 180.
    */
   vtkSetClampMacro(AccuracyAngle, double, 0.0, 180.0);

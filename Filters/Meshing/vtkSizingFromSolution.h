@@ -16,8 +16,8 @@
  * array with one component; default: the active scalars. For quantities over many decades, as
  * carrier concentrations, take the logarithm first.
  *
- * Outputs: port 0: the input with the point array Sizing (double, 1 component, or 3 if Anisotropic):
- * target edge lengths in model units, for the sizing inputs of vtkMeshPointGenerator,
+ * Outputs: port 0: the input with the point array Sizing (double, 1 component, or 3 if
+ * Anisotropic): target edge lengths in model units, for the sizing inputs of vtkMeshPointGenerator,
  * vtkDelaunaySurfaceRefiner and vtkConformingDelaunayMesher.
  *
  * Guarantees: sizes are positive and finite; limits and gradation hold exactly as stated, to
@@ -28,8 +28,8 @@
  *
  * Cost: O(n log n) for n points.
  *
- * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
- * eq. 3.21. Filters/Core/Sizing/SizingField.h has the gradation.
+ * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
+ * 1999: eq. 3.21. Filters/Core/Sizing/SizingField.h has the gradation.
  */
 #ifndef vtkSizingFromSolution_h
 #define vtkSizingFromSolution_h

@@ -24,7 +24,8 @@
  * direction are too long. Port 2, optional: vtkPolyData, the boundary that belongs to the mesh
  * (output 1 of vtkAdvancingFrontTetrahedralizer), which hands its cell data on and holds sheets
  * inside of regions; by the cell array StructuralFacetId of vtkDelaunaySurfaceRefiner it keeps the
- * structural edges of the input between triangles too small to tell. Port 3, optional: vtkPointSet, points to be put in.
+ * structural edges of the input between triangles too small to tell. Port 3, optional: vtkPointSet,
+ * points to be put in.
  *
  * Outputs: port 0: the tetrahedra, with the cell array RegionId (int). Other cell data are dropped.
  * Points that stay where they are come first, in their order, with their data; at new and moved

@@ -17,8 +17,8 @@
  *    gate crosses it along y, from 0 to DeviceWidth, on the gate oxide between them; an oxide of
  *    the same thickness everywhere covers the device. Regions: Bulk, LeftFieldOxide,
  *    RightFieldOxide (at the low and at the high y), GateOxide, Gate, CoverOxide.
- *    Contacts of the transistors: SourceContact, DrainContact, GateContact, SubstrateContact; of the
- *    via plug: BottomContact, TopContact.
+ *    Contacts of the transistors: SourceContact, DrainContact, GateContact, SubstrateContact; of
+ *    the via plug: BottomContact, TopContact.
  *  - LOCOS (thesis Fig. 4.2): an oxide grown on silicon beside a nitride mask, which covers x < 0,
  *    with a bird's beak under the bent edge of the mask; extruded along y. The silicon was there up
  *    to z = 0. Regions: Bulk, FieldOxide, Nitride. Contact: SubstrateContact.
@@ -42,8 +42,8 @@
  *    trenches), NmosGate, PmosGate, NmosSourceSpacer, NmosDrainSpacer, PmosSourceSpacer,
  *    PmosDrainSpacer, Ground, Supply, Input, Output, and Passivation if there is one. Contacts:
  *    NmosSourceContact, NmosDrainContact, NmosGateContact, PmosSourceContact, PmosDrainContact,
- *    PmosGateContact (where metal touches them), SubstrateContact, and Vss, Vdd, Vin, Vout (the tops
- *    of Ground, Supply, Input and Output).
+ *    PmosGateContact (where metal touches them), SubstrateContact, and Vss, Vdd, Vin, Vout (the
+ *    tops of Ground, Supply, Input and Output).
  *
  * Method:
  *  1. check the parameters;

@@ -14,17 +14,18 @@
  * (whole numbers from 0 on) where there are several regions; without it all is region 0.
  *
  * Outputs, with lengths in model units:
- *  - port 0: vtkPolyData, a vertex for each (point, region) with the point data of the input and the
- *    point arrays PointId (vtkIdType), RegionId (int), BoxVolume (double);
- *  - port 1: vtkPolyData, a line for each (edge, region) on all points of the input with their data;
- *    cell arrays RegionId (int), CouplingArea (double, negative where the mesh is not Delaunay or a
- *    boundary is in the way), EdgeLength (double): the box method's coefficient is their quotient;
- *  - port 2: vtkPolyData, a vertex for each (point, pair of regions that touch there) with the point
- *    data of the input and the point arrays PointId (vtkIdType), BoundaryLabels (int, 2 components:
- *    the smaller region id first, -1 for outside), BoundaryArea (double);
- *  - port 3: vtkUnstructuredGrid, empty unless GenerateBoxes is on: a VTK_POLYHEDRON for each vertex
- *    of port 0, in the same order, with cell arrays PointId, RegionId, BoxVolume and the point data
- *    of the input.
+ *  - port 0: vtkPolyData, a vertex for each (point, region) with the point data of the input and
+ *    the point arrays PointId (vtkIdType), RegionId (int), BoxVolume (double);
+ *  - port 1: vtkPolyData, a line for each (edge, region) on all points of the input with their
+ *    data; cell arrays RegionId (int), CouplingArea (double, negative where the mesh is not
+ *    Delaunay or a boundary is in the way), EdgeLength (double): the box method's coefficient is
+ *    their quotient;
+ *  - port 2: vtkPolyData, a vertex for each (point, pair of regions that touch there) with the
+ *    point data of the input and the point arrays PointId (vtkIdType), BoundaryLabels (int, 2
+ *    components: the smaller region id first, -1 for outside), BoundaryArea (double);
+ *  - port 3: vtkUnstructuredGrid, empty unless GenerateBoxes is on: a VTK_POLYHEDRON for each
+ *    vertex of port 0, in the same order, with cell arrays PointId, RegionId, BoxVolume and the
+ *    point data of the input.
  *
  * Guarantees: the boxes of a region sum up to its volume to rounding, boundary areas to the area of
  * the boundary, also where couplings are negative (signed sums; their number is reported).
@@ -36,8 +37,9 @@
  * Cost: O(n log n) on all processor cores; 180 bytes per tetrahedron, and
  * 500 more for the boxes.
  *
- * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien 1999:
- * control volumes. Filters/Core/Certificate/ControlVolumes.h and ControlPolyhedra.h are the engine.
+ * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
+ * 1999: control volumes. Filters/Core/Certificate/ControlVolumes.h and ControlPolyhedra.h are the
+ * engine.
  */
 #ifndef vtkVoronoiControlVolumes_h
 #define vtkVoronoiControlVolumes_h

@@ -3,8 +3,8 @@
  * @file AbortBehavior.h
  * @brief The part of the plugin for the ParaView GUI alone: its Abort button ends our filters.
  *
- * ParaView 5.11 has an Abort button beside its progress bar, but never enables it, and does not look
- * at the mouse while a filter runs.
+ * ParaView 5.11 has an Abort button beside its progress bar, but never enables it, and does not
+ * look at the mouse while a filter runs.
  *
  * Method:
  *  1. the sources of this plugin in the pipeline browser are observed, unless they are on a remote
@@ -12,8 +12,8 @@
  *  2. while one of them runs, the button is enabled, and at its progress events Qt handles what has
  *     arrived. Of the user's input only that for the button gets through, and no timer goes off:
  *     nothing else may change or draw the pipeline that is at work;
- *  3. a press sets the filter's flag AbortExecute. The run ends soon; then the flag is taken back, a
- *     message says what happened, and Apply can be pressed: it runs the filter again.
+ *  3. a press sets the filter's flag AbortExecute. The run ends soon; then the flag is taken back,
+ *     a message says what happened, and Apply can be pressed: it runs the filter again.
  */
 #ifndef AbortBehavior_h
 #define AbortBehavior_h
@@ -45,7 +45,9 @@ private:
   void OnStart(vtkObject* algorithm, unsigned long, void*);
   void OnProgress(vtkObject* algorithm, unsigned long, void*);
   void OnEnd(vtkObject* algorithm, unsigned long, void*);
-  /** Says that the run was aborted, and lets Apply run the filter again, its options as they are. */
+  /**
+   * Says that the run was aborted, and lets Apply run the filter again, its options as they are.
+   */
   void OfferAgain(pqPipelineSource* source, vtkAlgorithm* algorithm);
 
   QMap<vtkObject*, QPointer<pqPipelineSource>> Sources;

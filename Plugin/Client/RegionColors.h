@@ -3,16 +3,18 @@
  * @file RegionColors.h
  * @brief The part of the plugin for the ParaView GUI alone: regions have colors and names.
  *
- * ParaView takes the cell array RegionId for a quantity: it spreads a color map over its range, which
- * is empty if there is one region. The same goes for the arrays ProblemKind and RefinementFault.
+ * ParaView takes the cell array RegionId for a quantity: it spreads a color map over its range,
+ * which is empty if there is one region. The same goes for the arrays ProblemKind and
+ * RefinementFault.
  *
  * Method:
- *  1. a new color map of these arrays is one of categories, by ParaView's settings; those of problems
- *     and faults have their names. Color maps in states and in the user's own settings stay as they
- *     are;
- *  2. whenever visible data that are colored by it change, the legend is brought up to date: an entry
- *     for each region, from 0 on, so that cutting data keeps their colors; its text is the region's
- *     name in the field array RegionNames, or its number. Entries with other texts are the user's;
+ *  1. a new color map of these arrays is one of categories, by ParaView's settings; those of
+ *     problems and faults have their names. Color maps in states and in the user's own settings
+ *     stay as they are;
+ *  2. whenever visible data that are colored by it change, the legend is brought up to date: an
+ *     entry for each region, from 0 on, so that cutting data keeps their colors; its text is the
+ *     region's name in the field array RegionNames, or its number. Entries with other texts are the
+ *     user's;
  *  3. of very many regions none gets an entry, and the color map is spread over their range.
  */
 #ifndef RegionColors_h

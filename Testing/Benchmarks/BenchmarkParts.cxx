@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * What a part of a distributed tetrahedralization costs: the parts of points (random, graded, on a
- * sphere, or of a grid: grid, rotated) in one process, one after the other, with what they would send to each other counted.
+ * sphere, or of a grid: grid, rotated) in one process, one after the other, with what they would
+ * send to each other counted.
  *
  *     BenchmarkParts                          # a small case, for ctest
  *     BenchmarkParts random 1000000 1 2 4 8 27 64

@@ -6,9 +6,9 @@
  * Usage: BenchmarkStages [-n points] [-r repetitions] [-t threads] [-s stage]...
  *        BenchmarkStages --memory [-n points] [-s stage]...
  *
- * A cube with graded mesh points (1:3) goes through the stages; every measurement runs in a process of
- * its own, and starts when the input of the stage is there. With several threads there is a row for
- * as many copies with one thread each at the same time, which shows what the machine takes
+ * A cube with graded mesh points (1:3) goes through the stages; every measurement runs in a process
+ * of its own, and starts when the input of the stage is there. With several threads there is a row
+ * for as many copies with one thread each at the same time, which shows what the machine takes
  * (Measurement.h). --memory measures with n and 4 n points: the difference is free of what does not
  * grow. In both the output counts, and what the filter makes on the way.
  */

@@ -10,11 +10,11 @@
  *
  * Every measurement runs in a process of its own; the programs take turns, so that what else the
  * machine does falls on all of them. Prints the median of each, and ratios to ours. A program that
- * took longer than the limit (100 s) is not repeated, and ended when it takes twice that. It is left
- * out where its time, if it only grew with the number of points, would be above the limit.
+ * took longer than the limit (100 s) is not repeated, and ended when it takes twice that. It is
+ * left out where its time, if it only grew with the number of points, would be above the limit.
  *
- * With several threads there is a row for as many copies with one thread each at the same time, too:
- * what they lose is lost to the machine, and no number of threads can win it back.
+ * With several threads there is a row for as many copies with one thread each at the same time,
+ * too: what they lose is lost to the machine, and no number of threads can win it back.
  *
  * --run: a single measurement, in this process, for Suite.py; one line of "name value" pairs. Its
  * mesh goes to name.node and name.ele, the files of TetGen.

@@ -4,7 +4,8 @@
  * @brief Time and memory of work in a process of its own, for the benchmarks.
  *
  * The work makes its input, starts the clock, and stops it when it is done. Several copies can run
- * at the same time: what they lose is lost to the machine, and no number of threads can win it back.
+ * at the same time: what they lose is lost to the machine, and no number of threads can win it
+ * back.
  */
 #ifndef Measurement_h
 #define Measurement_h

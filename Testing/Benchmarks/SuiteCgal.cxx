@@ -5,11 +5,11 @@
  *
  *     SuiteCgal EDGE INPUT.vtp OUTPUT
  *
- * The polygons need the cell array BoundaryLabels: the triangles of each pair of regions are a patch
- * of a polyhedral complex, whose sharp edges and borders are kept. EDGE is the largest edge on them;
- * the circumradius of the regular tetrahedron with that edge is the largest one of triangles and
- * tetrahedra. Radius-edge ratio 2 and facet angle 25 degrees, the bounds that CGAL ends for; then its
- * defaults against slivers.
+ * The polygons need the cell array BoundaryLabels: the triangles of each pair of regions are a
+ * patch of a polyhedral complex, whose sharp edges and borders are kept. EDGE is the largest edge
+ * on them; the circumradius of the regular tetrahedron with that edge is the largest one of
+ * triangles and tetrahedra. Radius-edge ratio 2 and facet angle 25 degrees, the bounds that CGAL
+ * ends for; then its defaults against slivers.
  *
  * Prints one line of "name value" pairs: seconds (processor time without reading and writing),
  * megabytes (the peak until then), points and tetrahedra. The mesh goes to OUTPUT.node and

@@ -6,8 +6,8 @@
  *     SurfaceBenchmark model FILE.vtp [CRITERION [ACCURACY_ANGLE [RESOLVE [SMESH]]]]
  *     SurfaceBenchmark torus TRIANGLES NOISE [TETRAHEDRALIZE]
  *
- * model: cleans, refines and tetrahedralizes the polygons of the file. SMESH: the same polygons with
- * coincident points merged are written there, as TetGen reads them.
+ * model: cleans, refines and tetrahedralizes the polygons of the file. SMESH: the same polygons
+ * with coincident points merged are written there, as TetGen reads them.
  * torus: a torus of about so many triangles, its points moved along the normal by a smooth wave and
  * by a random part (NOISE, as a ratio of the spacing); refined, then refined again: the second time
  * nothing is left to do but the check. TETRAHEDRALIZE: 0 leaves out the stage after it.

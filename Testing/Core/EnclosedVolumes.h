@@ -9,7 +9,9 @@
 
 namespace testing_core
 {
-/** Six times the volume that the labels enclose, by region: exact for small integers as coordinates. */
+/**
+ * Six times the volume that the labels enclose, by region: exact for small integers as coordinates.
+ */
 inline std::map<cdm::Id, double> GetEnclosedSixVolumes(const cdm::TriangleMesh& surface)
 {
   std::map<cdm::Id, double> volumes;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RandomComplexes.h
- * @brief Random piecewise linear complexes for the tests: boxes cut by planes, fans of facets at one
- * edge, stacks of layers, all with labels and in any position.
+ * @brief Random piecewise linear complexes for the tests: boxes cut by planes, fans of facets at
+ * one edge, stacks of layers, all with labels and in any position.
  */
 #ifndef cdmRandomComplexes_h
 #define cdmRandomComplexes_h

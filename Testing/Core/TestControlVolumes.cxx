@@ -302,8 +302,8 @@ TEST(ControlVolumes, CertificateCountsTheSameNegativeCouplings)
 
 TEST(ControlVolumes, LinearFunctionsHaveNoNetFlux)
 {
-  // The facets of a closed polyhedron, as vectors, vanish in sum: so do the fluxes of the function x
-  // out of the box of an inner point.
+  // The facets of a closed polyhedron, as vectors, vanish in sum: so do the fluxes of the function
+  // x out of the box of an inner point.
   const TetMesh mesh = MakeHullMesh(MakeRandomPoints(800, 9));
   const ControlVolumes volumes = Compute(mesh);
   std::vector<double> flux(mesh.Points.size(), 0.0);

@@ -32,7 +32,9 @@ DelaunaySurfaceRefinerOutput MakeSurface(const PolygonSoup& soup, double edge)
   return output;
 }
 
-/** The surface of the unit cube as size^2 squares on each side: all of its cells are cospherical. */
+/**
+ * The surface of the unit cube as size^2 squares on each side: all of its cells are cospherical.
+ */
 PolygonSoup MakeGridSurface(int size)
 {
   PolygonSoup soup;

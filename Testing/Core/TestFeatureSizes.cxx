@@ -19,7 +19,9 @@ StructuralEdge MakeEdge(Id a, Id b)
   return edge;
 }
 
-/** By sampling: an upper bound of the distance, good to the square of the spacing of the samples. */
+/**
+ * By sampling: an upper bound of the distance, good to the square of the spacing of the samples.
+ */
 double SampleDistance(const Vec3& position, const Vec3& a, const Vec3& b)
 {
   double distance = std::numeric_limits<double>::infinity();

@@ -470,8 +470,8 @@ TEST(MaterialInterfaces, ABallIsRound)
     MaterialInterfacesReport report;
     const TriangleMesh reduced = Extract(grid, MakeOptions(10, true, deviation), &report);
     ExpectSound(reduced);
-    // Triangles of that deviation from a sphere have edges of sqrt(8 radius deviation) at most; here
-    // the bound adds up what many merges may have done, so that a part of it is used only.
+    // Triangles of that deviation from a sphere have edges of sqrt(8 radius deviation) at most;
+    // here the bound adds up what many merges may have done, so that a part of it is used only.
     EXPECT_LT(reduced.Triangles.size(), 12u + (smooth.Triangles.size() - 9408u) / 2u);
     EXPECT_LE(report.LargestDeviation, deviation);
     EXPECT_LE(GetLargestDistance(smooth, reduced, 1.0), report.LargestDeviation);

@@ -149,8 +149,8 @@ TEST(MeshCriteria, SmallestSpheresOfTheBorder)
   EXPECT_EQ(0, evaluate(5.0).GetCount(MeshFault::FacetSphere));
   EXPECT_EQ(0, evaluate(5.0).GetCount(MeshFault::OpenControlVolume));
   EXPECT_EQ(0, evaluate(inside).GetCount(MeshFault::EdgeSphere));
-  // The bottom edge (-4, -3), (4, -3): 3^2 + height^2 against 4^2; the two others, with the midpoint
-  // (2, 1): 5 + height^2 against 20.
+  // The bottom edge (-4, -3), (4, -3): 3^2 + height^2 against 4^2; the two others, with the
+  // midpoint (2, 1): 5 + height^2 against 20.
   EXPECT_EQ(0, evaluate(3.9).GetCount(MeshFault::EdgeSphere));
   EXPECT_EQ(2, evaluate(3.8).GetCount(MeshFault::EdgeSphere));
   EXPECT_EQ(2, evaluate(2.7).GetCount(MeshFault::EdgeSphere));

@@ -187,8 +187,8 @@ TEST(MeshPointGenerator, PointsLieStrictlyInsideAndClearOfTheBoundary)
     std::mt19937_64 generator(seed);
     const TriangleMesh surface =
       Triangulate(MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, 3, 0.4));
-    // The cells are convex: a point is inside of one strictly if it lies on the inner side of all of
-    // its triangles, exactly.
+    // The cells are convex: a point is inside of one strictly if it lies on the inner side of all
+    // of its triangles, exactly.
     const auto isInside = [&surface](const Vec3& p, Id region)
     {
       for (std::size_t t = 0; t < surface.Triangles.size(); ++t)

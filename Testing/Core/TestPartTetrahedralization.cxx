@@ -89,7 +89,9 @@ struct Traffic
   bool ComparesStars = false;
 };
 
-/** Lets parts talk to each other in turn; checks what each has, and puts together what each owns. */
+/**
+ * Lets parts talk to each other in turn; checks what each has, and puts together what each owns.
+ */
 Whole MakeParts(const std::vector<Vec3>& points, const std::vector<int>& partOf, int numberOfParts,
   const std::vector<Box>& cells, const Whole& expected, Traffic& traffic)
 {

@@ -340,8 +340,8 @@ TEST(PolygonTriangulation, RandomSimplePolygonsOnAGrid)
 
 TEST(PolygonTriangulation, VerticesOnALineButForRoundingMakeNoNeedles)
 {
-  // A layer over two lines, as thick as these are high: ten vertices lie on one line, on both sides of
-  // the layer, and turned in space none of them exactly.
+  // A layer over two lines, as thick as these are high: ten vertices lie on one line, on both sides
+  // of the layer, and turned in space none of them exactly.
   const double outline[][2] = { { 0.0, 0.15 }, { 0.02, 0.15 }, { 0.12, 0.35 }, { 0.28, 0.35 },
     { 0.38, 0.15 }, { 0.42, 0.15 }, { 0.52, 0.35 }, { 0.68, 0.35 }, { 0.78, 0.15 }, { 0.8, 0.15 },
     { 0.8, 0.35 }, { 0.78, 0.35 }, { 0.68, 0.55 }, { 0.52, 0.55 }, { 0.42, 0.35 }, { 0.38, 0.35 },

@@ -20,8 +20,8 @@ Vec3 MakeDirection(double degrees)
 }
 
 /**
- * Two facets at the edge from 0 to 1, with the apexes 2 and 3 far away from the edge, and a point of
- * its own each in the middle, 4 and 5.
+ * Two facets at the edge from 0 to 1, with the apexes 2 and 3 far away from the edge, and a point
+ * of its own each in the middle, 4 and 5.
  */
 SharpAngles MakeFacets(double angle)
 {

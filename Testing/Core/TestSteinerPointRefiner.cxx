@@ -552,8 +552,8 @@ TEST(SteinerPointRefiner, KeepsSheetsOfTheBoundaryGiven)
 }
 
 /**
- * A needle in the lid of a box, tilted by a ten-thousandth: small triangles at its ends bend by no more
- * than rounded coordinates do, but the edges stay, and with them the facets.
+ * A needle in the lid of a box, tilted by a ten-thousandth: small triangles at its ends bend by no
+ * more than rounded coordinates do, but the edges stay, and with them the facets.
  */
 TEST(SteinerPointRefiner, NeedlesKeepTheirFacets)
 {

@@ -32,7 +32,9 @@ TriangleMesh Triangulate(const PolygonSoup& soup)
   return output.Surface;
 }
 
-/** Refines by a criterion, meshes, and lets the checker judge. Returns the number of points added. */
+/**
+ * Refines by a criterion, meshes, and lets the checker judge. Returns the number of points added.
+ */
 std::size_t RefineAndCheck(const TriangleMesh& surface, DelaunaySurfaceRefinerOptions options)
 {
   DelaunaySurfaceRefinerInput input;
@@ -343,9 +345,9 @@ TEST(SurfaceRefinerShapes, FansAtOneEdgeAndStarsAtOneVertex)
 }
 
 /**
- * Rough ellipsoids whose edges are smooth at the accuracy angle: in facets that bend, points that mend
- * one triangle disturb the next. It has to end all the same, and to need fewer points than if all
- * edges were structural.
+ * Rough ellipsoids whose edges are smooth at the accuracy angle: in facets that bend, points that
+ * mend one triangle disturb the next. It has to end all the same, and to need fewer points than if
+ * all edges were structural.
  */
 TEST(SurfaceRefinerShapes, CurvedFacets)
 {
@@ -441,8 +443,8 @@ TEST(SurfaceRefinerShapes, SurfacesAHairApart)
 }
 
 /**
- * A lower bound for Criterion 3.2: no piece of a structural edge may have a point of the input in its
- * diametral sphere, and pieces as long as that allows, one after the other, are the fewest.
+ * A lower bound for Criterion 3.2: no piece of a structural edge may have a point of the input in
+ * its diametral sphere, and pieces as long as that allows, one after the other, are the fewest.
  */
 TEST(SurfaceRefinerShapes, NotManyMorePointsThanNeeded)
 {

@@ -34,7 +34,9 @@ TriangleMesh MakeBox(const Vec3& size)
   return surface;
 }
 
-/** A tube of so many facets along the z axis: radius 1, length 6; point 4 i + 2 * isOuter + isTop. */
+/**
+ * A tube of so many facets along the z axis: radius 1, length 6; point 4 i + 2 * isOuter + isTop.
+ */
 TriangleMesh MakeTube(Id count, double thickness)
 {
   TriangleMesh surface;

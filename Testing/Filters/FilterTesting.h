@@ -3,8 +3,8 @@
  * @file FilterTesting.h
  * @brief What the tests of the filters share: small polygon inputs, and an ear for their events.
  *
- * All inputs carry the point array Linear, a linear function of the position (so its interpolation is
- * known), and the cell array PolygonId, the cell's own id.
+ * All inputs carry the point array Linear, a linear function of the position (so its interpolation
+ * is known), and the cell array PolygonId, the cell's own id.
  */
 #ifndef FilterTesting_h
 #define FilterTesting_h

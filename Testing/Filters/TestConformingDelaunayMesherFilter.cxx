@@ -111,7 +111,9 @@ TEST(ConformingDelaunayMesherFilter, MeshesTurnedBoxesWithShortEdges)
   ExpectTurnedBoxes(0.4);
 }
 
-/** Of coordinates in single precision: the tetrahedra peeled off have a volume, 1e-10 of the whole. */
+/**
+ * Of coordinates in single precision: the tetrahedra peeled off have a volume, 1e-10 of the whole.
+ */
 TEST(ConformingDelaunayMesherFilter, PeelingLeavesAValidMesh)
 {
   vtkNew<vtkSuperquadricSource> source;
@@ -352,7 +354,7 @@ TEST(ConformingDelaunayMesherFilter, AddsSteinerPoints)
         EXPECT_LE(vtkMath::Distance2BetweenPoints(p->GetPoint(ends[0]), p->GetPoint(ends[1])),
           0.3 * 0.3 * (1.0 + 1e-12));
       }
-          }
+    }
   }
 }
 

@@ -63,8 +63,8 @@ TEST(DiffusionExample, StacksOfTheThesis)
 TEST(DiffusionExample, CotangentSums)
 {
   // Crit. 3.3 fails at the diagonal of every cube of T6. In Fig. 3.6 that is edge (3, 4), with two
-  // right angles and twice the cotangent -1 / sqrt(2) at opposite edges of the length sqrt(2) h: the
-  // entry of the matrix is minus their sum over six.
+  // right angles and twice the cotangent -1 / sqrt(2) at opposite edges of the length sqrt(2) h:
+  // the entry of the matrix is minus their sum over six.
   const System cube = AssembleElements(MakeStack(Stack::T6, 1));
   EXPECT_NEAR(Spacing / 3.0, cube.Stiffness.coeff(1, 6), 1e-14);
   EXPECT_GE(GetFieldValue(MakeStack(Stack::T6, 8), "NegativeCotangentSums"), 512.0);
@@ -74,7 +74,8 @@ TEST(DiffusionExample, CotangentSums)
 
 TEST(DiffusionExample, ElementMatricesOfFigure310)
 {
-  // The points of Fig. 3.9 in units of half a cube's edge; 6 is the middle point, shifted towards 10.
+  // The points of Fig. 3.9 in units of half a cube's edge; 6 is the middle point, shifted towards
+  // 10.
   const auto at = [](double x, double y, double z)
   { return Eigen::Vector3d(0.5 * Spacing * x, 0.5 * Spacing * y, 0.5 * Spacing * z); };
   const Eigen::Vector3d p6 = at(3, 2, 2);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The NMOS transistor of the thesis (section 7.4, Figures 7.21 to 7.23): a gate oxide of 5 nm over a
- * channel of 0.18 um x 0.18 um between field oxides, all under 30 nm of oxide. Its mesh there has
+ * The NMOS transistor of the thesis (section 7.4, Figures 7.21 to 7.23): a gate oxide of 5 nm over
+ * a channel of 0.18 um x 0.18 um between field oxides, all under 30 nm of oxide. Its mesh there has
  * 134374 tetrahedra. With layers of points in the gate oxide and below it ours has to be smaller,
  * with a clean certificate, and fine in the channel.
  */

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * A solver that believes the control volumes: steady drift and diffusion of one carrier in the bulk of
- * the MOS transistor, between contacts at both ends of its length, where everything is a function of
- * x alone. Scaled to the thermal voltage, with unit mobility:
+ * A solver that believes the control volumes: steady drift and diffusion of one carrier in the bulk
+ * of the MOS transistor, between contacts at both ends of its length, where everything is a
+ * function of x alone. Scaled to the thermal voltage, with unit mobility:
  *   -psi'' = rho,   J = n' - n psi',   J' = 0.
  * The potential of a constant charge is a parabola; n = exp(psi) (C + J int exp(-psi) dx).
  */

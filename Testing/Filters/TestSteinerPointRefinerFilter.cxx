@@ -15,7 +15,9 @@ using namespace testing_filters;
 
 namespace
 {
-/** Two boxes that share a side, with mesh points, meshed up to stage 3; its boundary is output 1. */
+/**
+ * Two boxes that share a side, with mesh points, meshed up to stage 3; its boundary is output 1.
+ */
 vtkSmartPointer<vtkAdvancingFrontTetrahedralizer> MakeMesher(const std::vector<Point>& points = {})
 {
   vtkNew<vtkBoundaryTriangulator> triangulator;

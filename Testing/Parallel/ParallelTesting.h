@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ParallelTesting.h
- * @brief What the tests on several processes share: the main program, and meshes as sets that do not
- * depend on who has what.
+ * @brief What the tests on several processes share: the main program, and meshes as sets that do
+ * not depend on who has what.
  *
  * All processes run the same tests. Those of one process alone (expected results, small enough for
  * each) must not throw or leave a test while the others wait: expectations, not assertions.

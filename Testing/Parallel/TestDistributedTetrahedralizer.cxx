@@ -118,7 +118,9 @@ vtkSmartPointer<vtkPolyData> MakePiece(vtkPolyData* whole, Sharing sharing)
   return piece;
 }
 
-/** The other data set's tetrahedra, each owned by one process; ghosts, points and arrays as well. */
+/**
+ * The other data set's tetrahedra, each owned by one process; ghosts, points and arrays as well.
+ */
 void ExpectSameAsSerial(vtkPolyData* whole, vtkPolyData* wholeMeshPoints, Sharing sharing)
 {
   SCOPED_TRACE("sharing " + std::to_string(static_cast<int>(sharing)));

@@ -3,9 +3,9 @@
  * @file RawVector.h
  * @brief A std::vector of plain data whose new elements have no value, on large pages of memory.
  *
- * Setting hundreds of megabytes to zero on one thread, to be overwritten by several, takes as long as
- * the rest of their work; and random access to them on pages of 4 KB misses the table of pages most
- * of the time. Where the system can, large arrays are put on pages of 2 MB.
+ * Setting hundreds of megabytes to zero on one thread, to be overwritten by several, takes as long
+ * as the rest of their work; and random access to them on pages of 4 KB misses the table of pages
+ * most of the time. Where the system can, large arrays are put on pages of 2 MB.
  */
 #ifndef cdmRawVector_h
 #define cdmRawVector_h

@@ -3,13 +3,14 @@
  * @file ControlPolyhedra.h
  * @brief The boxes of the box method as polyhedra, to look at.
  *
- * Method (thesis 3.2.1, Fig. 3.4 and 5.1): the dual of the mesh. Around each edge, in each region, the
- * circumcenters of its tetrahedra form a polygon that separates the boxes of its ends; where it
+ * Method (thesis 3.2.1, Fig. 3.4 and 5.1): the dual of the mesh. Around each edge, in each region,
+ * the circumcenters of its tetrahedra form a polygon that separates the boxes of its ends; where it
  * meets an outer or interface facet it is closed by the circumcenters of these facets and the
- * midpoint of the edge. The boxes of points on such facets are closed by polygons of the circumcenters
- * of the facets around them, the midpoints of edges where these facets bend, and the point itself;
- * where facets go on in one plane, midpoints are left out. Circumcenters that coincide, as an exact
- * sign tells, are one point; polygons that shrink to fewer than three points are left out.
+ * midpoint of the edge. The boxes of points on such facets are closed by polygons of the
+ * circumcenters of the facets around them, the midpoints of edges where these facets bend, and the
+ * point itself; where facets go on in one plane, midpoints are left out. Circumcenters that
+ * coincide, as an exact sign tells, are one point; polygons that shrink to fewer than three points
+ * are left out.
  *
  * Guarantees: each polyhedron is closed, its polygons turned outwards; the volume within is that of
  * ControlBox. On a Delaunay mesh without negative couplings the polyhedra are the Voronoi boxes

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ControlVolumes.h
- * @brief What the box method needs of a mesh: Voronoi boxes clipped to regions, and their couplings.
+ * @brief What the box method needs of a mesh: Voronoi boxes clipped to regions, and their
+ * couplings.
  *
  * Method (thesis 3.2.1):
  *  1. for each tetrahedron and each of its edges the signed area of the Voronoi facet within
@@ -12,9 +13,9 @@
  *  4. for each outer or interface facet the parts of its area that are nearest to its vertices: the
  *     boundary areas of (point, pair of regions);
  *
- * Guarantees: the boxes of a region sum up to its volume to rounding, its boundary areas to the area
- * of its boundary, on every mesh; areas are signed, so that this holds where couplings are negative
- * too (those are counted). Deterministic for any number of threads.
+ * Guarantees: the boxes of a region sum up to its volume to rounding, its boundary areas to the
+ * area of its boundary, on every mesh; areas are signed, so that this holds where couplings are
+ * negative too (those are counted). Deterministic for any number of threads.
  * Failure: InvalidInput names tetrahedra that are inverted or flat.
  * Cost: O(n log n); 160 bytes per tetrahedron.
  * References: P. Fleischmann, thesis, 3.2.1; R. H. Macneal, "An asymmetrical finite difference

@@ -107,8 +107,8 @@ Status CheckTetMesh(const TetMesh& mesh, const TriangleMesh* boundary,
   const ExecutionContext& context, MeshCheckReport& report, int numberOfThreads = 1);
 
 /**
- * The invariants of TetMesh.h, one tetrahedron by itself: InvalidInput names those that are inverted,
- * flat, or have wrong points or neighbors. What stages ask for that change a mesh.
+ * The invariants of TetMesh.h, one tetrahedron by itself: InvalidInput names those that are
+ * inverted, flat, or have wrong points or neighbors. What stages ask for that change a mesh.
  */
 Status CheckMeshInvariants(const TetMesh& mesh, int numberOfThreads = 1);
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshCriteria.h
- * @brief The certificate: what a tetrahedral mesh is worth to a box-method or finite element solver.
+ * @brief The certificate: what a tetrahedral mesh is worth to a box-method or finite element
+ * solver.
  *
  * Takes any tetrahedra, valid or not, and needs no neighbours. Method:
  *  1. orientation (exact), shape (thesis 3.1) and Crit. 5.3 of every tetrahedron;
- *  2. facets, gathered at their lowest point: more than two tetrahedra or two on one side; Crit. 5.2
- *     where no tetrahedron at the facet is Delaunay (otherwise it holds); outer and interface
+ *  2. facets, gathered at their lowest point: more than two tetrahedra or two on one side; Crit.
+ *     5.2 where no tetrahedron at the facet is Delaunay (otherwise it holds); outer and interface
  *     facets: Crit. 3.1, and whether the circumcenter of a tetrahedron lies beyond (which opens
  *     control volumes, Fig. 3.4), that is whether the facet's smallest sphere holds its fourth
  *     vertex;

@@ -5,21 +5,21 @@
  * of every facet.
  *
  * Method:
- *  1. vertices are the points in the order of a Hilbert curve. Those of a block of a rectilinear grid
- *     get their tetrahedra at once (GridBlock.h); the others are inserted in rounds, each about eight
- *     times larger than the one before, drawn by a hash of the vertex, and along the curve within a
- *     round;
- *  2. a vertex is located by a walk from the last one; the tetrahedra whose sphere holds it, and the
- *     facets of the hull that it sees, are removed, and the hole is filled with the cone from the
- *     vertex (VertexInsertion.h). Beyond each facet of the hull lies a tetrahedron with the vertex
- *     at infinity;
+ *  1. vertices are the points in the order of a Hilbert curve. Those of a block of a rectilinear
+ *     grid get their tetrahedra at once (GridBlock.h); the others are inserted in rounds, each
+ *     about eight times larger than the one before, drawn by a hash of the vertex, and along the
+ *     curve within a round;
+ *  2. a vertex is located by a walk from the last one; the tetrahedra whose sphere holds it, and
+ *     the facets of the hull that it sees, are removed, and the hole is filled with the cone from
+ *     the vertex (VertexInsertion.h). Beyond each facet of the hull lies a tetrahedron with the
+ *     vertex at infinity;
  *  3. a sphere is tested in single precision with a bound of its error, then in double precision,
  *     then exactly. Points on one sphere are told apart as if each had been pulled into it
  *     infinitely little, the lowest numbered one most: that gives the cells of the Delaunay
  *     subdivision the tetrahedra of the pulling rule, and none is flat;
  *  4. threads take parts of the curve. A thread touches only tetrahedra with all vertices in its
- *     part, so that none waits for another; vertices that need more are left for the next cut of the
- *     curve, and the few that remain for one thread at the end of the round.
+ *     part, so that none waits for another; vertices that need more are left for the next cut of
+ *     the curve, and the few that remain for one thread at the end of the round.
  *
  * Guarantees: the set of tetrahedra depends on the points and their numbers only; all have positive
  * orientation and spheres empty of all points (exact).
@@ -62,8 +62,9 @@ struct DelaunayTetrahedralization
 /**
  * Points are distinct, finite, and follow a Hilbert curve (SortAlongHilbertCurve()); numbers are
  * distinct and decide the order of pulling. The block of a grid among them, if there is one
- * (FindGridBlock()), saves time and changes nothing else. InvalidInput if there are fewer than four points, or all
- * of them lie on a line or in a plane, and for more than 2^29 tetrahedra; Aborted leaves nothing.
+ * (FindGridBlock()), saves time and changes nothing else. InvalidInput if there are fewer than four
+ * points, or all of them lie on a line or in a plane, and for more than 2^29 tetrahedra; Aborted
+ * leaves nothing.
  */
 Status BuildDelaunayTetrahedralization(const RawVector<Vec3>& points,
   const std::vector<Id>& numbers, const GridBlock& block, int numberOfThreads,

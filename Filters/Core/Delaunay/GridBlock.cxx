@@ -44,7 +44,9 @@ bool HasLines(const RawVector<Vec3>& points)
   return true;
 }
 
-/** The lines of an axis that have many points: numbers in ascending order, and each point's or NoId. */
+/**
+ * The lines of an axis that have many points: numbers in ascending order, and each point's or NoId.
+ */
 struct Lines
 {
   std::vector<Id> OfPoints;
@@ -275,7 +277,9 @@ struct BoxPattern
   signed char Facets[12];
 };
 
-/** The diagonal of a face across an axis joins corners that differ in one of its axes, or do not. */
+/**
+ * The diagonal of a face across an axis joins corners that differ in one of its axes, or do not.
+ */
 inline int GetDiagonal(int axis, int corner)
 {
   return ((corner >> ((axis + 1) % 3)) ^ (corner >> ((axis + 2) % 3))) & 1;

@@ -14,15 +14,16 @@
  *  3. as long as a point is missing in the lattice, the line that misses most of its points is
  *     dropped. Points that are not in the block in the end are left to be inserted;
  *  4. six tetrahedra for each box, from a table of the 64 ways to pull its corners: the lowest one
- *     decides the apex, and the lowest ones of the three faces opposite to it their diagonals. Beyond
- *     the triangles of the hull lie tetrahedra with the vertex at infinity.
+ *     decides the apex, and the lowest ones of the three faces opposite to it their diagonals.
+ *     Beyond the triangles of the hull lie tetrahedra with the vertex at infinity.
  *
- * Guarantees: the tetrahedra are those of the pulling rule (thesis 6.4.3, DelaunayTetrahedralization.h),
- * for any number of threads in the same places.
- * Failure: no block, if it would have less than an eighth of the points: a few points that are missing
- * here and there in a large grid leave none.
- * Cost: O(n). Beside the insertion of the points, which takes 3 to 7 us for each: 0.1 us per point to
- * find a block or that there is none, nothing where there are no lines, and 0.4 us for its tetrahedra.
+ * Guarantees: the tetrahedra are those of the pulling rule (thesis 6.4.3,
+ * DelaunayTetrahedralization.h), for any number of threads in the same places.
+ * Failure: no block, if it would have less than an eighth of the points: a few points that are
+ * missing here and there in a large grid leave none.
+ * Cost: O(n). Beside the insertion of the points, which takes 3 to 7 us for each: 0.1 us per point
+ * to find a block or that there is none, nothing where there are no lines, and 0.4 us for its
+ * tetrahedra.
  */
 #ifndef cdmGridBlock_h
 #define cdmGridBlock_h

@@ -7,8 +7,9 @@
  *  1. triangles of the surface are facets of tetrahedra; tetrahedra that share another facet belong
  *     together (thesis, Lemma 6.1: the front stops at the surface);
  *  2. what borders on a side of a triangle has the region of that side;
- *  3. the rest hears it from parts that have the same tetrahedra, as often as something new is known.
- *     Every enclosed space borders on the surface: what is not known in the end lies outside.
+ *  3. the rest hears it from parts that have the same tetrahedra, as often as something new is
+ *     known. Every enclosed space borders on the surface: what is not known in the end lies
+ *     outside.
  *
  * Guarantees: the regions are those that the front of AdvancingFrontTetrahedralizer.h reaches.
  * Failure: InvalidInput names triangles that are no facets of the mesh, and those where regions
@@ -34,8 +35,8 @@ public:
   /**
    * @param mesh with neighbors; its points are those of the part, of which numberOfOwnPoints come
    * first: their tetrahedra are all there
-   * @param triangles of the surface, all that have three points of the part; and the regions on their
-   * sides
+   * @param triangles of the surface, all that have three points of the part; and the regions on
+   * their sides
    */
   PartRegions(const TetMesh& mesh, Id numberOfOwnPoints, const std::vector<TriangleIds>& triangles,
     const std::vector<RegionPair>& regions);

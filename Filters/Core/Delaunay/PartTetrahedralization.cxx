@@ -25,7 +25,10 @@ namespace
 /** Points of a block, and by how much of its longest side its box is enlarged for the halo. */
 constexpr Id BlockSize = 32;
 constexpr double HaloRatio = 0.75;
-/** Points of another part in the box of a block, at most: where they are much denser, few are needed. */
+/**
+ * Points of another part in the box of a block, at most: where they are much denser, few are
+ * needed.
+ */
 constexpr std::size_t LargestHalo = 256;
 /** Points in the answer to one query: twice as many each round, so that there are few rounds. */
 constexpr std::size_t FirstAnswerSize = 8;
@@ -37,7 +40,9 @@ constexpr int LastDoubling = 20;
 constexpr std::size_t LargestWork = 64;
 /** Tetrahedra at a point whose neighbors are looked at for a tetrahedron that is not known. */
 constexpr Id LargestStar = 64;
-/** How often the context is asked, in tetrahedra or queries: each may have to look at many points. */
+/**
+ * How often the context is asked, in tetrahedra or queries: each may have to look at many points.
+ */
 constexpr std::size_t ReportInterval = 64;
 constexpr const char* Activity = "Completing the tetrahedra between parts";
 
@@ -594,7 +599,8 @@ Status PartTetrahedralization::Update(int numberOfThreads, const ExecutionContex
       : Status();
   }
 
-  // The points that take part, in the order of their numbers: those of the halo follow the own ones.
+  // The points that take part, in the order of their numbers: those of the halo follow the own
+  // ones.
   std::vector<Id> points;
   for (Id i = 0; i < static_cast<Id>(this->Points.size()); ++i)
   {

@@ -3,20 +3,21 @@
  * @file PartTetrahedralization.h
  * @brief One part of a Delaunay tetrahedralization whose points are spread over several parts.
  *
- * The tetrahedra of the pulling rule depend on the points and their numbers only. So each part makes
- * all tetrahedra at its own points, knowing as many of the other points as these need; the parts fit
- * without looking at each other. How points travel between parts is left to the caller.
+ * The tetrahedra of the pulling rule depend on the points and their numbers only. So each part
+ * makes all tetrahedra at its own points, knowing as many of the other points as these need; the
+ * parts fit without looking at each other. How points travel between parts is left to the caller.
  *
  * Method:
- *  1. halo: small blocks of own points have boxes; enlarged by their size, they are asked of the parts
- *     whose points they may hold, and answered with these points unless they are very many;
+ *  1. halo: small blocks of own points have boxes; enlarged by their size, they are asked of the
+ *     parts whose points they may hold, and answered with these points unless they are very many;
  *  2. tetrahedralize all points known. A tetrahedron at an own point is final if no point of any
  *     part is in conflict with it: none lies inside of its sphere, with points on the sphere told
- *     apart by the pulling rule (PulledSphere.h), so none has to be looked at twice. That is certain
- *     if its ball lies in the own cell of space or in an enlarged box of one of its points, or does
- *     not meet the bounds of the other parts. Facets of the hull are final if no point lies beyond;
- *  3. where it is not certain the other parts are asked; each answers with the points in conflict, a
- *     few that are nearest to an own point of the tetrahedron. No answer makes it final;
+ *     apart by the pulling rule (PulledSphere.h), so none has to be looked at twice. That is
+ *     certain if its ball lies in the own cell of space or in an enlarged box of one of its points,
+ *     or does not meet the bounds of the other parts. Facets of the hull are final if no point lies
+ *     beyond;
+ *  3. where it is not certain the other parts are asked; each answers with the points in conflict,
+ *     a few that are nearest to an own point of the tetrahedron. No answer makes it final;
  *  4. otherwise the tetrahedron is not Delaunay. In the next round the own points of all such ones,
  *     the halo and the new points are tetrahedralized, O(surface) of them: of its tetrahedra those
  *     are right that hold a new point and are not in conflict with an own point, and only they can
@@ -25,19 +26,21 @@
  *     conflicts would take O(n^2). Parts then compare stars instead of spheres: each makes all
  *     tetrahedra of the points it knows, and asks those that have a point of a tetrahedron whether
  *     they have this tetrahedron too. If not, they learn its points, or answer with points in
- *     conflict: some are among the neighbors of each of its points. Stars that agree are right: they
- *     make one complex, locally Delaunay at all of its facets, and connected, as all parts know the
- *     same first points.
+ *     conflict: some are among the neighbors of each of its points. Stars that agree are right:
+ *     they make one complex, locally Delaunay at all of its facets, and connected, as all parts
+ *     know the same first points.
  * The star of an own point is then closed, with all of its tetrahedra Delaunay: it is the point's
  * star in the tetrahedralization of all points. A tetrahedron belongs to the part with its lowest
  * numbered point; it is the same in all parts that have one of its points.
  *
- * Guarantees: the tetrahedra at the points of all parts are those of BuildDelaunayTetrahedralization()
- * for all points, whatever the parts are; all decisions are exact.
+ * Guarantees: the tetrahedra at the points of all parts are those of
+ * BuildDelaunayTetrahedralization() for all points, whatever the parts are; all decisions are
+ * exact.
  * Cost: O(n log n) for the n own points and O(halo) per round, of which there are two or three for
- * usual distributions. 70 bytes per tetrahedron of the part at the peak, 16 of them stay. Where stars
- * are compared O(n log n) for own points and halo per round, and the part that has a point has all
- * others that it shares tetrahedra with: for points exactly on one sphere these are all of them.
+ * usual distributions. 70 bytes per tetrahedron of the part at the peak, 16 of them stay. Where
+ * stars are compared O(n log n) for own points and halo per round, and the part that has a point
+ * has all others that it shares tetrahedra with: for points exactly on one sphere these are all of
+ * them.
  *
  * References: R. Shewchuk, "Star splaying", 2005, doi:10.1145/1064092.1064129 (stars that are
  * completed one by one agree, and are right then: step 5); D. Funke, P. Sanders, "Parallel d-D
@@ -77,8 +80,8 @@ struct NumberedPoint
 struct ConflictQuery
 {
   /**
-   * Of a positive tetrahedron; or those of a facet, counter-clockwise seen from outside, and the apex
-   * of its tetrahedron, which decides about points in the plane of the facet.
+   * Of a positive tetrahedron; or those of a facet, counter-clockwise seen from outside, and the
+   * apex of its tetrahedron, which decides about points in the plane of the facet.
    */
   std::array<Vec3, 4> Vertices;
   std::array<std::int64_t, 4> Numbers;

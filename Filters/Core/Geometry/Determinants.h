@@ -3,9 +3,9 @@
  * @file Determinants.h
  * @brief The determinants behind the predicates in floating point, with bounds of their errors.
  *
- * Filters of the exact predicates: Predicates.h decides what these leave open. The bounds hold in any
- * binary floating-point type; the products of the permanents are bounded by those of the largest
- * differences, which costs a third of the permanents themselves.
+ * Filters of the exact predicates: Predicates.h decides what these leave open. The bounds hold in
+ * any binary floating-point type; the products of the permanents are bounded by those of the
+ * largest differences, which costs a third of the permanents themselves.
  *
  * Powers of points have the sign of the distance from the sphere: negative inside.
  *
@@ -126,8 +126,8 @@ inline Determinant<Real> GetDiametralPower(const Vec3& a, const Vec3& b, const V
 }
 
 /**
- * Power of p of the smallest sphere through a, b and c, times the square of twice their area. With a
- * as origin and n = u x v: |n|^2 |p|^2 - p (n x (|v|^2 u - |u|^2 v)).
+ * Power of p of the smallest sphere through a, b and c, times the square of twice their area. With
+ * a as origin and n = u x v: |n|^2 |p|^2 - p (n x (|v|^2 u - |u|^2 v)).
  */
 template <typename Real>
 inline Determinant<Real> GetEquatorialPower(
@@ -153,7 +153,8 @@ inline Determinant<Real> GetEquatorialPower(
   const Real tz = vv * uz - uu * vz;
   const Real value = (nx * nx + ny * ny + nz * nz) * pp -
     (px * (ny * tz - nz * ty) + py * (nz * tx - nx * tz) + pz * (nx * ty - ny * tx));
-  // Each of the two terms is off by less than 30 roundings of the products of lengths that bound it.
+  // Each of the two terms is off by less than 30 roundings of the products of lengths that bound
+  // it.
   constexpr Real Unit = 64 * (std::numeric_limits<Real>::epsilon() / 2);
   const Real bound = Unit * uu * vv * (pp + std::sqrt(pp) * (std::sqrt(uu) + std::sqrt(vv)));
   return { value, bound };

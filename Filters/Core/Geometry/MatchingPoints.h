@@ -33,8 +33,8 @@ inline Vec3 SnapToCoordinates(Vec3 position, const Vec3& model, double size)
 }
 
 /**
- * Two points that match across a narrow gap leave the pieces at them alone only if they differ along
- * the gap by less than its squared width over the size of the pieces. Where that is less than
+ * Two points that match across a narrow gap leave the pieces at them alone only if they differ
+ * along the gap by less than its squared width over the size of the pieces. Where that is less than
  * rounding leaves, one of the doubles next to the position is taken.
  * @param getOffset distance from the model along the gap, in extended precision
  * @param range at most so many units in the last place are gone from the position

@@ -232,8 +232,8 @@ public:
   }
 
   /**
-   * Position of the third difference relative to the smallest sphere through the origin and the first
-   * two; false if neither the numbers are small nor the three in a plane.
+   * Position of the third difference relative to the smallest sphere through the origin and the
+   * first two; false if neither the numbers are small nor the three in a plane.
    */
   bool GetInEquatorialSphere(int& sign)
   {
@@ -385,9 +385,9 @@ bool AreCornersOfBox(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d,
 }
 
 /**
- * What the filter of InEquatorialSphere() cannot tell: most often points in the plane of the triangle,
- * on its circumcircle. Their tests by multiple precision numbers were half of the time of refining
- * surfaces made of rectangles.
+ * What the filter of InEquatorialSphere() cannot tell: most often points in the plane of the
+ * triangle, on its circumcircle. Their tests by multiple precision numbers were half of the time of
+ * refining surfaces made of rectangles.
  */
 int ExactInEquatorialSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p)
 {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PulledSphere.h
- * @brief Inside or outside of a sphere that a point lies on: the pulling rule for cospherical points.
+ * @brief Inside or outside of a sphere that a point lies on: the pulling rule for cospherical
+ * points.
  *
  * Points on one sphere are told apart as if each had been pulled into it infinitely little, the
  * lowest numbered one most: the tetrahedra are then those of the pulling rule, and none is flat.

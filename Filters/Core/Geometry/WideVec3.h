@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WideVec3.h
- * @brief Vectors in the widest floating-point type, for what double leaves of almost equal products.
+ * @brief Vectors in the widest floating-point type, for what double leaves of almost equal
+ * products.
  *
  * The additional bits are what is left of the height of a needle over its long edge, for example.
  * They also keep the products of very small or large coordinates from leaving the range of the

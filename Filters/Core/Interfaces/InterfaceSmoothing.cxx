@@ -167,9 +167,9 @@ void FindPulls(const FaceNet& net, const IdLists& guides, const std::vector<Vec3
 }
 
 /**
- * Of the filter as a sum of Chebyshev polynomials: a wave that is pulled to the middle by k times its
- * height keeps exp(-(k / limit)^2) of it, smoothly from all to nothing, so that edges do not make
- * waves beside them. limit: of a wave of this length along one axis of a surface.
+ * Of the filter as a sum of Chebyshev polynomials: a wave that is pulled to the middle by k times
+ * its height keeps exp(-(k / limit)^2) of it, smoothly from all to nothing, so that edges do not
+ * make waves beside them. limit: of a wave of this length along one axis of a surface.
  */
 std::vector<double> FindWeights(double length)
 {
@@ -270,9 +270,9 @@ bool Relax(const FaceNet& net, const IdLists& guides, const ExecutionContext& co
 }
 
 /**
- * The places after the moves, within the limits. Moves are rounded down: far from what was rough they
- * fade away, but never end, and the mesher would have to tell surfaces that are flat from those that
- * are flat to twelve digits.
+ * The places after the moves, within the limits. Moves are rounded down: far from what was rough
+ * they fade away, but never end, and the mesher would have to tell surfaces that are flat from
+ * those that are flat to twelve digits.
  */
 void Move(const FaceNet& net, const std::vector<Vec3>& moves, std::vector<Vec3>& places)
 {

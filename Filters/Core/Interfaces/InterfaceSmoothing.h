@@ -6,13 +6,13 @@
  * Method (thesis 3.5.3, a low pass filter):
  *  1. the net of squares goes through a windowed low pass filter (Taubin): waves shorter than a
  *     length vanish, longer ones, and so volumes, stay. For points on junctions (edges that are not
- *     in two squares, or where an interface meets the border of the grid) the wave is that along the
- *     junction, for others that along the surface; ends of junctions, places where three or more of
- *     them meet, and places where a region touches itself stay;
- *  2. no point leaves the middle half cells around it: 0.49 of the edges beside it, and 0.25 along an
- *     axis where a cell beside it has other regions on both sides, so that layers and wires of one
- *     cell keep half of their thickness. Points of the border of the grid stay in its planes and
- *     edges;
+ *     in two squares, or where an interface meets the border of the grid) the wave is that along
+ *     the junction, for others that along the surface; ends of junctions, places where three or
+ *     more of them meet, and places where a region touches itself stay;
+ *  2. no point leaves the middle half cells around it: 0.49 of the edges beside it, and 0.25 along
+ *     an axis where a cell beside it has other regions on both sides, so that layers and wires of
+ *     one cell keep half of their thickness. Points of the border of the grid stay in its planes
+ *     and edges;
  *  3. points in the middle half cells make squares that can always be divided into two triangles
  *     which turn as the square did, seen along its axis, so nothing flips. What is left are
  *     intersections: all are found, exactly, and the points of triangles that intersect go half of
@@ -64,8 +64,8 @@ void TriangulateFaces(
   const FaceNet& net, const std::vector<Vec3>& places, std::vector<TriangleIds>& triangles);
 
 /**
- * Moves the points and triangulates. length: of the longest waves that vanish, in cells. heldPoints:
- * how many had to go back. False if aborted.
+ * Moves the points and triangulates. length: of the longest waves that vanish, in cells.
+ * heldPoints: how many had to go back. False if aborted.
  */
 bool SmoothFaces(const FaceNet& net, double length, const ExecutionContext& context,
   std::vector<Vec3>& places, std::vector<TriangleIds>& triangles, Id& heldPoints);

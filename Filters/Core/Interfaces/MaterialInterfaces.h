@@ -15,15 +15,16 @@
  * Guarantees: the surface has the invariants of TriangleMesh.h and is watertight: each edge belongs
  * to an even number of triangles of each region, with the opposite direction for one half of them.
  * It is no manifold where three or more regions meet, nor where a region touches itself at an edge
- * or a corner only: such edges are in four triangles, and stay in their places. All normals point to
- * the region of smaller id, that is, outside at the outer boundary. Deterministic.
+ * or a corner only: such edges are in four triangles, and stay in their places. All normals point
+ * to the region of smaller id, that is, outside at the outer boundary. Deterministic.
  * Failure: InvalidInput for coordinates that do not ascend, labels below OutsideRegion (cells), a
  * wrong number of labels, grids without a region, and those with more than 2^31 - 1 corners.
  * Cost: one pass over the cells, 8 bytes per corner in a slice; smoothing and reduction take about
  * 60 microseconds and 600 bytes per face. 256^3 cells with 0.6 million faces: 37 s and 420 MB for
  * 22,000 smooth triangles, 18 s for the staircase with its coplanar faces merged.
- * References: S. F. Gibson, "Constrained elastic surface nets", 1998, doi:10.1007/BFb0056277 (points
- * that stay near their corner; here corners of cells, whose squares are the net of all regions).
+ * References: S. F. Gibson, "Constrained elastic surface nets", 1998, doi:10.1007/BFb0056277
+ * (points that stay near their corner; here corners of cells, whose squares are the net of all
+ * regions).
  */
 #ifndef cdmMaterialInterfaces_h
 #define cdmMaterialInterfaces_h
@@ -47,7 +48,9 @@ struct LabelledGrid
 
 struct MaterialInterfacesOptions
 {
-  /** In cells: shorter waves of the surface are stairs and vanish. 0: the exact faces of the cells. */
+  /**
+   * In cells: shorter waves of the surface are stairs and vanish. 0: the exact faces of the cells.
+   */
   double SmoothingLength = 10.0;
   bool Reduce = true;
   /** Of the reduction, in units of the shortest edge of a cell. >= 0. */

@@ -52,7 +52,9 @@ bool IsInTetrahedron(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c,
 /** Triangles at a point that follow one on the other: around it, or from chain to chain. */
 struct Page
 {
-  /** Opposite points; the first one is the one to merge into. Closed: it is the last one as well. */
+  /**
+   * Opposite points; the first one is the one to merge into. Closed: it is the last one as well.
+   */
   std::vector<Id> Path;
   /** Triangle i is that of Path i and i + 1. */
   std::vector<Id> Triangles;
@@ -360,8 +362,8 @@ private:
   }
 
   /**
-   * Largest distance between places of the old and the new triangles of a page that belong together;
-   * false if the page is bent too much, or if triangles become needles.
+   * Largest distance between places of the old and the new triangles of a page that belong
+   * together; false if the page is bent too much, or if triangles become needles.
    */
   bool FindDifference(const Vec3& p, const Page& page, double& difference) const
   {

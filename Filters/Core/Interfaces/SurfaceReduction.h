@@ -4,9 +4,9 @@
  * @brief Fewer triangles for a surface, within a bound of the distance to what it was.
  *
  * Method (thesis 3.5.2):
- *  1. structural edges (StructuralEdges.h) and their corners: a point inside of a patch may be merged
- *     into any neighbor, a point of a chain into the next one along it, a corner stays; so does a
- *     point where patches touch that have no edge in common;
+ *  1. structural edges (StructuralEdges.h) and their corners: a point inside of a patch may be
+ *     merged into any neighbor, a point of a chain into the next one along it, a corner stays; so
+ *     does a point where patches touch that have no edge in common;
  *  2. what a merge costs: the old triangles at the point and the new ones are two surfaces over one
  *     plane, and points above each other belong together. These differ most where edges cross, and
  *     at the point itself; a point of a chain goes to the nearest point of the new edge first. The
@@ -17,8 +17,8 @@
  *     triangle turns by more than about 70 degrees, and bent triangles do not become needles;
  *  4. the new triangles must not meet others, decided exactly (TriangleIntersection.h); nothing may
  *     lie between the old and the new ones; and around edges of three or more triangles the regions
- *     have to follow one on the other as before. Merges within the planes of all triangles, exactly,
- *     need no such test: with a bound of 0 these are left.
+ *     have to follow one on the other as before. Merges within the planes of all triangles,
+ *     exactly, need no such test: with a bound of 0 these are left.
  *
  * Inputs: the invariants of TriangleMesh.h, with labels. Guarantees: these invariants are kept, and
  * so are the labels on both sides and the topology; corners keep their places. Deterministic.

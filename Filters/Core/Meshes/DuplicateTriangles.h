@@ -21,7 +21,9 @@ struct DuplicateTriangle
   bool IsReversed = false;
 };
 
-/** In no particular, but always the same order. Cost: O(n) for a bounded number of them at a point. */
+/**
+ * In no particular, but always the same order. Cost: O(n) for a bounded number of them at a point.
+ */
 std::vector<DuplicateTriangle> FindDuplicateTriangles(const std::vector<TriangleIds>& triangles);
 
 /**

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FacetPolygons.h
- * @brief Triangles of a flat facet with a common circumcircle: a convex polygon, whose diagonals are
- * those of the pulling rule in a mesh (thesis 6.4.3, "flip triangles on the fly").
+ * @brief Triangles of a flat facet with a common circumcircle: a convex polygon, whose diagonals
+ * are those of the pulling rule in a mesh (thesis 6.4.3, "flip triangles on the fly").
  *
  * Cost: O(n log n) to build; 16 bytes per side of a triangle.
  */
@@ -72,8 +72,8 @@ private:
 };
 
 /**
- * The fan from the lowest point of the convex polygon of a triangle and further points on its circle,
- * turned like the triangle.
+ * The fan from the lowest point of the convex polygon of a triangle and further points on its
+ * circle, turned like the triangle.
  */
 std::vector<TriangleIds> MakePulledFan(
   const std::vector<Vec3>& points, const TriangleIds& triangle, const std::vector<Id>& others);

@@ -14,9 +14,9 @@
 namespace cdm
 {
 /**
- * The outer and interface facets of a mesh, each once, with labels: fronts look out of the mesh, and
- * from the larger to the smaller region id. In the order of the tetrahedra behind them, which are
- * the SourceCells. Points are all those of the mesh.
+ * The outer and interface facets of a mesh, each once, with labels: fronts look out of the mesh,
+ * and from the larger to the smaller region id. In the order of the tetrahedra behind them, which
+ * are the SourceCells. Points are all those of the mesh.
  */
 TriangleMesh ExtractBoundary(const TetMesh& mesh);
 

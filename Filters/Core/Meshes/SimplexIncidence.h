@@ -59,8 +59,8 @@ public:
   }
 
   /**
-   * Calls visit(points, begin, end) for each facet whose lowest point is the given one: [begin, end)
-   * are its Records, ascending. scratch is overwritten.
+   * Calls visit(points, begin, end) for each facet whose lowest point is the given one: [begin,
+   * end) are its Records, ascending. scratch is overwritten.
    */
   template <typename Visitor>
   void ForEachFacet(Id point, std::vector<Record>& scratch, Visitor&& visit) const

@@ -9,10 +9,11 @@
  * of one tetrahedron always sum up to its volume.
  *
  * With l the length of edge ab, h the distance of the circumcenter of a facet from the edge, and g
- * that of the tetrahedron from the facet, the area of the Voronoi facet of ab within the tetrahedron
- * is the sum of h g / 2 over both facets at ab; h = l cot(gamma) / 2 with the facet's angle gamma
- * opposite to ab. So area / l is a rational function of the coordinates: it is evaluated with twice
- * the digits of double, as single terms can be many times larger than their sum.
+ * that of the tetrahedron from the facet, the area of the Voronoi facet of ab within the
+ * tetrahedron is the sum of h g / 2 over both facets at ab; h = l cot(gamma) / 2 with the facet's
+ * angle gamma opposite to ab. So area / l is a rational function of the coordinates: it is
+ * evaluated with twice the digits of double, as single terms can be many times larger than their
+ * sum.
  */
 #ifndef cdmVoronoiMeasures_h
 #define cdmVoronoiMeasures_h

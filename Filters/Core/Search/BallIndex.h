@@ -106,8 +106,8 @@ private:
   std::vector<Place> Places;
   std::vector<Cell> Cells;
   /**
-   * Hash table of the cells by open addressing, NoId in slots that are free. A power of two of them,
-   * at most half of them used; none before the first query.
+   * Hash table of the cells by open addressing, NoId in slots that are free. A power of two of
+   * them, at most half of them used; none before the first query.
    */
   std::vector<Slot> Slots;
   /** Balls that wait for the first query. */

@@ -57,9 +57,9 @@ private:
   static constexpr double RoundingBound = 0x1p-49;
 
   /**
-   * Absolute error of the coefficients before they are rounded, and of what is made of them in twice
-   * the working precision: sums of fewer than 60 products that are below 20 in units of Size and of
-   * the point's distance, each off by less than 2^-100.
+   * Absolute error of the coefficients before they are rounded, and of what is made of them in
+   * twice the working precision: sums of fewer than 60 products that are below 20 in units of Size
+   * and of the point's distance, each off by less than 2^-100.
    */
   static constexpr double WideBound = 0x1p-88;
 

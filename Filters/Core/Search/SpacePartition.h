@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SpacePartition.h
- * @brief Cuts space into a box for each of several parts, with about the same number of points in each.
+ * @brief Cuts space into a box for each of several parts, with about the same number of points in
+ * each.
  *
  * Method: a k-d tree on a sample of the points. A box for n parts is cut across the longest side of
  * its sample points, so that each half gets its share of them: n / 2 and n - n / 2 parts.

@@ -26,7 +26,8 @@ class SphereCriteria
 {
 public:
   /**
-   * The points have to be finite, and to outlive the object. Threads: 0: one for each processor core.
+   * The points have to be finite, and to outlive the object. Threads: 0: one for each processor
+   * core.
    */
   explicit SphereCriteria(const std::vector<Vec3>& points, int numberOfThreads = 1)
     : Points(points), Search(points, numberOfThreads)

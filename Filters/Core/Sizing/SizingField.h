@@ -9,9 +9,10 @@
  *
  * BoundGradation() lowers sizes given at the points of cells until they grow nowhere faster than
  * wanted: the largest sizes below the given ones with |h(a) - h(b)| <= g |a - b| for any two points
- * of a cell, from the smallest size on, as Dijkstra's algorithm does, but for many points of similar
- * size at a time, which threads share: points that are lowered meanwhile are visited again. Which
- * thread is first does not matter: the largest such sizes are unique, with their rounding too.
+ * of a cell, from the smallest size on, as Dijkstra's algorithm does, but for many points of
+ * similar size at a time, which threads share: points that are lowered meanwhile are visited again.
+ * Which thread is first does not matter: the largest such sizes are unique, with their rounding
+ * too.
  *
  * Cost: O(n log n) for n points in cells of bounded size, of which some are visited twice; 40 bytes
  * per point.

@@ -122,7 +122,8 @@ int SizingOctree::FindSplitAxes(Node& node) const
 {
   const Units size = this->GetSize(node);
   const Vec3 low{ double(node.Low[0]), double(node.Low[1]), double(node.Low[2]) };
-  // The number of points that belong into a cell is the integral of the inverse cube of the spacing.
+  // The number of points that belong into a cell is the integral of the inverse cube of the
+  // spacing.
   Vec3 sum;
   Vec3 smallest{ Infinity, Infinity, Infinity };
   constexpr int samples = 9;

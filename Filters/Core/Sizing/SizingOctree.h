@@ -6,14 +6,14 @@
  * Method (thesis 6.2, Fig. 6.2):
  *  1. the bounding box is divided into up to eight roots along each axis, as cubic as possible;
  *  2. a cell that overlaps a region is split as long as its edge along an axis, measured in the
- *     spacing there, exceeds a limit; along the longest axes only, so that anisotropic spacing makes
- *     flat cells. The spacing is that of the mean density of points at center and corners, but no
- *     more than 4/3 of the smallest: what is finest in a cell is not averaged out;
+ *     spacing there, exceeds a limit; along the longest axes only, so that anisotropic spacing
+ *     makes flat cells. The spacing is that of the mean density of points at center and corners,
+ *     but no more than 4/3 of the smallest: what is finest in a cell is not averaged out;
  *  3. bounded irregularity: a cell is split along an axis on which a neighbor, also across an edge
  *     or a corner, is finer by more levels than allowed.
  *
- * Guarantees: leaves are disjoint and fill the bounding box, in depth-first order; deterministic for
- * any number of threads, all of which evaluate the field.
+ * Guarantees: leaves are disjoint and fill the bounding box, in depth-first order; deterministic
+ * for any number of threads, all of which evaluate the field.
  * Failure: InvalidInput if more leaves are needed than allowed, or smaller ones than the bounding
  * box divided by 2^19 (2^16 in each of eight roots).
  * Cost: nine evaluations of the field for each cell; 100 bytes per leaf.

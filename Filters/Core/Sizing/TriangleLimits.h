@@ -33,7 +33,8 @@ struct TriangleLimits
 
   /**
    * @param isStructural for the edges from each corner to the next one
-   * @param edge the structural edge to split first if the triangle is too large, the longest of them;
+   * @param edge the structural edge to split first if the triangle is too large, the longest of
+   * them;
    *        otherwise NoId
    */
   bool IsTooCoarse(

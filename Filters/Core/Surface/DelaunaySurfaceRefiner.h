@@ -13,9 +13,9 @@
  *  2. test each triangle by the chosen criterion, with the double sphere (Crit. 6.1) in at most two
  *     searches of the point octree, and remember the sphere that proves it. For criterion 3.2 the
  *     structural edges come before all triangles, the shortest first, then the smallest triangle;
- *  3. for a triangle that fails: flip; or split the structural edge that is disturbed at the foot or
- *     the partner of the disturbing point (types P and R); or mirror the disturbing point into the
- *     triangle's facet, about the edge or corner where the facets meet or along the normal; or
+ *  3. for a triangle that fails: flip; or split the structural edge that is disturbed at the foot
+ *     or the partner of the disturbing point (types P and R); or mirror the disturbing point into
+ *     the triangle's facet, about the edge or corner where the facets meet or along the normal; or
  *     insert the projected circumcenter found by the walk (Fig. 6.10); or split the longest edge.
  *     Points in facets come last, when no edge is left to split.
  *     The rules and why they end: README.md beside this file;
@@ -29,9 +29,9 @@
  * Failure: InvalidInput for a surface that breaks the invariants of TriangleMesh.h, or of which two
  * sheets within FlatnessRatio have become the same triangles. Triangles that
  * stay bad because a limit stops the refinement are listed in UnresolvedTriangles: never silently.
- * Cost: a triangle that is Delaunay takes one search of the octree, O(log n); a new point takes a few
- * searches and one query of the spheres that prove the other triangles. About 350 bytes per triangle.
- * Measured in Testing/Benchmarks/Surface.md.
+ * Cost: a triangle that is Delaunay takes one search of the octree, O(log n); a new point takes a
+ * few searches and one query of the spheres that prove the other triangles. About 350 bytes per
+ * triangle. Measured in Testing/Benchmarks/Surface.md.
  */
 #ifndef cdmDelaunaySurfaceRefiner_h
 #define cdmDelaunaySurfaceRefiner_h

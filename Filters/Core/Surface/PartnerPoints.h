@@ -3,15 +3,16 @@
  * @file PartnerPoints.h
  * @brief Where a new point goes so that it and the point that disturbs leave each other alone.
  *
- * A point that disturbs an edge or a triangle is answered by its partner there (thesis 5.2.2, types P
- * and R; README.md, stage 2, has the proofs): two features never disturb each other for ever.
+ * A point that disturbs an edge or a triangle is answered by its partner there (thesis 5.2.2, types
+ * P and R; README.md, stage 2, has the proofs): two features never disturb each other for ever.
  *
  *  1. On an edge: the point as far from the common perpendicular of the disturbing point's edge and
- *     this one; for edges with a corner in common that is a rotation about it (type R), for parallel
- *     ones a projection (type P). Without an edge the point's projection; near an acute corner a power
- *     of two of the unit of length, so that all edges there end up alike; otherwise the middle.
- *  2. In a facet: the disturbing point is rotated about the edge that the two facets share, or about
- *     a corner that they share, or projected along the normal, in this order.
+ *     this one; for edges with a corner in common that is a rotation about it (type R), for
+ *     parallel ones a projection (type P). Without an edge the point's projection; near an acute
+ *     corner a power of two of the unit of length, so that all edges there end up alike; otherwise
+ *     the middle.
+ *  2. In a facet: the disturbing point is rotated about the edge that the two facets share, or
+ *     about a corner that they share, or projected along the normal, in this order.
  *  3. The last digits are chosen so that the two match exactly (MatchingPoints.h).
  *
  * Cost: constant, but for the search of shared edges and corners.
@@ -39,7 +40,9 @@ public:
   {
   }
 
-  /** Where to split a segment that a point disturbs; NoId: that has to be split for other reasons. */
+  /**
+   * Where to split a segment that a point disturbs; NoId: that has to be split for other reasons.
+   */
   Vec3 PlaceOnSegment(Id segment, Id disturbing) const;
 
   /** The partner in the plane of a triangle, maybe beyond its facet. False if there is none. */

@@ -5,11 +5,11 @@
  *
  * Sharp are dihedral angles below 60 degrees between two facets at a structural edge, and plane
  * angles below 30 degrees between two structural edges at a point. In these, points of one side ask
- * for points of the other side, closer to the corner and so without end: refinement for shape has to
- * stop there, and the tetrahedra from one side to the other keep the shape that they have.
+ * for points of the other side, closer to the corner and so without end: refinement for shape has
+ * to stop there, and the tetrahedra from one side to the other keep the shape that they have.
  *
- * A side is a facet (triangles that no structural edge separates), or a structural edge with the edges
- * that go straight on from it.
+ * A side is a facet (triangles that no structural edge separates), or a structural edge with the
+ * edges that go straight on from it.
  *
  * Cost: O(n log n) to build; O(1) for a tetrahedron. About 60 bytes per triangle.
  */
@@ -33,8 +33,8 @@ public:
   /** Whether a vertex is the corner of a sharp angle, or lies on its edge. */
   bool IsAtCorner(const TetrahedronIds& ids) const;
   /**
-   * Whether one vertex lies on one side of a sharp angle, and another one on the other side. Only the
-   * surface's points lie on sides; ids of other points are larger.
+   * Whether one vertex lies on one side of a sharp angle, and another one on the other side. Only
+   * the surface's points lie on sides; ids of other points are larger.
    */
   bool IsAcross(const TetrahedronIds& ids) const;
 

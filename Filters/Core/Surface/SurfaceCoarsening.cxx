@@ -13,7 +13,9 @@ namespace cdm
 {
 namespace
 {
-/** Whether each triangle of the point keeps its plane, to flatness, and its orientation, exactly. */
+/**
+ * Whether each triangle of the point keeps its plane, to flatness, and its orientation, exactly.
+ */
 bool KeepsShape(const MergeableSurface& surface, Id point, Id target, double flatness)
 {
   const std::vector<Vec3>& points = surface.GetPoints();

@@ -129,7 +129,10 @@ private:
   Vec3 C;
   /** The sphere in twice the working precision, for needles. */
   std::optional<SphereForm> Form;
-  /** Squared distances from the center: beyond the first points lie outside, below the second inside. */
+  /**
+   * Squared distances from the center: beyond the first points lie outside, below the second
+   * inside.
+   */
   double SquaredReach;
   double SquaredCore;
   double Deepest = Infinity;

@@ -5,14 +5,14 @@
  *
  * The spheres through a triangle form a pencil: their centers lie at H + lambda * n, H being the
  * circumcenter and n the normal. With p the point in front of the triangle whose lambda is smallest
- * and q its like behind, the triangle is strongly Delaunay if and only if q lies strictly outside of
- * the sphere through the triangle and p, and no point of its plane lies in or on its circumcircle.
- * Points on the circumcircle are handed to the caller, who knows whether they belong to the same
- * flat facet.
+ * and q its like behind, the triangle is strongly Delaunay if and only if q lies strictly outside
+ * of the sphere through the triangle and p, and no point of its plane lies in or on its
+ * circumcircle. Points on the circumcircle are handed to the caller, who knows whether they belong
+ * to the same flat facet.
  *
- * Method: search the smallest sphere. If it is empty, the triangle is strongly Delaunay; if it holds
- * points on both sides of the triangle, or in its plane, it is not. If it holds points on one side,
- * p or q is among them, and the sphere through it is searched for a point of the other side.
+ * Method: search the smallest sphere. If it is empty, the triangle is strongly Delaunay; if it
+ * holds points on both sides of the triangle, or in its plane, it is not. If it holds points on one
+ * side, p or q is among them, and the sphere through it is searched for a point of the other side.
  */
 #ifndef cdmSurfaceDelaunayTest_h
 #define cdmSurfaceDelaunayTest_h
@@ -55,8 +55,8 @@ public:
   }
 
   /**
-   * If the smallest sphere has to be empty and is not, nothing more is searched: the triangle counts
-   * as not Delaunay.
+   * If the smallest sphere has to be empty and is not, nothing more is searched: the triangle
+   * counts as not Delaunay.
    */
   void Run(const TriangleIds& triangle, Result& result, bool isSmallestSphereWanted = false) const;
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceFlips.h
- * @brief The recursive triangle flip (thesis Def. 6.1): diagonals of a surface turned to saturation.
+ * @brief The recursive triangle flip (thesis Def. 6.1): diagonals of a surface turned to
+ * saturation.
  *
  * A smooth edge is turned if one of its triangles has the other's apex in its smallest sphere and
  * neither of the two that replace them has: it cannot be turned back at once. The edge has to be
- * convex, and either both diagonals are closer to each other than the flatness, or the surface stays
- * smooth by the accuracy angle. On curved facets flips may go in circles: their number is bounded for
- * each triangle and each new point.
+ * convex, and either both diagonals are closer to each other than the flatness, or the surface
+ * stays smooth by the accuracy angle. On curved facets flips may go in circles: their number is
+ * bounded for each triangle and each new point.
  */
 #ifndef cdmSurfaceFlips_h
 #define cdmSurfaceFlips_h
@@ -40,7 +41,9 @@ public:
 
   void Flip(Id use);
 
-  /** Turns all that should be, beginning with some uses; calls onFlip(triangle) for both triangles. */
+  /**
+   * Turns all that should be, beginning with some uses; calls onFlip(triangle) for both triangles.
+   */
   template <typename OnFlip>
   void Saturate(std::vector<Id>& uses, const OnFlip& onFlip)
   {

@@ -4,9 +4,9 @@
  * @brief On which facets and structural edges each point of a surface lies while it is refined.
  *
  * Facets and input edges are those of RefinableSurface and stay the same: splits and flips change
- * neither. Points are numbered as the refiner has them: those of the surface, mesh points, which lie
- * on nothing, and new ones, each of which lies in one facet or on one input edge or is a mesh point
- * again.
+ * neither. Points are numbered as the refiner has them: those of the surface, mesh points, which
+ * lie on nothing, and new ones, each of which lies in one facet or on one input edge or is a mesh
+ * point again.
  *
  * Cost: O(n log n) to build, O(1) for a new point.
  */

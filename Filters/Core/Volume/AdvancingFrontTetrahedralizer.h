@@ -6,13 +6,14 @@
  * Method (thesis 6.4):
  *  1. tetrahedralize all points, which answers for every facet which point in front of it has the
  *     smallest lambda (Crit. 6.2): one incremental construction is two to nine times as fast as the
- *     searches of the thesis, facet by facet, and does not depend on how the points are distributed;
+ *     searches of the thesis, facet by facet, and does not depend on how the points are
+ *     distributed;
  *  2. test that each triangle of the surface is strongly Delaunay; turn the diagonals inside of
  *     cocircular facets to the pulling rule (SurfaceFacets.h);
  *  3. take the tetrahedron at a side of a triangle of each enclosed region, or at a given seed, and
  *     put it into the front;
- *  4. facets of the front meet their like (Lemma 6.1), or a triangle of the surface, where the front
- *     stops, or get the tetrahedron beyond; go on until the front is empty (Lemma 6.2);
+ *  4. facets of the front meet their like (Lemma 6.1), or a triangle of the surface, where the
+ *     front stops, or get the tetrahedron beyond; go on until the front is empty (Lemma 6.2);
  *  5. number what is meshed by its vertices (CanonicalNumbering.h).
  *
  * Regions: with labels a side of a triangle belongs to its label, and sides labelled

@@ -9,7 +9,9 @@ namespace
 {
 /** The first radius of a search, in limits; the next ones are four times as large. */
 constexpr double FirstRadius = 1.0 / 64.0;
-/** In limits: edges closer to each other are a strip that nobody fills with well shaped elements. */
+/**
+ * In limits: edges closer to each other are a strip that nobody fills with well shaped elements.
+ */
 constexpr double SmallestSize = 0.01;
 
 double GetDistance(const Vec3& position, const std::array<Vec3, 2>& ends)

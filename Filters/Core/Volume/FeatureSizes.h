@@ -7,10 +7,11 @@
  * common end. That is the local feature size of the literature on Delaunay refinement, of edges; it
  * tells how small the elements have to be there, however far away the ends of the edges are.
  *
- * Cost: O(n log n) to build, 100 bytes per edge; a query visits the edges within four times its result.
+ * Cost: O(n log n) to build, 100 bytes per edge; a query visits the edges within four times its
+ * result.
  *
- * Reference: J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh generation",
- * 1995, doi:10.1006/jagm.1995.1021.
+ * Reference: J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh
+ * generation", 1995, doi:10.1006/jagm.1995.1021.
  */
 #ifndef cdmFeatureSizes_h
 #define cdmFeatureSizes_h

@@ -146,8 +146,8 @@ Id FindRegion(const TriangleMesh& surface, const Vec3& point)
 }
 
 /**
- * Gives the pieces of a moved surface the regions that it winds around the space on their sides, and
- * drops those between equal ones. False if the context asks to stop.
+ * Gives the pieces of a moved surface the regions that it winds around the space on their sides,
+ * and drops those between equal ones. False if the context asks to stop.
  */
 bool AssignRegions(const TriangleMesh& moved, const ExecutionContext& context, TriangleMesh& pieces)
 {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MovingBoundaryRemesher.h
- * @brief Moves the boundary and the interfaces of a mesh and makes it Delaunay and conforming again.
+ * @brief Moves the boundary and the interfaces of a mesh and makes it Delaunay and conforming
+ * again.
  *
  * Method (thesis 3.4.1), for each of a number of steps:
  *  1. points on the boundary move by their displacement; free ones near them follow, inside and
@@ -17,17 +18,17 @@
  *     the regions are filled with the tetrahedra of all points (AdvancingFrontTetrahedralizer.h);
  *  5. where the topology changes (parts of the boundary meet, a layer vanishes, half steps do not
  *     help) the moved boundary is cut along its intersections (BoundaryTriangulator.h) before step
- *     3, and each cell of space between the pieces is given the region that the moved boundary winds
- *     around it most often, of several the one with the lowest id: fronts that meet merge, layers
- *     that have vanished are gone. Pieces between equal regions are dropped, and points
+ *     3, and each cell of space between the pieces is given the region that the moved boundary
+ *     winds around it most often, of several the one with the lowest id: fronts that meet merge,
+ *     layers that have vanished are gone. Pieces between equal regions are dropped, and points
  *     of cuts that do not shape the surface (SurfaceCoarsening.h).
  *
  * Guarantees: the mesh is exactly Delaunay, all tetrahedra are positive, and its boundary is the
  * moved one, with triangles cut and divided, in points computed on them. Points that are given a
  * displacement are moved by it, rounded once, however many steps there are; points that are given
  * none and do not follow keep their coordinates. Deterministic.
- * Failure: InvalidInput for displacements that are not finite, tetrahedra that are inverted or flat;
- * with the points at fault if the moved boundary cannot be meshed, or nothing is left of it.
+ * Failure: InvalidInput for displacements that are not finite, tetrahedra that are inverted or
+ * flat; with the points at fault if the moved boundary cannot be meshed, or nothing is left of it.
  * Cost: that of refining and meshing the whole, O(n log n), for each step; some 150 bytes per
  * tetrahedron.
  */

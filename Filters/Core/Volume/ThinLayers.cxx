@@ -18,9 +18,13 @@ namespace
 constexpr double AspectRatio = 20.0;
 /** Of the angle between normals of one side: 45 degrees. */
 constexpr double SmoothCosine = 0.7071067811865476;
-/** Cosine of the angles between the sides of a layer, and of a side's normal and an upright edge. */
+/**
+ * Cosine of the angles between the sides of a layer, and of a side's normal and an upright edge.
+ */
 constexpr double AcrossCosine = 0.85;
-/** Length of an upright edge across a layer, in lengths of the longest edge of its tetrahedron ... */
+/**
+ * Length of an upright edge across a layer, in lengths of the longest edge of its tetrahedron ...
+ */
 constexpr double ThinRatio = 0.75;
 /** ... and thickness of the layer if the edge is not upright. */
 constexpr double VeryThinRatio = 0.35;

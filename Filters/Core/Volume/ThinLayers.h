@@ -3,14 +3,14 @@
  * @file ThinLayers.h
  * @brief Which tetrahedra reach from one side of a thin layer to the other.
  *
- * A layer is thin if it is twenty times as wide as thick: to fill it with tetrahedra as long as it is
- * thick would take thousands of them. Its tetrahedra are flat on purpose.
+ * A layer is thin if it is twenty times as wide as thick: to fill it with tetrahedra as long as it
+ * is thick would take thousands of them. Its tetrahedra are flat on purpose.
  *
- * Method: the boundary of each region falls into sides, which are what is connected across edges that
- * bend by less than 45 degrees. A side is as wide as a square with the same ratio of area to
+ * Method: the boundary of each region falls into sides, which are what is connected across edges
+ * that bend by less than 45 degrees. A side is as wide as a square with the same ratio of area to
  * perimeter, or with the same area if that is narrower. A tetrahedron is across a layer if all its
- * points lie on the boundary, two of them on sides that face each other, close to each other for its
- * size, and twenty times closer than either side is wide.
+ * points lie on the boundary, two of them on sides that face each other, close to each other for
+ * its size, and twenty times closer than either side is wide.
  *
  * Cost: O(n log n) to build; O(1) for a tetrahedron. About 100 bytes per triangle.
  */

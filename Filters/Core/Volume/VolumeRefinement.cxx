@@ -220,7 +220,9 @@ bool VolumeRefinement::IsFlat(Id tetrahedron) const
     this->GetAngle(tetrahedron) < FlatAngle;
 }
 
-/** Whether a change is for a tetrahedron with such an angle; angles over the target always count. */
+/**
+ * Whether a change is for a tetrahedron with such an angle; angles over the target always count.
+ */
 bool VolumeRefinement::IsAimed(const Aim& aim, double angle, const TetrahedronIds& ids) const
 {
   return angle >= aim.Target || this->Shape->Sharp.IsAcross(ids) == aim.IsSharp;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Prints the smallest concentration that finite elements and the box method meet on the three stacks
- * of the thesis, section 3.2.3, and writes each with its final concentrations (T6.vtu, ...).
+ * Prints the smallest concentration that finite elements and the box method meet on the three
+ * stacks of the thesis, section 3.2.3, and writes each with its final concentrations (T6.vtu, ...).
  */
 #include "Diffusion.h"
 

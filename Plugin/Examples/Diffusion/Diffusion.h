@@ -4,8 +4,9 @@
  * @brief Transient diffusion by finite elements and by the box method on stacks of cubes.
  *
  * Example of the thesis, section 3.2.3: the same points, the same equation, the same solver, and
- * three ways to cut cubes into tetrahedra. Delaunay is what the box method needs, and neither enough
- * nor necessary for finite elements: there no sum of dihedral cotangents may be negative (Crit. 3.3).
+ * three ways to cut cubes into tetrahedra. Delaunay is what the box method needs, and neither
+ * enough nor necessary for finite elements: there no sum of dihedral cotangents may be negative
+ * (Crit. 3.3).
  *
  * Both methods lead to (M / dt + D S) c_new = M / dt c_old, with implicit Euler steps, a diagonal M
  * and without flux through the boundary. Where S has positive entries off its diagonal
