@@ -605,6 +605,8 @@ TEST(SteinerPointRefiner, NeedlesKeepTheirFacets)
       EXPECT_LT(nearest, 1e-14);
     }
   }
+  EXPECT_EQ(output.Report.Slivers, 0);
+  EXPECT_EQ(output.Report.BadlyShaped, 0);
   std::printf("%zu tetrahedra, %d inevitable\n", output.Mesh.Tetrahedra.size(),
     static_cast<int>(output.Report.Inevitable));
 }
