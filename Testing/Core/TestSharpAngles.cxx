@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 using namespace cdm;
 
@@ -19,11 +20,26 @@ Vec3 MakeDirection(double degrees)
   return { std::cos(degrees * Pi / 180.0), std::sin(degrees * Pi / 180.0), 0.0 };
 }
 
+/** A surface, and what is sharp in it. */
+struct Sharp
+{
+  Sharp(const TriangleMesh& surface, std::vector<StructuralEdge> edges)
+    : Surface(surface), Edges(std::move(edges)),
+      Angles(this->Surface, this->Edges,
+        ListTrianglesAtPoints(this->Surface.Triangles, this->Surface.Points.size()))
+  {
+  }
+
+  TriangleMesh Surface;
+  std::vector<StructuralEdge> Edges;
+  SharpAngles Angles;
+};
+
 /**
  * Two facets at the edge from 0 to 1, with the apexes 2 and 3 far away from the edge, and a point
  * of its own each in the middle, 4 and 5.
  */
-SharpAngles MakeFacets(double angle)
+Sharp MakeFacets(double angle)
 {
   TriangleMesh surface;
   surface.Points = { { 0.0, 0.0, 0.0 }, { 0.0, 0.0, 1.0 } };
@@ -39,11 +55,11 @@ SharpAngles MakeFacets(double angle)
   StructuralEdge edge;
   edge.Points = { 0, 1 };
   edge.DihedralAngle = angle;
-  return SharpAngles(surface, { edge });
+  return { surface, { edge } };
 }
 
 /** Two edges from 0, in pieces that go straight on: to 1 and 2, and to 3 and 4. */
-SharpAngles MakeArms(double angle)
+Sharp MakeArms(double angle)
 {
   TriangleMesh surface;
   surface.Points = { { 0.1, 0.2, 0.3 } };
@@ -62,7 +78,28 @@ SharpAngles MakeArms(double angle)
   }
   std::sort(edges.begin(), edges.end(),
     [](const StructuralEdge& a, const StructuralEdge& b) { return a.Points < b.Points; });
-  return SharpAngles(surface, edges);
+  return { surface, edges };
+}
+
+/**
+ * From 0, an edge to 1 with the facets to 2 and 3, and below it a facet with the corners 4 and 5;
+ * each two edges are at least 31 degrees apart.
+ */
+Sharp MakeTip(double angle)
+{
+  TriangleMesh surface;
+  surface.Points = { { 0.0, 0.0, 0.0 }, MakeDirection(angle), { 1.0, 2.0, -1.0 }, { 1.0, 2.0, 1.0 },
+    { 1.0, 0.0, -0.8 }, { 1.0, 0.0, 0.8 } };
+  surface.Triangles = { { 0, 1, 2 }, { 0, 3, 1 }, { 0, 4, 5 } };
+  std::vector<StructuralEdge> edges;
+  for (Id end = 1; end < 6; ++end)
+  {
+    StructuralEdge edge;
+    edge.Points = { 0, end };
+    edge.DihedralAngle = 90.0;
+    edges.push_back(edge);
+  }
+  return { surface, edges };
 }
 } // namespace
 
@@ -72,15 +109,15 @@ TEST(SharpAngles, BetweenFacets)
   {
     SCOPED_TRACE(angle);
     const bool isSharp = angle < 60.0;
-    const SharpAngles angles = MakeFacets(angle);
-    EXPECT_EQ(angles.IsAtCorner({ 0, Inside, Inside + 1, Inside + 2 }), isSharp);
-    EXPECT_FALSE(angles.IsAtCorner({ 2, 3, 4, Inside }));
-    EXPECT_EQ(angles.IsAcross({ 2, 3, Inside, Inside + 1 }), isSharp);
-    EXPECT_EQ(angles.IsAcross({ Inside, 4, Inside + 1, 5 }), isSharp);
+    const Sharp sharp = MakeFacets(angle);
+    EXPECT_EQ(sharp.Angles.IsAtCorner({ 0, Inside, Inside + 1, Inside + 2 }), isSharp);
+    EXPECT_FALSE(sharp.Angles.IsAtCorner({ 2, 3, 4, Inside }));
+    EXPECT_EQ(sharp.Angles.IsAcross({ 2, 3, Inside, Inside + 1 }), isSharp);
+    EXPECT_EQ(sharp.Angles.IsAcross({ Inside, 4, Inside + 1, 5 }), isSharp);
     // On one side only, with the edge, or inside.
-    EXPECT_FALSE(angles.IsAcross({ 2, 4, Inside, Inside + 1 }));
-    EXPECT_FALSE(angles.IsAcross({ 0, 1, 4, Inside }));
-    EXPECT_FALSE(angles.IsAcross({ Inside, Inside + 1, Inside + 2, Inside + 3 }));
+    EXPECT_FALSE(sharp.Angles.IsAcross({ 2, 4, Inside, Inside + 1 }));
+    EXPECT_FALSE(sharp.Angles.IsAcross({ 0, 1, 4, Inside }));
+    EXPECT_FALSE(sharp.Angles.IsAcross({ Inside, Inside + 1, Inside + 2, Inside + 3 }));
   }
 }
 
@@ -90,13 +127,41 @@ TEST(SharpAngles, BetweenEdges)
   {
     SCOPED_TRACE(angle);
     const bool isSharp = angle < 30.0;
-    const SharpAngles angles = MakeArms(angle);
-    EXPECT_EQ(angles.IsAtCorner({ 0, Inside, Inside + 1, Inside + 2 }), isSharp);
-    EXPECT_FALSE(angles.IsAtCorner({ 1, 2, 3, 4 }));
-    EXPECT_EQ(angles.IsAcross({ 1, 3, Inside, Inside + 1 }), isSharp);
-    EXPECT_EQ(angles.IsAcross({ 4, Inside, Inside + 1, 1 }), isSharp);
-    EXPECT_FALSE(angles.IsAcross({ 1, 2, Inside, Inside + 1 }));
-    EXPECT_FALSE(angles.IsAcross({ 0, 3, 4, Inside }));
+    const Sharp sharp = MakeArms(angle);
+    EXPECT_EQ(sharp.Angles.IsAtCorner({ 0, Inside, Inside + 1, Inside + 2 }), isSharp);
+    EXPECT_FALSE(sharp.Angles.IsAtCorner({ 1, 2, 3, 4 }));
+    EXPECT_EQ(sharp.Angles.IsAcross({ 1, 3, Inside, Inside + 1 }), isSharp);
+    EXPECT_EQ(sharp.Angles.IsAcross({ 4, Inside, Inside + 1, 1 }), isSharp);
+    EXPECT_FALSE(sharp.Angles.IsAcross({ 1, 2, Inside, Inside + 1 }));
+    EXPECT_FALSE(sharp.Angles.IsAcross({ 0, 3, 4, Inside }));
+  }
+}
+
+TEST(SharpAngles, BetweenAnEdgeAndAFacetAtAPoint)
+{
+  for (double angle : { 1.0, 29.0, 31.0, 40.0 })
+  {
+    SCOPED_TRACE(angle);
+    Sharp sharp = MakeTip(angle);
+    EXPECT_EQ(sharp.Angles.IsAtCorner({ 0, Inside, Inside + 1, Inside + 2 }), angle < 30.0);
+    EXPECT_FALSE(sharp.Angles.IsAtCorner({ 1, 2, 3, 4 }));
+    // From the edge to the corners of the facet it is more than 30 degrees.
+    EXPECT_FALSE(sharp.Angles.IsAcross({ 1, 4, 5, Inside }));
+    // Points of the edge and of the facet, at the foot of the first one.
+    sharp.Surface.Points.push_back(0.5 * MakeDirection(angle));
+    sharp.Surface.Points.push_back({ 0.5, 0.0, 0.0 });
+    sharp.Surface.Triangles = { { 0, 6, 2 }, { 6, 1, 2 }, { 0, 3, 6 }, { 6, 3, 1 }, { 0, 4, 7 },
+      { 4, 5, 7 }, { 5, 0, 7 } };
+    sharp.Edges[0].Points = { 0, 6 };
+    sharp.Edges.push_back(sharp.Edges[0]);
+    sharp.Edges.back().Points = { 1, 6 };
+    const Sharp refined(sharp.Surface, sharp.Edges);
+    EXPECT_EQ(refined.Angles.IsAcross({ 6, 7, Inside, Inside + 1 }), angle < 30.0);
+    EXPECT_EQ(refined.Angles.IsAcross({ 1, Inside, Inside + 1, 7 }), angle < 30.0);
+    // On one side only, with the corner, or far apart.
+    EXPECT_FALSE(refined.Angles.IsAcross({ 1, 6, 2, 3 }));
+    EXPECT_FALSE(refined.Angles.IsAcross({ 0, 7, 4, 5 }));
+    EXPECT_FALSE(refined.Angles.IsAcross({ 2, 3, 7, Inside }));
   }
 }
 
@@ -105,7 +170,7 @@ TEST(SharpAngles, NoEdgesNoAngles)
   TriangleMesh surface;
   surface.Points = { { 0.0, 0.0, 0.0 }, { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 } };
   surface.Triangles = { { 0, 1, 2 } };
-  const SharpAngles angles(surface, {});
-  EXPECT_FALSE(angles.IsAtCorner({ 0, 1, 2, 3 }));
-  EXPECT_FALSE(angles.IsAcross({ 0, 1, 2, 3 }));
+  const Sharp sharp(surface, {});
+  EXPECT_FALSE(sharp.Angles.IsAtCorner({ 0, 1, 2, 3 }));
+  EXPECT_FALSE(sharp.Angles.IsAcross({ 0, 1, 2, 3 }));
 }

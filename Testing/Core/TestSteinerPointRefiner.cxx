@@ -611,6 +611,34 @@ TEST(SteinerPointRefiner, NeedlesKeepTheirFacets)
     static_cast<int>(output.Report.Inevitable));
 }
 
+/** A pyramid with an edge at its apex that runs a little above a facet which it does not belong to. */
+TEST(SteinerPointRefiner, EdgesCloseToFacetsEnd)
+{
+  for (double height : { 0.2, 0.05, 0.001 })
+  {
+    SCOPED_TRACE(height);
+    PolygonSoup soup;
+    soup.Points = { { 0.0, 0.0, 0.0 }, { 1.0, 0.5, 0.0 }, { 1.0, 0.5, 1.0 }, { 1.0, 0.0, height },
+      { 1.0, -0.5, 1.0 }, { 1.0, -0.5, 0.0 } };
+    soup.Connectivity = { 1, 2, 3, 4, 5 };
+    soup.Offsets.push_back(5);
+    for (Id i = 1; i <= 5; ++i)
+    {
+      soup.Connectivity.insert(soup.Connectivity.end(), { i % 5 + 1, i, 0 });
+      soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+    }
+    const Stage3 mesh = MakeMesh(soup);
+    SteinerPointRefinerInput input;
+    input.Mesh = &mesh.Output.Mesh;
+    const SteinerPointRefinerOutput output = Refine(input, {});
+    EXPECT_EQ(output.Report.Slivers, 0);
+    EXPECT_EQ(output.Report.BadlyShaped, 0);
+    EXPECT_LT(output.Mesh.Tetrahedra.size(), 1000u);
+    std::printf("%zu tetrahedra, %d inevitable\n", output.Mesh.Tetrahedra.size(),
+      static_cast<int>(output.Report.Inevitable));
+  }
+}
+
 TEST(SteinerPointRefiner, DoesNotDependOnThreads)
 {
   std::mt19937_64 generator(3);

@@ -18,6 +18,7 @@ constexpr double SharpPlaneCosine = 0.8660254037844386;
 /** Edges with a smaller sine of the angle between them go straight on: their points are rounded. */
 constexpr double StraightSine = 1e-6;
 
+/** Of the way from one point to another one, of length one. */
 Vec3 GetDirection(const TriangleMesh& surface, Id from, Id to)
 {
   const Vec3 way = surface.Points[to] - surface.Points[from];
@@ -28,20 +29,51 @@ bool HasId(const IdLists::Range& ids, Id id)
 {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
-} // namespace
 
-SharpAngles::SharpAngles(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges)
-  : IsCorner(surface.Points.size(), 0)
+/** Cosine of the angle of a direction and the closest one between two others; all of length one. */
+double GetSectorCosine(const Vec3& direction, const Vec3& first, const Vec3& second)
 {
-  this->FindFacets(surface, edges);
-  this->FindArms(surface, edges);
+  const Vec3 normal = Cross(first, second);
+  const double closest = std::max(Dot(direction, first), Dot(direction, second));
+  const Vec3 across = Cross(normal, direction);
+  if (Dot(across, first) >= 0.0 || Dot(across, second) <= 0.0)
+  {
+    return closest;
+  }
+  return std::max(closest, Norm(across) / Norm(normal));
 }
 
-void SharpAngles::FindFacets(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges)
+IdLists ListNeighbors(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges)
+{
+  std::vector<std::pair<Id, Id>> pairs;
+  for (const StructuralEdge& edge : edges)
+  {
+    pairs.emplace_back(edge.Points[0], edge.Points[1]);
+    pairs.emplace_back(edge.Points[1], edge.Points[0]);
+  }
+  IdLists neighbors;
+  neighbors.Build(static_cast<Id>(surface.Points.size()), pairs);
+  return neighbors;
+}
+} // namespace
+
+SharpAngles::SharpAngles(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
+  const IdLists& pointTriangles)
+  : Surface(surface), Neighbors(ListNeighbors(surface, edges)), IsCorner(surface.Points.size(), 0)
 {
   const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
-  // Triangles at each edge that is sharp.
-  std::vector<std::pair<EdgeIds, std::vector<Id>>> sharp;
+  const std::vector<Id> facets = NumberFacets(uses, edges);
+  this->FindFacetPairs(edges, uses, facets);
+  this->FindTips(facets, pointTriangles);
+  this->ListFacets(facets);
+  this->FindArms();
+}
+
+void SharpAngles::FindFacetPairs(const std::vector<StructuralEdge>& edges,
+  const std::vector<EdgeUse>& uses, const std::vector<Id>& facets)
+{
+  const TriangleMesh& surface = this->Surface;
+  std::vector<Vec3> across;
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end)
   {
     while (end < uses.size() && uses[end].Edge == uses[begin].Edge)
@@ -50,51 +82,106 @@ void SharpAngles::FindFacets(const TriangleMesh& surface, const std::vector<Stru
     }
     const EdgeIds ends = uses[begin].GetPoints();
     const StructuralEdge* const edge = FindStructuralEdge(edges, ends);
-    if (edge != nullptr && edge->DihedralAngle >= 0.0 && edge->DihedralAngle < SharpDihedralAngle)
+    if (edge == nullptr || edge->DihedralAngle < 0.0 || edge->DihedralAngle >= SharpDihedralAngle)
     {
-      sharp.push_back({ ends, {} });
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        sharp.back().second.push_back(uses[i].Use);
-      }
+      continue;
     }
-  }
-
-  const std::vector<Id> facets = sharp.empty() ? std::vector<Id>() : NumberFacets(uses, edges);
-  for (const auto& [ends, around] : sharp)
-  {
     this->IsCorner[ends[0]] = 1;
     this->IsCorner[ends[1]] = 1;
     const Vec3 along = GetDirection(surface, ends[0], ends[1]);
-    std::vector<Vec3> across;
-    for (Id use : around)
+    across.clear();
+    for (std::size_t i = begin; i < end; ++i)
     {
+      const Id use = uses[i].Use;
       const Id apex = surface.Triangles[use / 3][(use + 2) % 3];
       const Vec3 way = surface.Points[apex] - surface.Points[ends[0]];
       const Vec3 height = way - Dot(way, along) * along;
       across.push_back((1.0 / Norm(height)) * height);
-    }
-    for (std::size_t i = 0; i < around.size(); ++i)
-    {
-      for (std::size_t j = 0; j < i; ++j)
+      for (std::size_t j = begin; j < i; ++j)
       {
-        if (Dot(across[i], across[j]) > SharpDihedralCosine)
+        if (Dot(across[i - begin], across[j - begin]) > SharpDihedralCosine)
         {
-          this->FacetPairs.push_back(std::minmax(facets[around[i] / 3], facets[around[j] / 3]));
+          this->FacetPairs.push_back(std::minmax(facets[use / 3], facets[uses[j].Use / 3]));
         }
       }
     }
   }
   SortUnique(this->FacetPairs);
+}
 
+/** Facets that do not meet at an edge of a point have at least two structural edges there each. */
+void SharpAngles::FindTips(const std::vector<Id>& facets, const IdLists& pointTriangles)
+{
+  for (Id corner = 0; corner < static_cast<Id>(this->IsCorner.size()); ++corner)
+  {
+    if (this->Neighbors[corner].size() >= 4)
+    {
+      this->FindTipsAt(corner, facets, pointTriangles[corner]);
+    }
+  }
+  SortUnique(this->Tips);
+}
+
+/** The closest ways into two facets from the corner: at least one of them is an edge. */
+void SharpAngles::FindTipsAt(
+  Id corner, const std::vector<Id>& facets, const IdLists::Range& triangles)
+{
+  // Facets at each edge, and pairs that meet at one.
+  std::vector<std::pair<Id, Id>> edgeFacets;
+  std::vector<std::pair<Id, Id>> meeting;
+  for (Id end : this->Neighbors[corner])
+  {
+    const std::size_t first = edgeFacets.size();
+    for (Id t : triangles)
+    {
+      const TriangleIds& ids = this->Surface.Triangles[t];
+      if (std::find(ids.begin(), ids.end(), end) != ids.end())
+      {
+        edgeFacets.emplace_back(end, facets[t]);
+        for (std::size_t i = first; i + 1 < edgeFacets.size(); ++i)
+        {
+          meeting.push_back(std::minmax(edgeFacets[i].second, facets[t]));
+        }
+      }
+    }
+  }
+  SortUnique(meeting);
+
+  for (Id t : triangles)
+  {
+    TriangleIds ids = this->Surface.Triangles[t];
+    std::rotate(ids.begin(), std::find(ids.begin(), ids.end(), corner), ids.end());
+    const Vec3 first = GetDirection(this->Surface, corner, ids[1]);
+    const Vec3 second = GetDirection(this->Surface, corner, ids[2]);
+    for (const auto& [end, facet] : edgeFacets)
+    {
+      const std::pair<Id, Id> pair = std::minmax(facet, facets[t]);
+      if (facet != facets[t] && !std::binary_search(meeting.begin(), meeting.end(), pair) &&
+        GetSectorCosine(GetDirection(this->Surface, corner, end), first, second) > SharpPlaneCosine)
+      {
+        this->IsCorner[corner] = 1;
+        this->Tips.push_back({ pair, corner });
+      }
+    }
+  }
+}
+
+void SharpAngles::ListFacets(const std::vector<Id>& facets)
+{
+  const TriangleMesh& surface = this->Surface;
   std::vector<char> isSharp(surface.Triangles.size(), 0);
   for (const auto& [first, second] : this->FacetPairs)
   {
     isSharp[first] = 1;
     isSharp[second] = 1;
   }
+  for (const Tip& tip : this->Tips)
+  {
+    isSharp[tip.Facets.first] = 1;
+    isSharp[tip.Facets.second] = 1;
+  }
   std::vector<std::pair<Id, Id>> pairs;
-  for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()) && !sharp.empty(); ++t)
+  for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()); ++t)
   {
     const Id facet = facets[t];
     for (Id point : surface.Triangles[t])
@@ -109,18 +196,12 @@ void SharpAngles::FindFacets(const TriangleMesh& surface, const std::vector<Stru
   this->PointFacets.Build(static_cast<Id>(surface.Points.size()), pairs);
 }
 
-void SharpAngles::FindArms(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges)
+void SharpAngles::FindArms()
 {
+  const TriangleMesh& surface = this->Surface;
+  const IdLists& neighbors = this->Neighbors;
   const Id numberOfPoints = static_cast<Id>(surface.Points.size());
   std::vector<std::pair<Id, Id>> pairs;
-  for (const StructuralEdge& edge : edges)
-  {
-    pairs.emplace_back(edge.Points[0], edge.Points[1]);
-    pairs.emplace_back(edge.Points[1], edge.Points[0]);
-  }
-  IdLists neighbors;
-  neighbors.Build(numberOfPoints, pairs);
-  pairs.clear();
   for (Id corner = 0; corner < numberOfPoints; ++corner)
   {
     for (Id first : neighbors[corner])
@@ -182,25 +263,37 @@ bool SharpAngles::IsAcross(const TetrahedronIds& ids) const
 
 bool SharpAngles::AreAcrossFacets(Id p, Id q) const
 {
-  if (this->FacetPairs.empty())
-  {
-    return false;
-  }
   const IdLists::Range first = this->PointFacets[p];
   const IdLists::Range second = this->PointFacets[q];
   for (Id f : first)
   {
     for (Id g : second)
     {
-      if (!HasId(second, f) && !HasId(first, g) &&
-        std::binary_search(
-          this->FacetPairs.begin(), this->FacetPairs.end(), std::pair<Id, Id>(std::minmax(f, g))))
+      if (HasId(second, f) || HasId(first, g))
+      {
+        continue;
+      }
+      const std::pair<Id, Id> pair = std::minmax(f, g);
+      if (std::binary_search(this->FacetPairs.begin(), this->FacetPairs.end(), pair) ||
+        this->AreAcrossTip(pair, p, q))
       {
         return true;
       }
     }
   }
   return false;
+}
+
+bool SharpAngles::AreAcrossTip(const std::pair<Id, Id>& facets, Id p, Id q) const
+{
+  const auto tips = std::equal_range(this->Tips.begin(), this->Tips.end(), facets);
+  return std::any_of(tips.first, tips.second,
+    [&](const Tip& tip)
+    {
+      return tip.Point != p && tip.Point != q &&
+        Dot(GetDirection(this->Surface, tip.Point, p), GetDirection(this->Surface, tip.Point, q)) >
+        SharpPlaneCosine;
+    });
 }
 
 bool SharpAngles::AreAcrossArms(Id p, Id q) const

@@ -3,13 +3,15 @@
  * @file SharpAngles.h
  * @brief Which tetrahedra lie in sharp angles of a surface.
  *
- * Sharp are dihedral angles below 60 degrees between two facets at a structural edge, and plane
- * angles below 30 degrees between two structural edges at a point. In these, points of one side ask
- * for points of the other side, closer to the corner and so without end: refinement for shape has
- * to stop there, and the tetrahedra from one side to the other keep the shape that they have.
+ * Sharp are dihedral angles below 60 degrees between two facets at a structural edge, and below 30
+ * degrees plane angles between two structural edges at a point, and angles between two facets that
+ * come together at a point, but not at an edge there. In these, points of one side ask for points of
+ * the other side, closer to the corner and so without end: refinement for shape has to stop there,
+ * and the tetrahedra from one side to the other keep the shape that they have.
  *
  * A side is a facet (triangles that no structural edge separates), or a structural edge with the
- * edges that go straight on from it.
+ * edges that go straight on from it. Facets that come together at a point may be far apart
+ * elsewhere: only what the point sees less than 30 degrees apart is across.
  *
  * Cost: O(n log n) to build; O(1) for a tetrahedron. About 60 bytes per triangle.
  */
@@ -17,6 +19,7 @@
 #define cdmSharpAngles_h
 
 #include "Core/Basics/IdLists.h"
+#include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/TriangleMesh.h"
 #include "Core/Surface/StructuralEdges.h"
 
@@ -28,7 +31,9 @@ namespace cdm
 class SharpAngles
 {
 public:
-  SharpAngles(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges);
+  /** Triangles at each point of the surface, which outlives the object. */
+  SharpAngles(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
+    const IdLists& pointTriangles);
 
   /** Whether a vertex is the corner of a sharp angle, or lies on its edge. */
   bool IsAtCorner(const TetrahedronIds& ids) const;
@@ -47,17 +52,45 @@ private:
     Vec3 Direction;
   };
 
-  void FindFacets(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges);
-  void FindArms(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges);
+  /** Two facets, the smaller one first, and a point at which they come together. */
+  struct Tip
+  {
+    std::pair<Id, Id> Facets;
+    Id Point;
+
+    friend bool operator==(const Tip& a, const Tip& b)
+    {
+      return a.Facets == b.Facets && a.Point == b.Point;
+    }
+    friend bool operator<(const Tip& a, const Tip& b)
+    {
+      return a.Facets != b.Facets ? a.Facets < b.Facets : a.Point < b.Point;
+    }
+    friend bool operator<(const Tip& a, const std::pair<Id, Id>& b) { return a.Facets < b; }
+    friend bool operator<(const std::pair<Id, Id>& a, const Tip& b) { return a < b.Facets; }
+  };
+
+  void FindFacetPairs(const std::vector<StructuralEdge>& edges, const std::vector<EdgeUse>& uses,
+    const std::vector<Id>& facets);
+  void FindTips(const std::vector<Id>& facets, const IdLists& pointTriangles);
+  void FindTipsAt(Id corner, const std::vector<Id>& facets, const IdLists::Range& triangles);
+  void ListFacets(const std::vector<Id>& facets);
+  void FindArms();
   bool AreAcrossFacets(Id p, Id q) const;
+  bool AreAcrossTip(const std::pair<Id, Id>& facets, Id p, Id q) const;
   bool AreAcrossArms(Id p, Id q) const;
 
+  const TriangleMesh& Surface;
+  /** Other ends of the structural edges at each point. */
+  IdLists Neighbors;
   /** One for each point of the surface. */
   std::vector<char> IsCorner;
   /** Of each point; those without a sharp angle are left out. */
   IdLists PointFacets;
   /** Pairs of facets with a sharp angle, the smaller one first; sorted. */
   std::vector<std::pair<Id, Id>> FacetPairs;
+  /** Sorted. */
+  std::vector<Tip> Tips;
   std::vector<Arm> Arms;
   /** Of each point, but of corners only if it lies on the arm of another one. */
   IdLists PointArms;

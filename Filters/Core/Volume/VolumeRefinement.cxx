@@ -82,7 +82,7 @@ VolumeRefinement::BoundaryShape::BoundaryShape(
   const TriangleMesh& surface, const std::vector<StructuralEdge>& edges)
   : Spheres(surface, edges),
     PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
-    Sharp(surface, edges), Layers(surface, this->PointTriangles)
+    Sharp(surface, edges, this->PointTriangles), Layers(surface, this->PointTriangles)
 {
 }
 
