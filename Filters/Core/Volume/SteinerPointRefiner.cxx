@@ -36,8 +36,10 @@ constexpr double RoundingGain = 0.75;
 constexpr int MaximumLastPasses = 5;
 /** Slivers wait until no more requests than these are left from badly shaped tetrahedra. */
 constexpr std::size_t FewRequests = 16;
-/** The boundary is split for flat tetrahedra if no more than these are left. */
-constexpr std::ptrdiff_t FewFlat = 16;
+/** The boundary is split for flat tetrahedra if no more than these are left ... */
+constexpr double FewFlat = 16.0;
+/** ... or than this part of all. */
+constexpr double FewFlatRatio = 1e-3;
 /**
  * Edges of the boundary for a largest volume, in edges of the regular tetrahedron of that volume.
  */
@@ -472,9 +474,10 @@ bool Refiner::AreManyFlat() const
 {
   const TetMesh& mesh = this->Round->GetMesh();
   const std::vector<Id> flat = this->Round->FindFlatTetrahedra();
-  return std::count_if(flat.begin(), flat.end(),
-           [&](Id t)
-           { return !this->IsInevitable(mesh.Tetrahedra[t], mesh.Regions[t]); }) > FewFlat;
+  const auto count = std::count_if(flat.begin(), flat.end(),
+    [&](Id t) { return !this->IsInevitable(mesh.Tetrahedra[t], mesh.Regions[t]); });
+  return static_cast<double>(count) >
+    std::max(FewFlat, FewFlatRatio * static_cast<double>(mesh.Tetrahedra.size()));
 }
 
 Status Refiner::PerturbSlivers(SliverMeans means)
