@@ -25,6 +25,11 @@ Vec3 GetDirection(const TriangleMesh& surface, Id from, Id to)
   return (1.0 / Norm(way)) * way;
 }
 
+bool IsSharp(const StructuralEdge& edge)
+{
+  return edge.DihedralAngle >= 0.0 && edge.DihedralAngle < SharpDihedralAngle;
+}
+
 bool HasId(const IdLists::Range& ids, Id id)
 {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
@@ -62,15 +67,32 @@ SharpAngles::SharpAngles(const TriangleMesh& surface, const std::vector<Structur
   : Surface(surface), Neighbors(ListNeighbors(surface, edges)), IsCorner(surface.Points.size(), 0)
 {
   const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
-  const std::vector<Id> facets = NumberFacets(uses, edges);
-  this->FindFacetPairs(edges, uses, facets);
-  this->FindTips(facets, pointTriangles);
-  this->ListFacets(facets);
+  this->Facets = NumberFacets(uses, edges);
+  this->FindFacetPairs(edges, uses);
+  this->FindTips(pointTriangles);
+  this->MarkSharpEdges(edges);
+  this->ListFacets(pointTriangles);
   this->FindArms();
 }
 
-void SharpAngles::FindFacetPairs(const std::vector<StructuralEdge>& edges,
-  const std::vector<EdgeUse>& uses, const std::vector<Id>& facets)
+SharpAngles::SharpAngles(SharpAngles&& coarse, const std::vector<StructuralEdge>& edges,
+  const IdLists& pointTriangles, const std::vector<Id>& parents)
+  : Surface(coarse.Surface), Neighbors(ListNeighbors(this->Surface, edges)),
+    IsCorner(std::move(coarse.IsCorner)), FacetPairs(std::move(coarse.FacetPairs)),
+    Tips(std::move(coarse.Tips))
+{
+  for (Id parent : parents)
+  {
+    this->Facets.push_back(coarse.Facets[parent]);
+  }
+  this->IsCorner.resize(this->Surface.Points.size(), 0);
+  this->MarkSharpEdges(edges);
+  this->ListFacets(pointTriangles);
+  this->FindArms();
+}
+
+void SharpAngles::FindFacetPairs(
+  const std::vector<StructuralEdge>& edges, const std::vector<EdgeUse>& uses)
 {
   const TriangleMesh& surface = this->Surface;
   std::vector<Vec3> across;
@@ -82,12 +104,10 @@ void SharpAngles::FindFacetPairs(const std::vector<StructuralEdge>& edges,
     }
     const EdgeIds ends = uses[begin].GetPoints();
     const StructuralEdge* const edge = FindStructuralEdge(edges, ends);
-    if (edge == nullptr || edge->DihedralAngle < 0.0 || edge->DihedralAngle >= SharpDihedralAngle)
+    if (edge == nullptr || !IsSharp(*edge))
     {
       continue;
     }
-    this->IsCorner[ends[0]] = 1;
-    this->IsCorner[ends[1]] = 1;
     const Vec3 along = GetDirection(surface, ends[0], ends[1]);
     across.clear();
     for (std::size_t i = begin; i < end; ++i)
@@ -101,7 +121,8 @@ void SharpAngles::FindFacetPairs(const std::vector<StructuralEdge>& edges,
       {
         if (Dot(across[i - begin], across[j - begin]) > SharpDihedralCosine)
         {
-          this->FacetPairs.push_back(std::minmax(facets[use / 3], facets[uses[j].Use / 3]));
+          this->FacetPairs.push_back(
+            std::minmax(this->Facets[use / 3], this->Facets[uses[j].Use / 3]));
         }
       }
     }
@@ -110,22 +131,22 @@ void SharpAngles::FindFacetPairs(const std::vector<StructuralEdge>& edges,
 }
 
 /** Facets that do not meet at an edge of a point have at least two structural edges there each. */
-void SharpAngles::FindTips(const std::vector<Id>& facets, const IdLists& pointTriangles)
+void SharpAngles::FindTips(const IdLists& pointTriangles)
 {
   for (Id corner = 0; corner < static_cast<Id>(this->IsCorner.size()); ++corner)
   {
     if (this->Neighbors[corner].size() >= 4)
     {
-      this->FindTipsAt(corner, facets, pointTriangles[corner]);
+      this->FindTipsAt(corner, pointTriangles[corner]);
     }
   }
   SortUnique(this->Tips);
 }
 
 /** The closest ways into two facets from the corner: at least one of them is an edge. */
-void SharpAngles::FindTipsAt(
-  Id corner, const std::vector<Id>& facets, const IdLists::Range& triangles)
+void SharpAngles::FindTipsAt(Id corner, const IdLists::Range& triangles)
 {
+  const std::vector<Id>& facets = this->Facets;
   // Facets at each edge, and pairs that meet at one.
   std::vector<std::pair<Id, Id>> edgeFacets;
   std::vector<std::pair<Id, Id>> meeting;
@@ -166,10 +187,21 @@ void SharpAngles::FindTipsAt(
   }
 }
 
-void SharpAngles::ListFacets(const std::vector<Id>& facets)
+void SharpAngles::MarkSharpEdges(const std::vector<StructuralEdge>& edges)
 {
-  const TriangleMesh& surface = this->Surface;
-  std::vector<char> isSharp(surface.Triangles.size(), 0);
+  for (const StructuralEdge& edge : edges)
+  {
+    if (IsSharp(edge))
+    {
+      this->IsCorner[edge.Points[0]] = 1;
+      this->IsCorner[edge.Points[1]] = 1;
+    }
+  }
+}
+
+void SharpAngles::ListFacets(const IdLists& pointTriangles)
+{
+  std::vector<char> isSharp(this->Surface.Triangles.size(), 0);
   for (const auto& [first, second] : this->FacetPairs)
   {
     isSharp[first] = 1;
@@ -181,19 +213,25 @@ void SharpAngles::ListFacets(const std::vector<Id>& facets)
     isSharp[tip.Facets.second] = 1;
   }
   std::vector<std::pair<Id, Id>> pairs;
-  for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()); ++t)
+  std::vector<Id> around;
+  const Id numberOfPoints = static_cast<Id>(this->Surface.Points.size());
+  for (Id point = 0; point < numberOfPoints; ++point)
   {
-    const Id facet = facets[t];
-    for (Id point : surface.Triangles[t])
+    around.clear();
+    for (Id t : pointTriangles[point])
     {
-      if (isSharp[facet] != 0)
+      if (isSharp[this->Facets[t]] != 0)
       {
-        pairs.emplace_back(point, facet);
+        around.push_back(this->Facets[t]);
       }
     }
+    SortUnique(around);
+    for (Id facet : around)
+    {
+      pairs.emplace_back(point, facet);
+    }
   }
-  std::sort(pairs.begin(), pairs.end());
-  this->PointFacets.Build(static_cast<Id>(surface.Points.size()), pairs);
+  this->PointFacets.Build(numberOfPoints, pairs);
 }
 
 void SharpAngles::FindArms()

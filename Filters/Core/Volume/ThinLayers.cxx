@@ -58,6 +58,17 @@ ThinLayers::ThinLayers(const TriangleMesh& surface, const IdLists& pointTriangle
   this->MeasureWidths();
 }
 
+ThinLayers::ThinLayers(
+  const ThinLayers& coarse, const IdLists& pointTriangles, const std::vector<Id>& parents)
+  : Surface(coarse.Surface), PointTriangles(pointTriangles)
+{
+  for (Id parent : parents)
+  {
+    this->Faces.push_back(coarse.Faces[2 * parent]);
+    this->Faces.push_back(coarse.Faces[2 * parent + 1]);
+  }
+}
+
 void ThinLayers::MeasureWidths()
 {
   const std::size_t count = this->Faces.size();

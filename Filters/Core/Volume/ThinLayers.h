@@ -29,6 +29,12 @@ class ThinLayers
 public:
   /** The surface has labels. Triangles at each of its points. Both have to outlive the object. */
   ThinLayers(const TriangleMesh& surface, const IdLists& pointTriangles);
+  /**
+   * Of the same surface after some triangles have been split.
+   * @param parents of each triangle, one that was in its facet before
+   */
+  ThinLayers(
+    const ThinLayers& coarse, const IdLists& pointTriangles, const std::vector<Id>& parents);
 
   /** Of a region; ids of points that the surface does not have are larger than its own. */
   bool IsAcross(const TetrahedronIds& ids, Id region) const;

@@ -52,6 +52,18 @@ TetMesh ReservePoints(TetMesh mesh, std::size_t first, Id reserve)
   }
   return mesh;
 }
+/** One triangle of each source cell. */
+std::vector<Id> ListSourceTriangles(const TriangleMesh& surface)
+{
+  const std::vector<Id>& sources = surface.SourceCells;
+  std::vector<Id> triangles(
+    sources.empty() ? 0 : *std::max_element(sources.begin(), sources.end()) + 1, NoId);
+  for (std::size_t t = 0; t < sources.size(); ++t)
+  {
+    triangles[sources[t]] = static_cast<Id>(t);
+  }
+  return triangles;
+}
 } // namespace
 
 VolumeRefinement::VolumeRefinement(TetMesh mesh, TriangleMesh& surface,
@@ -83,6 +95,15 @@ VolumeRefinement::BoundaryShape::BoundaryShape(
   : Spheres(surface, edges),
     PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
     Sharp(surface, edges, this->PointTriangles), Layers(surface, this->PointTriangles)
+{
+}
+
+VolumeRefinement::BoundaryShape::BoundaryShape(BoundaryShape&& coarse, const TriangleMesh& surface,
+  const std::vector<StructuralEdge>& edges, const std::vector<Id>& parents)
+  : Spheres(surface, edges),
+    PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
+    Sharp(std::move(coarse.Sharp), edges, this->PointTriangles, parents),
+    Layers(coarse.Layers, this->PointTriangles, parents)
 {
 }
 
@@ -192,22 +213,55 @@ VolumeRefinement::KnownShape& VolumeRefinement::GetShape(Id tetrahedron) const
   KnownShape& known = this->Shapes[tetrahedron];
   if (known.Stamp != this->Mesh.GetStamp(tetrahedron))
   {
-    const std::array<Vec3, 4> v = this->GetVertices(this->GetMesh().Tetrahedra[tetrahedron]);
-    known = { GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]), this->Mesh.GetStamp(tetrahedron) };
+    known = {};
+    known.Stamp = this->Mesh.GetStamp(tetrahedron);
   }
   return known;
+}
+
+double VolumeRefinement::GetAngle(Id tetrahedron) const
+{
+  KnownShape& known = this->GetShape(tetrahedron);
+  if (known.Angle < 0.0)
+  {
+    const std::array<Vec3, 4> v = this->GetVertices(this->GetMesh().Tetrahedra[tetrahedron]);
+    known.Angle = GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]);
+  }
+  return known.Angle;
+}
+
+TetrahedronFault VolumeRefinement::GetFault(Id tetrahedron, double& severity) const
+{
+  KnownShape& known = this->GetShape(tetrahedron);
+  if (!known.Fault)
+  {
+    Vec3 target;
+    known.Fault = this->Limits.Find(
+      this->GetVertices(this->GetMesh().Tetrahedra[tetrahedron]), true, target, known.Severity);
+  }
+  severity = known.Severity;
+  return *known.Fault;
 }
 
 bool VolumeRefinement::IsInLayer(Id tetrahedron) const
 {
   KnownShape& known = this->GetShape(tetrahedron);
-  if (known.LayerRound != this->ShapeRound)
+  if (!known.IsInLayer)
   {
-    known.LayerRound = this->ShapeRound;
     known.IsInLayer = this->Shape->Layers.IsAcross(
       this->GetMesh().Tetrahedra[tetrahedron], this->GetMesh().Regions[tetrahedron]);
   }
-  return known.IsInLayer;
+  return *known.IsInLayer;
+}
+
+bool VolumeRefinement::IsAcrossSharp(Id tetrahedron) const
+{
+  KnownShape& known = this->GetShape(tetrahedron);
+  if (!known.IsAcrossSharp)
+  {
+    known.IsAcrossSharp = this->Shape->Sharp.IsAcross(this->GetMesh().Tetrahedra[tetrahedron]);
+  }
+  return *known.IsAcrossSharp;
 }
 
 /**
@@ -220,19 +274,12 @@ bool VolumeRefinement::IsFlat(Id tetrahedron) const
     this->GetAngle(tetrahedron) < FlatAngle;
 }
 
-/**
- * Whether a change is for a tetrahedron with such an angle; angles over the target always count.
- */
-bool VolumeRefinement::IsAimed(const Aim& aim, double angle, const TetrahedronIds& ids) const
-{
-  return angle >= aim.Target || this->Shape->Sharp.IsAcross(ids) == aim.IsSharp;
-}
-
+/** Angles over the target always count. */
 void VolumeRefinement::Include(const Aim& aim, Id tetrahedron, SmallestAngles& smallest) const
 {
   const double angle = this->GetAngle(tetrahedron);
-  double& one = this->IsAimed(aim, angle, this->GetMesh().Tetrahedra[tetrahedron]) ? smallest.Aimed
-                                                                                   : smallest.Other;
+  const bool isAimed = angle >= aim.Target || this->IsAcrossSharp(tetrahedron) == aim.IsSharp;
+  double& one = isAimed ? smallest.Aimed : smallest.Other;
   one = std::min(one, angle);
 }
 
@@ -255,7 +302,8 @@ double VolumeRefinement::RateHole(
   {
     const double angle = GetSmallestDihedralAngle(this->Mesh.GetPoint(facet[0]),
       this->Mesh.GetPoint(facet[1]), this->Mesh.GetPoint(facet[2]), position);
-    const bool isAimed = this->IsAimed(aim, angle, { facet[0], facet[1], facet[2], inside });
+    const bool isAimed = angle >= aim.Target ||
+      this->Shape->Sharp.IsAcross({ facet[0], facet[1], facet[2], inside }) == aim.IsSharp;
     if (isAimed ? angle <= required : angle < floor)
     {
       return 0.0;
@@ -278,8 +326,10 @@ bool VolumeRefinement::BreaksLimit(
 
 bool VolumeRefinement::BreaksLimit(Id tetrahedron) const
 {
-  const TetrahedronIds& ids = this->GetMesh().Tetrahedra[tetrahedron];
-  return this->BreaksLimit(ids, this->GetVertices(ids));
+  double severity = 0.0;
+  const TetrahedronFault fault = this->GetFault(tetrahedron, severity);
+  return fault == TetrahedronFault::Size ||
+    (fault == TetrahedronFault::Shape && !this->IsAcrossSharp(tetrahedron));
 }
 
 /** How many tetrahedra of the hole's cone would break a limit. */
@@ -432,13 +482,10 @@ Status VolumeRefinement::RefineByLimits(bool isShapeTested, const ExecutionConte
   std::priority_queue<Task> tasks;
   const auto schedule = [&](Id t)
   {
-    const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
-    Vec3 target;
     double severity = 0.0;
-    const TetrahedronFault fault =
-      this->Limits.Find(this->GetVertices(ids), isShapeTested, target, severity);
+    const TetrahedronFault fault = this->GetFault(t, severity);
     if (fault == TetrahedronFault::Size ||
-      (fault == TetrahedronFault::Shape && !this->Shape->Sharp.IsAcross(ids) &&
+      (fault == TetrahedronFault::Shape && isShapeTested && !this->IsAcrossSharp(t) &&
         !this->IsInLayer(t) && !this->IsFlat(t)))
     {
       tasks.push({ fault, severity, t, this->Mesh.GetStamp(t) });
@@ -502,6 +549,7 @@ bool VolumeRefinement::SplitBoundary(const DelaunaySurfaceRefinerOptions& option
       this->Mesh, this->FirstInside, this->Surface, this->Edges, options, sizing);
   }
   const Id first = static_cast<Id>(this->Surface.Points.size());
+  const std::vector<Id> sourceTriangles = ListSourceTriangles(this->Surface);
   status = this->Splits->Run(this->Requests.Triangles, this->Requests.Edges, context);
   const Id end = static_cast<Id>(this->Surface.Points.size());
   for (Id p = first; p < end; ++p)
@@ -520,8 +568,13 @@ bool VolumeRefinement::SplitBoundary(const DelaunaySurfaceRefinerOptions& option
   {
     return false;
   }
-  this->Shape = std::make_unique<BoundaryShape>(this->Surface, this->Edges);
-  ++this->ShapeRound;
+  std::vector<Id> parents;
+  for (Id source : this->Surface.SourceCells)
+  {
+    parents.push_back(sourceTriangles[source]);
+  }
+  this->Shape =
+    std::make_unique<BoundaryShape>(std::move(*this->Shape), this->Surface, this->Edges, parents);
   this->Requests.Clear();
   return true;
 }
@@ -700,16 +753,21 @@ bool VolumeRefinement::Mend(const Sliver& sliver, const Aim& aim, SliverAttempt 
 }
 
 /** Those that an aim is for, worst first; without those across thin layers. */
+/** Whether a change is to be for it. */
+bool VolumeRefinement::IsSliver(const Aim& aim, Id tetrahedron) const
+{
+  return !this->Mesh.IsDead(tetrahedron) && this->GetAngle(tetrahedron) < aim.Target &&
+    this->IsAcrossSharp(tetrahedron) == aim.IsSharp && !this->IsInLayer(tetrahedron);
+}
+
 std::vector<VolumeRefinement::Sliver> VolumeRefinement::FindSlivers(const Aim& aim) const
 {
   std::vector<Sliver> slivers;
   for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
   {
-    const double angle = this->Mesh.IsDead(t) ? 180.0 : this->GetAngle(t);
-    if (angle < aim.Target && this->IsAimed(aim, angle, this->GetMesh().Tetrahedra[t]) &&
-      !this->IsInLayer(t))
+    if (this->IsSliver(aim, t))
     {
-      slivers.push_back({ angle, t, this->Mesh.GetStamp(t) });
+      slivers.push_back({ this->GetAngle(t), t, this->Mesh.GetStamp(t) });
     }
   }
   std::sort(slivers.begin(), slivers.end(),
@@ -720,7 +778,12 @@ std::vector<VolumeRefinement::Sliver> VolumeRefinement::FindSlivers(const Aim& a
 
 std::size_t VolumeRefinement::CountSlivers(double target) const
 {
-  return this->FindSlivers({ target, false }).size();
+  std::size_t count = 0;
+  for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
+  {
+    count += this->IsSliver({ target, false }, t);
+  }
+  return count;
 }
 
 std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(double target,

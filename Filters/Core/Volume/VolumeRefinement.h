@@ -46,6 +46,7 @@
 #include "Core/Volume/ThinLayers.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace cdm
@@ -182,8 +183,10 @@ private:
   bool IsFree(Id point) const;
   std::array<Vec3, 4> GetVertices(const TetrahedronIds& ids) const;
   /** The smallest dihedral angle. */
-  double GetAngle(Id tetrahedron) const { return this->GetShape(tetrahedron).Angle; }
+  double GetAngle(Id tetrahedron) const;
+  TetrahedronFault GetFault(Id tetrahedron, double& severity) const;
   bool IsInLayer(Id tetrahedron) const;
+  bool IsAcrossSharp(Id tetrahedron) const;
   bool IsFlat(Id tetrahedron) const;
   /** What a change is for. */
   struct Aim
@@ -200,7 +203,6 @@ private:
     double Aimed = 180.0;
     double Other = 180.0;
   };
-  bool IsAimed(const Aim& aim, double angle, const TetrahedronIds& ids) const;
   void Include(const Aim& aim, Id tetrahedron, SmallestAngles& smallest) const;
   static double GetFloor(const Aim& aim, const SmallestAngles& before);
   double RateHole(const Vec3& position, const Aim& aim, double floor, double required) const;
@@ -221,6 +223,7 @@ private:
     Id Tetrahedron;
     std::int64_t Stamp;
   };
+  bool IsSliver(const Aim& aim, Id tetrahedron) const;
   std::vector<Sliver> FindSlivers(const Aim& aim) const;
   bool Mend(const Sliver& sliver, const Aim& aim, SliverAttempt last);
 
@@ -236,16 +239,21 @@ private:
   struct BoundaryShape
   {
     BoundaryShape(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges);
+    /**
+     * After some triangles have been split. Tetrahedra that stay are in the same sharp angles and
+     * thin layers.
+     * @param parents of each triangle, one that was in its facet before
+     */
+    BoundaryShape(BoundaryShape&& coarse, const TriangleMesh& surface,
+      const std::vector<StructuralEdge>& edges, const std::vector<Id>& parents);
 
     BoundarySpheres Spheres;
     /** Triangles at each point of the surface. */
     const IdLists PointTriangles;
-    const SharpAngles Sharp;
+    SharpAngles Sharp;
     const ThinLayers Layers;
   };
   std::unique_ptr<BoundaryShape> Shape;
-  /** How often it has changed. */
-  Id ShapeRound = 0;
   std::unique_ptr<BoundarySplits> Splits;
   /** One for each point of the mesh. */
   std::vector<InteriorPoint> Points;
@@ -254,16 +262,19 @@ private:
 
   BoundaryRequests Requests;
   /**
-   * What a tetrahedron was like when it was last asked for. To ask again and again whether it is
-   * across a layer was two fifths of the time of late rounds.
+   * What is known of a tetrahedron, from when it was last asked for. To ask again and again whether
+   * it is across a layer or a sharp angle, and breaks a limit, was two fifths of the time of late
+   * rounds.
    */
   struct KnownShape
   {
-    double Angle = 0.0;
     std::int64_t Stamp = NoId;
-    bool IsInLayer = false;
-    /** For what shape of the boundary that was asked, or NoId. */
-    Id LayerRound = NoId;
+    /** The smallest dihedral one, or negative. */
+    double Angle = -1.0;
+    double Severity = -1.0;
+    std::optional<TetrahedronFault> Fault;
+    std::optional<bool> IsInLayer;
+    std::optional<bool> IsAcrossSharp;
   };
   KnownShape& GetShape(Id tetrahedron) const;
   mutable std::vector<KnownShape> Shapes;
