@@ -37,6 +37,7 @@ private:
   {
     TetMesh Mesh;
     TriangleMesh Surface;
+    StructuralEdgesOutput Structural;
     std::vector<StructuralEdge> IntactEdges;
     std::vector<InteriorPoint> Interior;
     /** Points of this->Mesh. */
@@ -55,12 +56,12 @@ private:
       return ids;
     }
   };
-  void TakeApart(Parts& parts) const;
-  bool KeepIntact(const ExecutionContext& context, Parts& parts) const;
+  Status TakeApart(const ExecutionContext& context, Parts& parts) const;
+  Status KeepIntact(const ExecutionContext& context, Parts& parts) const;
   VolumeRefinement MakeRefinement(Parts& parts) const
   {
-    return VolumeRefinement(parts.Mesh, parts.Surface, parts.IntactEdges, {}, parts.Interior,
-      this->NoLimits, 0, parts.Memory);
+    return VolumeRefinement(parts.Mesh, parts.Surface, parts.Structural.Edges, parts.IntactEdges,
+      {}, parts.Interior, this->NoLimits, 0, parts.Memory);
   }
   void PutTogether(const Parts& parts, const TetMesh& moved);
 
@@ -73,9 +74,9 @@ private:
 
 /**
  * Leaves those triangles, and finds those edges, whose smallest spheres are empty of all points,
- * also of those without tetrahedra. False if aborted.
+ * also of those without tetrahedra.
  */
-bool SliverPointMoves::KeepIntact(const ExecutionContext& context, Parts& parts) const
+Status SliverPointMoves::KeepIntact(const ExecutionContext& context, Parts& parts) const
 {
   const SphereCriteria criteria(this->Mesh.Points);
   std::vector<EdgeIds> all;
@@ -84,7 +85,7 @@ bool SliverPointMoves::KeepIntact(const ExecutionContext& context, Parts& parts)
   {
     if (all.size() % ContinueInterval == 0 && !context.Continue(0.0, "Checking the boundary"))
     {
-      return false;
+      return Status::Aborted();
     }
     const bool isIntact = criteria.HasEmptySmallestSphere(parts.GetSources(ids));
     if (isIntact)
@@ -103,7 +104,7 @@ bool SliverPointMoves::KeepIntact(const ExecutionContext& context, Parts& parts)
   {
     if (e % ContinueInterval == 0 && !context.Continue(0.5, "Checking the boundary"))
     {
-      return false;
+      return Status::Aborted();
     }
     if (criteria.HasEmptySmallestSphere(parts.GetSources(all[e])))
     {
@@ -111,10 +112,10 @@ bool SliverPointMoves::KeepIntact(const ExecutionContext& context, Parts& parts)
       parts.IntactEdges.back().Points = all[e];
     }
   }
-  return true;
+  return Status();
 }
 
-void SliverPointMoves::TakeApart(Parts& parts) const
+Status SliverPointMoves::TakeApart(const ExecutionContext& context, Parts& parts) const
 {
   parts.Surface = ExtractBoundary(this->Mesh);
   parts.Sources = RemoveUnusedPoints(parts.Surface);
@@ -137,6 +138,9 @@ void SliverPointMoves::TakeApart(Parts& parts) const
     ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]], newIds[ids[3]] };
   }
   parts.IsIntact.assign(parts.Surface.Points.size(), 1);
+  const Status status =
+    ExtractStructuralEdges(parts.Surface, {}, context.Part(0.0, 0.25), parts.Structural);
+  return status.IsOk() ? this->KeepIntact(context.Part(0.25, 1.0), parts) : status;
 }
 
 void SliverPointMoves::PutTogether(const Parts& parts, const TetMesh& moved)
@@ -159,14 +163,13 @@ void SliverPointMoves::PutTogether(const Parts& parts, const TetMesh& moved)
 Status SliverPointMoves::MoveInside(const ExecutionContext& context)
 {
   Parts parts;
-  this->TakeApart(parts);
-  if (!this->KeepIntact(context.Part(0.0, 0.1), parts))
+  Status status = this->TakeApart(context.Part(0.0, 0.1), parts);
+  if (!status.IsOk())
   {
-    return Status::Aborted();
+    return status;
   }
   VolumeRefinement refinement = MakeRefinement(parts);
-  Status status =
-    refinement.PerturbSlivers(this->Target, SliverMeans::Moves, {}, context.Part(0.1, 0.9));
+  status = refinement.PerturbSlivers(this->Target, SliverMeans::Moves, {}, context.Part(0.1, 0.9));
   status = status.IsOk() ? refinement.PerturbSharp(this->Target, context.Part(0.9, 1.0)) : status;
   this->PutTogether(parts, refinement.GetMesh());
   this->MovedPoints += refinement.GetReport().MovedPoints;
@@ -177,17 +180,10 @@ Status SliverPointMoves::MoveBoundary(const ExecutionContext& context, bool& isM
 {
   isMoved = false;
   Parts parts;
-  this->TakeApart(parts);
-  StructuralEdgesOutput structural;
-  const Status status =
-    ExtractStructuralEdges(parts.Surface, {}, context.Part(0.0, 0.05), structural);
+  const Status status = this->TakeApart(context.Part(0.0, 0.2), parts);
   if (!status.IsOk())
   {
     return status;
-  }
-  if (!this->KeepIntact(context.Part(0.05, 0.2), parts))
-  {
-    return Status::Aborted();
   }
   std::vector<char> isFree = parts.IsIntact;
   for (int i = 0; i < MaximumTries; ++i)
@@ -197,8 +193,7 @@ Status SliverPointMoves::MoveBoundary(const ExecutionContext& context, bool& isM
       return Status::Aborted();
     }
     VolumeRefinement refinement = MakeRefinement(parts);
-    const std::vector<Vec3> places =
-      refinement.MoveSurfacePoints(this->Target, isFree, structural.Edges, true);
+    const std::vector<Vec3> places = refinement.MoveSurfacePoints(this->Target, isFree, true);
     std::vector<Vec3> points = this->Mesh.Points;
     std::vector<Id> moved;
     for (Id p = 0; p < static_cast<Id>(places.size()); ++p)
@@ -243,10 +238,10 @@ Status SliverPointMoves::MoveBoundary(const ExecutionContext& context, bool& isM
       isMoved = !moved.empty();
       this->MovedPoints += static_cast<Id>(moved.size());
       this->PutTogether(parts, refinement.GetMesh());
-      return Status{};
+      return Status();
     }
   }
-  return Status{};
+  return Status();
 }
 } // namespace
 

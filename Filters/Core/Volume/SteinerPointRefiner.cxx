@@ -354,7 +354,7 @@ Status Refiner::StartRound()
   this->Edges = std::move(refined.StructuralEdges);
   this->CollectSurfaceSizes();
   this->Round = std::make_unique<VolumeRefinement>(std::move(made.Mesh), this->Surface, this->Edges,
-    this->SurfaceSizes, this->Interior, this->Limits,
+    this->Edges, this->SurfaceSizes, this->Interior, this->Limits,
     this->MaximumNewPoints - this->Output.Report.BoundaryPoints -
       this->Output.Report.InteriorPoints,
     this->Memory, FewestReservedPoints + static_cast<Id>(this->Surface.Points.size()) / 4);
@@ -564,9 +564,8 @@ bool Refiner::MoveSurfacePoints()
     return false;
   }
   this->Moves.NoteTry();
-  return this->MoveSurface(
-    this->Round->MoveSurfacePoints(this->Options.DihedralAngleTarget, this->IsSurfaceFree,
-      this->Edges, this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges));
+  return this->MoveSurface(this->Round->MoveSurfacePoints(this->Options.DihedralAngleTarget,
+    this->IsSurfaceFree, this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges));
 }
 
 /** False if all points stay where they are. */

@@ -67,14 +67,15 @@ std::vector<Id> ListSourceTriangles(const TriangleMesh& surface)
 } // namespace
 
 VolumeRefinement::VolumeRefinement(TetMesh mesh, TriangleMesh& surface,
-  std::vector<StructuralEdge>& edges, const std::vector<double>& surfaceSizes,
-  const std::vector<InteriorPoint>& interior, const TetrahedronLimits& limits, Id maximumNewPoints,
-  SliverMemory& memory, Id reserve)
+  std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges,
+  const std::vector<double>& surfaceSizes, const std::vector<InteriorPoint>& interior,
+  const TetrahedronLimits& limits, Id maximumNewPoints, SliverMemory& memory, Id reserve)
   : Mesh(ReservePoints(std::move(mesh), surface.Points.size(), reserve)), Surface(surface),
-    Edges(edges), Limits(limits), FirstInside(static_cast<Id>(surface.Points.size()) + reserve),
+    Edges(edges), KeptEdges(keptEdges), Limits(limits),
+    FirstInside(static_cast<Id>(surface.Points.size()) + reserve),
     MaximumNewPoints(maximumNewPoints), Memory(memory),
-    Shape(std::make_unique<BoundaryShape>(surface, edges)),
-    Requests(surface, edges,
+    Shape(std::make_unique<BoundaryShape>(surface, edges, keptEdges)),
+    Requests(surface, keptEdges,
       [this](Id point, double distance)
       { return distance >= SizeRatio * this->Points[point].Size; })
 {
@@ -90,17 +91,18 @@ VolumeRefinement::VolumeRefinement(TetMesh mesh, TriangleMesh& surface,
   this->BoundSizes(all);
 }
 
-VolumeRefinement::BoundaryShape::BoundaryShape(
-  const TriangleMesh& surface, const std::vector<StructuralEdge>& edges)
-  : Spheres(surface, edges),
+VolumeRefinement::BoundaryShape::BoundaryShape(const TriangleMesh& surface,
+  const std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges)
+  : Spheres(surface, keptEdges),
     PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
     Sharp(surface, edges, this->PointTriangles), Layers(surface, this->PointTriangles)
 {
 }
 
 VolumeRefinement::BoundaryShape::BoundaryShape(BoundaryShape&& coarse, const TriangleMesh& surface,
-  const std::vector<StructuralEdge>& edges, const std::vector<Id>& parents)
-  : Spheres(surface, edges),
+  const std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges,
+  const std::vector<Id>& parents)
+  : Spheres(surface, keptEdges),
     PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
     Sharp(std::move(coarse.Sharp), edges, this->PointTriangles, parents),
     Layers(coarse.Layers, this->PointTriangles, parents)
@@ -573,8 +575,13 @@ bool VolumeRefinement::SplitBoundary(const DelaunaySurfaceRefinerOptions& option
   {
     parents.push_back(sourceTriangles[source]);
   }
-  this->Shape =
-    std::make_unique<BoundaryShape>(std::move(*this->Shape), this->Surface, this->Edges, parents);
+  this->Shape = std::make_unique<BoundaryShape>(
+    std::move(*this->Shape), this->Surface, this->Edges, this->KeptEdges, parents);
+  if (this->AreShapesPreliminary)
+  {
+    this->Shapes.clear();
+    this->AreShapesPreliminary = false;
+  }
   this->Requests.Clear();
   return true;
 }
@@ -786,8 +793,8 @@ std::size_t VolumeRefinement::CountSlivers(double target) const
   return count;
 }
 
-std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(double target,
-  const std::vector<char>& isFree, const std::vector<StructuralEdge>& structural, bool areEdgesKept)
+std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(
+  double target, const std::vector<char>& isFree, bool areEdgesKept)
 {
   SurfacePointMoves::Rules rules;
   rules.HasAngle = [this](const TetrahedronIds& ids, Id region)
@@ -796,8 +803,8 @@ std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(double target,
   { return this->BreaksLimit(ids, vertices); };
   rules.GetClearance = [this](Id point) { return SizeRatio * this->Points[point].Size; };
   const std::vector<StructuralEdge> none;
-  SurfacePointMoves moves(this->Mesh, this->Surface, this->Shape->PointTriangles, structural,
-    areEdgesKept ? this->Edges : none, rules);
+  SurfacePointMoves moves(this->Mesh, this->Surface, this->Shape->PointTriangles, this->Edges,
+    areEdgesKept ? this->KeptEdges : none, rules);
 
   bool isMended = true;
   for (int pass = 0; pass < MaximumPasses && isMended; ++pass)
@@ -823,6 +830,7 @@ std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(double target,
       if (isMoved)
       {
         this->NoteChanges();
+        this->AreShapesPreliminary = true;
         isMended = true;
       }
       else

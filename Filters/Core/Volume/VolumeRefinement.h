@@ -91,14 +91,17 @@ public:
    * pulling rule it stays if it is. The surface's triangles are those of its outer and interface
    * facets whose smallest spheres are empty, and stay so; points are put in only where no other
    * outer facet is near.
-   * @param surface outlives the object, as its edges do; both change with SplitBoundary() only
+   * @param surface outlives the object, as all edges do; they change with SplitBoundary() only
+   * @param edges structural ones of the surface, sorted
+   * @param keptEdges edges of the surface whose smallest spheres are empty, and stay so
    * @param surfaceSizes as InteriorPoint::Size, one for each point of the surface, or empty
    * @param memory is kept from one boundary to the next, which has more points
    * @param reserve so many points may be added to the surface by SplitBoundary()
    */
   VolumeRefinement(TetMesh mesh, TriangleMesh& surface, std::vector<StructuralEdge>& edges,
-    const std::vector<double>& surfaceSizes, const std::vector<InteriorPoint>& interior,
-    const TetrahedronLimits& limits, Id maximumNewPoints, SliverMemory& memory, Id reserve = 0);
+    const std::vector<StructuralEdge>& keptEdges, const std::vector<double>& surfaceSizes,
+    const std::vector<InteriorPoint>& interior, const TetrahedronLimits& limits,
+    Id maximumNewPoints, SliverMemory& memory, Id reserve = 0);
 
   /** One for each point of the surface: whether it has not been there, or has been elsewhere. */
   void NoteNewPoints(const std::vector<char>& isNew);
@@ -127,12 +130,11 @@ public:
    * they are in smallest spheres on the other side of outer facets: the surface gets its points,
    * and SplitBoundary() is called, or a new mesh is made.
    * @param isFree one for each point of the surface, whether it may be moved
-   * @param structural edges of the surface, sorted
-   * @param areEdgesKept whether smallest spheres of the object's edges stay empty, too
+   * @param areEdgesKept whether smallest spheres of the kept edges stay empty, too
    * @return where the surface's points are now
    */
-  std::vector<Vec3> MoveSurfacePoints(double target, const std::vector<char>& isFree,
-    const std::vector<StructuralEdge>& structural, bool areEdgesKept);
+  std::vector<Vec3> MoveSurfacePoints(
+    double target, const std::vector<char>& isFree, bool areEdgesKept);
 
   /** What is to be split in the boundary. */
   const BoundaryRequests& GetRequests() const { return this->Requests; }
@@ -230,6 +232,7 @@ private:
   DynamicTetrahedralization Mesh;
   TriangleMesh& Surface;
   std::vector<StructuralEdge>& Edges;
+  const std::vector<StructuralEdge>& KeptEdges;
   const TetrahedronLimits& Limits;
   /** Of the mesh's points; those of the surface, and places for new ones, come before. */
   const Id FirstInside;
@@ -238,14 +241,16 @@ private:
   /** What follows from the surface as it is. */
   struct BoundaryShape
   {
-    BoundaryShape(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges);
+    BoundaryShape(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
+      const std::vector<StructuralEdge>& keptEdges);
     /**
      * After some triangles have been split. Tetrahedra that stay are in the same sharp angles and
      * thin layers.
      * @param parents of each triangle, one that was in its facet before
      */
     BoundaryShape(BoundaryShape&& coarse, const TriangleMesh& surface,
-      const std::vector<StructuralEdge>& edges, const std::vector<Id>& parents);
+      const std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges,
+      const std::vector<Id>& parents);
 
     BoundarySpheres Spheres;
     /** Triangles at each point of the surface. */
@@ -278,6 +283,8 @@ private:
   };
   KnownShape& GetShape(Id tetrahedron) const;
   mutable std::vector<KnownShape> Shapes;
+  /** Some are of tetrahedra with points of the surface that have been moved in the mesh only. */
+  bool AreShapesPreliminary = false;
   /** Work space. */
   DynamicTetrahedralization::Hole Hole;
   BoundarySpheres::Disturbed Disturbed;
