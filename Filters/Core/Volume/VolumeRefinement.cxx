@@ -77,7 +77,8 @@ VolumeRefinement::VolumeRefinement(TetMesh mesh, TriangleMesh& surface,
     Shape(std::make_unique<BoundaryShape>(surface, edges, keptEdges)),
     Requests(surface, keptEdges,
       [this](Id point, double distance)
-      { return distance >= SizeRatio * this->Points[point].Size; })
+      { return distance >= SizeRatio * this->Points[point].Size; }),
+    Facts(this->Mesh, limits)
 {
   for (std::size_t p = 0; p < surface.Points.size(); ++p)
   {
@@ -89,24 +90,6 @@ VolumeRefinement::VolumeRefinement(TetMesh mesh, TriangleMesh& surface,
   std::vector<Id> all(this->Mesh.GetNumberOfTetrahedra());
   std::iota(all.begin(), all.end(), 0);
   this->BoundSizes(all);
-}
-
-VolumeRefinement::BoundaryShape::BoundaryShape(const TriangleMesh& surface,
-  const std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges)
-  : Spheres(surface, keptEdges),
-    PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
-    Sharp(surface, edges, this->PointTriangles), Layers(surface, this->PointTriangles)
-{
-}
-
-VolumeRefinement::BoundaryShape::BoundaryShape(BoundaryShape&& coarse, const TriangleMesh& surface,
-  const std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges,
-  const std::vector<Id>& parents)
-  : Spheres(surface, keptEdges),
-    PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
-    Sharp(std::move(coarse.Sharp), edges, this->PointTriangles, parents),
-    Layers(coarse.Layers, this->PointTriangles, parents)
-{
 }
 
 /** No size is larger than another one and the way there, along edges, beginning with some. */
@@ -206,66 +189,6 @@ std::array<Vec3, 4> VolumeRefinement::GetVertices(const TetrahedronIds& ids) con
     this->Mesh.GetPoint(ids[3]) };
 }
 
-VolumeRefinement::KnownShape& VolumeRefinement::GetShape(Id tetrahedron) const
-{
-  if (static_cast<std::size_t>(tetrahedron) >= this->Shapes.size())
-  {
-    this->Shapes.resize(this->GetMesh().Tetrahedra.size());
-  }
-  KnownShape& known = this->Shapes[tetrahedron];
-  if (known.Stamp != this->Mesh.GetStamp(tetrahedron))
-  {
-    known = {};
-    known.Stamp = this->Mesh.GetStamp(tetrahedron);
-  }
-  return known;
-}
-
-double VolumeRefinement::GetAngle(Id tetrahedron) const
-{
-  KnownShape& known = this->GetShape(tetrahedron);
-  if (known.Angle < 0.0)
-  {
-    const std::array<Vec3, 4> v = this->GetVertices(this->GetMesh().Tetrahedra[tetrahedron]);
-    known.Angle = GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]);
-  }
-  return known.Angle;
-}
-
-TetrahedronFault VolumeRefinement::GetFault(Id tetrahedron, double& severity) const
-{
-  KnownShape& known = this->GetShape(tetrahedron);
-  if (!known.Fault)
-  {
-    Vec3 target;
-    known.Fault = this->Limits.Find(
-      this->GetVertices(this->GetMesh().Tetrahedra[tetrahedron]), true, target, known.Severity);
-  }
-  severity = known.Severity;
-  return *known.Fault;
-}
-
-bool VolumeRefinement::IsInLayer(Id tetrahedron) const
-{
-  KnownShape& known = this->GetShape(tetrahedron);
-  if (!known.IsInLayer)
-  {
-    known.IsInLayer = this->Shape->Layers.IsAcross(
-      this->GetMesh().Tetrahedra[tetrahedron], this->GetMesh().Regions[tetrahedron]);
-  }
-  return *known.IsInLayer;
-}
-
-bool VolumeRefinement::IsAcrossSharp(Id tetrahedron) const
-{
-  KnownShape& known = this->GetShape(tetrahedron);
-  if (!known.IsAcrossSharp)
-  {
-    known.IsAcrossSharp = this->Shape->Sharp.IsAcross(this->GetMesh().Tetrahedra[tetrahedron]);
-  }
-  return *known.IsAcrossSharp;
-}
-
 /**
  * By rounding: its four points, which are all on the surface, would have no tetrahedron otherwise.
  */
@@ -329,7 +252,7 @@ bool VolumeRefinement::BreaksLimit(
 bool VolumeRefinement::BreaksLimit(Id tetrahedron) const
 {
   double severity = 0.0;
-  const TetrahedronFault fault = this->GetFault(tetrahedron, severity);
+  const TetrahedronFault fault = this->Facts.GetFault(tetrahedron, severity);
   return fault == TetrahedronFault::Size ||
     (fault == TetrahedronFault::Shape && !this->IsAcrossSharp(tetrahedron));
 }
@@ -485,7 +408,7 @@ Status VolumeRefinement::RefineByLimits(bool isShapeTested, const ExecutionConte
   const auto schedule = [&](Id t)
   {
     double severity = 0.0;
-    const TetrahedronFault fault = this->GetFault(t, severity);
+    const TetrahedronFault fault = this->Facts.GetFault(t, severity);
     if (fault == TetrahedronFault::Size ||
       (fault == TetrahedronFault::Shape && isShapeTested && !this->IsAcrossSharp(t) &&
         !this->IsInLayer(t) && !this->IsFlat(t)))
@@ -577,10 +500,10 @@ bool VolumeRefinement::SplitBoundary(const DelaunaySurfaceRefinerOptions& option
   }
   this->Shape = std::make_unique<BoundaryShape>(
     std::move(*this->Shape), this->Surface, this->Edges, this->KeptEdges, parents);
-  if (this->AreShapesPreliminary)
+  if (this->AreFactsPreliminary)
   {
-    this->Shapes.clear();
-    this->AreShapesPreliminary = false;
+    this->Facts.Forget();
+    this->AreFactsPreliminary = false;
   }
   this->Requests.Clear();
   return true;
@@ -830,7 +753,7 @@ std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(
       if (isMoved)
       {
         this->NoteChanges();
-        this->AreShapesPreliminary = true;
+        this->AreFactsPreliminary = true;
         isMended = true;
       }
       else

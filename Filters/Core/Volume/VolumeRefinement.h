@@ -34,19 +34,16 @@
 #define cdmVolumeRefinement_h
 
 #include "Core/Basics/ExecutionContext.h"
-#include "Core/Basics/IdLists.h"
 #include "Core/Basics/Status.h"
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 #include "Core/Sizing/TetrahedronLimits.h"
-#include "Core/Surface/SharpAngles.h"
 #include "Core/Volume/BoundaryRequests.h"
-#include "Core/Volume/BoundarySpheres.h"
+#include "Core/Volume/BoundaryShape.h"
 #include "Core/Volume/BoundarySplits.h"
 #include "Core/Volume/SliverMemory.h"
-#include "Core/Volume/ThinLayers.h"
+#include "Core/Volume/TetrahedronFacts.h"
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace cdm
@@ -184,11 +181,12 @@ private:
   void BoundSizes(const std::vector<Id>& tetrahedra);
   bool IsFree(Id point) const;
   std::array<Vec3, 4> GetVertices(const TetrahedronIds& ids) const;
-  /** The smallest dihedral angle. */
-  double GetAngle(Id tetrahedron) const;
-  TetrahedronFault GetFault(Id tetrahedron, double& severity) const;
-  bool IsInLayer(Id tetrahedron) const;
-  bool IsAcrossSharp(Id tetrahedron) const;
+  double GetAngle(Id tetrahedron) const { return this->Facts.GetAngle(tetrahedron); }
+  bool IsInLayer(Id tetrahedron) const { return this->Facts.IsInLayer(tetrahedron, *this->Shape); }
+  bool IsAcrossSharp(Id tetrahedron) const
+  {
+    return this->Facts.IsAcrossSharp(tetrahedron, *this->Shape);
+  }
   bool IsFlat(Id tetrahedron) const;
   /** What a change is for. */
   struct Aim
@@ -238,26 +236,7 @@ private:
   const Id FirstInside;
   Id MaximumNewPoints;
   SliverMemory& Memory;
-  /** What follows from the surface as it is. */
-  struct BoundaryShape
-  {
-    BoundaryShape(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
-      const std::vector<StructuralEdge>& keptEdges);
-    /**
-     * After some triangles have been split. Tetrahedra that stay are in the same sharp angles and
-     * thin layers.
-     * @param parents of each triangle, one that was in its facet before
-     */
-    BoundaryShape(BoundaryShape&& coarse, const TriangleMesh& surface,
-      const std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges,
-      const std::vector<Id>& parents);
-
-    BoundarySpheres Spheres;
-    /** Triangles at each point of the surface. */
-    const IdLists PointTriangles;
-    SharpAngles Sharp;
-    const ThinLayers Layers;
-  };
+  /** Of the surface as it is. */
   std::unique_ptr<BoundaryShape> Shape;
   std::unique_ptr<BoundarySplits> Splits;
   /** One for each point of the mesh. */
@@ -266,25 +245,9 @@ private:
   SliverMeans Means = SliverMeans::Moves;
 
   BoundaryRequests Requests;
-  /**
-   * What is known of a tetrahedron, from when it was last asked for. To ask again and again whether
-   * it is across a layer or a sharp angle, and breaks a limit, was two fifths of the time of late
-   * rounds.
-   */
-  struct KnownShape
-  {
-    std::int64_t Stamp = NoId;
-    /** The smallest dihedral one, or negative. */
-    double Angle = -1.0;
-    double Severity = -1.0;
-    std::optional<TetrahedronFault> Fault;
-    std::optional<bool> IsInLayer;
-    std::optional<bool> IsAcrossSharp;
-  };
-  KnownShape& GetShape(Id tetrahedron) const;
-  mutable std::vector<KnownShape> Shapes;
+  mutable TetrahedronFacts Facts;
   /** Some are of tetrahedra with points of the surface that have been moved in the mesh only. */
-  bool AreShapesPreliminary = false;
+  bool AreFactsPreliminary = false;
   /** Work space. */
   DynamicTetrahedralization::Hole Hole;
   BoundarySpheres::Disturbed Disturbed;
