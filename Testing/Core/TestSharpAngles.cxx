@@ -101,6 +101,32 @@ Sharp MakeTip(double angle)
   }
   return { surface, edges };
 }
+/**
+ * From 0, edges to 1 and 2 with a plane angle between them, and beyond the first edge a facet with
+ * the apex 3 that makes a dihedral angle with theirs; the facet's point 4 is seen from 0 at a given
+ * angle from the first edge.
+ */
+Sharp MakeShadow(double angle, double dihedralAngle, double pointAngle)
+{
+  const Vec3 along{ 1.0, 0.0, 0.0 };
+  const Vec3 across = MakeDirection(dihedralAngle);
+  const Vec3 height{ 0.0, across.X, across.Y };
+  const Vec3 seen = MakeDirection(pointAngle);
+  TriangleMesh surface;
+  surface.Points = { { 0.0, 0.0, 0.0 }, along, MakeDirection(angle), 0.5 * along + height,
+    0.4 * (seen.X * along + seen.Y * height) };
+  surface.Triangles = { { 0, 1, 2 }, { 1, 0, 4 }, { 3, 1, 4 }, { 0, 3, 4 } };
+  std::vector<StructuralEdge> edges;
+  for (const EdgeIds& ends :
+    { EdgeIds{ 0, 1 }, EdgeIds{ 0, 2 }, EdgeIds{ 0, 3 }, EdgeIds{ 1, 2 }, EdgeIds{ 1, 3 } })
+  {
+    StructuralEdge edge;
+    edge.Points = ends;
+    edge.DihedralAngle = dihedralAngle;
+    edges.push_back(edge);
+  }
+  return { surface, edges };
+}
 } // namespace
 
 TEST(SharpAngles, BetweenFacets)
@@ -162,6 +188,27 @@ TEST(SharpAngles, BetweenAnEdgeAndAFacetAtAPoint)
     EXPECT_FALSE(refined.Angles.IsAcross({ 1, 6, 2, 3 }));
     EXPECT_FALSE(refined.Angles.IsAcross({ 0, 7, 4, 5 }));
     EXPECT_FALSE(refined.Angles.IsAcross({ 2, 3, 7, Inside }));
+  }
+}
+
+TEST(SharpAngles, CastShadowsOnFacetsBesideThem)
+{
+  for (double angle : { 1.0, 20.0, 40.0 })
+  {
+    for (double dihedralAngle : { 80.0, 100.0 })
+    {
+      for (double part : { 0.1, 1.0, 1.1 })
+      {
+        SCOPED_TRACE(testing::Message() << angle << " " << dihedralAngle << " " << part);
+        const Sharp sharp = MakeShadow(angle, dihedralAngle, part * angle);
+        const bool isAcross = angle < 30.0 && dihedralAngle < 90.0 && part <= 1.0;
+        EXPECT_EQ(sharp.Angles.IsAcross({ 1, 4, Inside, Inside + 1 }), isAcross);
+        EXPECT_EQ(sharp.Angles.IsAcross({ Inside, 4, Inside + 1, 1 }), isAcross);
+        // The facet's corner is far from the edge; a point needs another one on the edge.
+        EXPECT_FALSE(sharp.Angles.IsAcross({ 1, 3, Inside, Inside + 1 }));
+        EXPECT_FALSE(sharp.Angles.IsAcross({ 3, 4, Inside, Inside + 1 }));
+      }
+    }
   }
 }
 

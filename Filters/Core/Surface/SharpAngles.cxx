@@ -71,8 +71,8 @@ SharpAngles::SharpAngles(const TriangleMesh& surface, const std::vector<Structur
   this->FindFacetPairs(edges, uses);
   this->FindTips(pointTriangles);
   this->MarkSharpEdges(edges);
+  this->FindArms(pointTriangles);
   this->ListFacets(pointTriangles);
-  this->FindArms();
 }
 
 SharpAngles::SharpAngles(SharpAngles&& coarse, const std::vector<StructuralEdge>& edges,
@@ -87,8 +87,8 @@ SharpAngles::SharpAngles(SharpAngles&& coarse, const std::vector<StructuralEdge>
   }
   this->IsCorner.resize(this->Surface.Points.size(), 0);
   this->MarkSharpEdges(edges);
+  this->FindArms(pointTriangles);
   this->ListFacets(pointTriangles);
-  this->FindArms();
 }
 
 void SharpAngles::FindFacetPairs(
@@ -212,6 +212,13 @@ void SharpAngles::ListFacets(const IdLists& pointTriangles)
     isSharp[tip.Facets.first] = 1;
     isSharp[tip.Facets.second] = 1;
   }
+  for (const Arm& arm : this->Arms)
+  {
+    for (const Shadow& shadow : arm.Shadows)
+    {
+      isSharp[shadow.Facet] = 1;
+    }
+  }
   std::vector<std::pair<Id, Id>> pairs;
   std::vector<Id> around;
   const Id numberOfPoints = static_cast<Id>(this->Surface.Points.size());
@@ -234,7 +241,50 @@ void SharpAngles::ListFacets(const IdLists& pointTriangles)
   this->PointFacets.Build(numberOfPoints, pairs);
 }
 
-void SharpAngles::FindArms()
+/**
+ * Of the angle between the edges to two points, in the facets beyond the first edge that bend by
+ * more than 90 degrees there.
+ */
+void SharpAngles::FindShadows(Id corner, Id first, Id other, const IdLists::Range& triangles,
+  std::vector<Shadow>& shadows) const
+{
+  const Vec3 along = GetDirection(this->Surface, corner, first);
+  // Facets at the first edge, and the way into each, across the edge; facets at the other one.
+  std::vector<std::pair<Id, Vec3>> beside;
+  std::vector<Id> atOther;
+  for (Id t : triangles)
+  {
+    const TriangleIds& ids = this->Surface.Triangles[t];
+    if (std::find(ids.begin(), ids.end(), other) != ids.end())
+    {
+      atOther.push_back(this->Facets[t]);
+    }
+    if (std::find(ids.begin(), ids.end(), first) != ids.end())
+    {
+      const Id apex =
+        *std::find_if(ids.begin(), ids.end(), [&](Id id) { return id != corner && id != first; });
+      const Vec3 way = this->Surface.Points[apex] - this->Surface.Points[corner];
+      beside.emplace_back(this->Facets[t], way - Dot(way, along) * along);
+    }
+  }
+  for (const auto& [facet, across] : beside)
+  {
+    if (std::find(atOther.begin(), atOther.end(), facet) == atOther.end())
+    {
+      continue;
+    }
+    const double sine = Norm(Cross(along, GetDirection(this->Surface, corner, other)));
+    for (const auto& [beyond, height] : beside)
+    {
+      if (beyond != facet && Dot(across, height) > 0.0)
+      {
+        shadows.push_back({ beyond, sine });
+      }
+    }
+  }
+}
+
+void SharpAngles::FindArms(const IdLists& pointTriangles)
 {
   const TriangleMesh& surface = this->Surface;
   const IdLists& neighbors = this->Neighbors;
@@ -245,12 +295,18 @@ void SharpAngles::FindArms()
     for (Id first : neighbors[corner])
     {
       const Vec3 direction = GetDirection(surface, corner, first);
-      const auto isSharp = [&](Id other)
+      bool isSharp = false;
+      std::vector<Shadow> shadows;
+      for (Id other : neighbors[corner])
       {
-        return other != first &&
-          Dot(direction, GetDirection(surface, corner, other)) > SharpPlaneCosine;
-      };
-      if (std::none_of(neighbors[corner].begin(), neighbors[corner].end(), isSharp))
+        if (other != first &&
+          Dot(direction, GetDirection(surface, corner, other)) > SharpPlaneCosine)
+        {
+          isSharp = true;
+          this->FindShadows(corner, first, other, pointTriangles[corner], shadows);
+        }
+      }
+      if (!isSharp)
       {
         continue;
       }
@@ -270,7 +326,7 @@ void SharpAngles::FindArms()
         last = point;
         point = next == ends.end() ? NoId : *next;
       }
-      this->Arms.push_back({ corner, direction });
+      this->Arms.push_back({ corner, direction, std::move(shadows) });
     }
   }
   this->PointArms.Build(numberOfPoints, pairs);
@@ -290,7 +346,8 @@ bool SharpAngles::IsAcross(const TetrahedronIds& ids) const
     for (std::size_t j = 0; j < i; ++j)
     {
       if (std::max(ids[i], ids[j]) < numberOfPoints &&
-        (this->AreAcrossFacets(ids[i], ids[j]) || this->AreAcrossArms(ids[i], ids[j])))
+        (this->AreAcrossFacets(ids[i], ids[j]) || this->AreAcrossArms(ids[i], ids[j]) ||
+          this->IsInShadow(ids[i], ids[j]) || this->IsInShadow(ids[j], ids[i])))
       {
         return true;
       }
@@ -342,6 +399,29 @@ bool SharpAngles::AreAcrossArms(Id p, Id q) const
     {
       if (i != j && this->Arms[i].Corner == this->Arms[j].Corner &&
         Dot(this->Arms[i].Direction, this->Arms[j].Direction) > SharpPlaneCosine)
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+/** Points of an angle are matched by points of its shadow. */
+bool SharpAngles::IsInShadow(Id armPoint, Id point) const
+{
+  const IdLists::Range facets = this->PointFacets[point];
+  for (Id i : this->PointArms[armPoint])
+  {
+    const Arm& arm = this->Arms[i];
+    for (const Shadow& shadow : arm.Shadows)
+    {
+      if (point == arm.Corner || !HasId(facets, shadow.Facet) || HasId(this->PointArms[point], i))
+      {
+        continue;
+      }
+      const Vec3 direction = GetDirection(this->Surface, arm.Corner, point);
+      const double sine = Norm(Cross(direction, arm.Direction));
+      if (Dot(direction, arm.Direction) > 0.0 && sine < (1.0 + StraightSine) * shadow.Sine)
       {
         return true;
       }

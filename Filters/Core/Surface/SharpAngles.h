@@ -11,7 +11,10 @@
  *
  * A side is a facet (triangles that no structural edge separates), or a structural edge with the
  * edges that go straight on from it. Facets that come together at a point may be far apart
- * elsewhere: only what the point sees less than 30 degrees apart is across.
+ * elsewhere: only what the point sees less than 30 degrees apart is across. A sharp plane angle
+ * casts a shadow on a facet that bends by more than 90 degrees at one of its edges: points of the
+ * angle are in the spheres of triangles there, and are matched by points as close to that edge
+ * (PartnerPoints.h). Those and the edge's points are across, too.
  *
  * Cost: O(n log n) to build; O(1) for a tetrahedron. About 60 bytes per triangle.
  */
@@ -51,12 +54,20 @@ public:
   bool IsAcross(const TetrahedronIds& ids) const;
 
 private:
+  /** Where a sharp plane angle falls on the facet beyond one of its edges. */
+  struct Shadow
+  {
+    Id Facet;
+    /** Of the angle. */
+    double Sine;
+  };
   /** A structural edge as seen from a corner with a sharp angle. */
   struct Arm
   {
     Id Corner;
     /** From the corner, of length one. */
     Vec3 Direction;
+    std::vector<Shadow> Shadows;
   };
 
   /** Two facets, the smaller one first, and a point at which they come together. */
@@ -82,10 +93,13 @@ private:
   void FindTipsAt(Id corner, const IdLists::Range& triangles);
   void MarkSharpEdges(const std::vector<StructuralEdge>& edges);
   void ListFacets(const IdLists& pointTriangles);
-  void FindArms();
+  void FindArms(const IdLists& pointTriangles);
+  void FindShadows(Id corner, Id first, Id other, const IdLists::Range& triangles,
+    std::vector<Shadow>& shadows) const;
   bool AreAcrossFacets(Id p, Id q) const;
   bool AreAcrossTip(const std::pair<Id, Id>& facets, Id p, Id q) const;
   bool AreAcrossArms(Id p, Id q) const;
+  bool IsInShadow(Id armPoint, Id point) const;
 
   const TriangleMesh& Surface;
   /** Other ends of the structural edges at each point. */
