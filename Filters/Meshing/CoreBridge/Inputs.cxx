@@ -142,6 +142,20 @@ void AddPolygon(cdm::PolygonSoup& soup, vtkIdType size, const vtkIdType* ids)
   }
   soup.Offsets.push_back(static_cast<cdm::Id>(soup.Connectivity.size()));
 }
+/** An array with one value for each point or cell; null without one, and if it does not fit. */
+cdm::Status FindScalars(vtkDataSetAttributes* data, const std::string& name,
+  const std::string& owner, vtkIdType numberOfOwners, vtkDataArray*& array)
+{
+  array = data->GetArray(name.c_str());
+  if (array &&
+    (array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != numberOfOwners))
+  {
+    array = nullptr;
+    return cdm::Status::InvalidInput("The " + owner + " array " + name +
+      " needs one component and one value for each " + owner + ": correct or remove it.");
+  }
+  return {};
+}
 } // namespace
 
 namespace vtkCoreBridge
@@ -304,44 +318,28 @@ cdm::Status ToPoints(vtkPointSet* input, const char* name, std::vector<cdm::Vec3
 //--------------------------------------------------------------------------------------------------
 cdm::Status ToFlags(vtkUnstructuredGrid* input, const char* name, std::vector<char>& flags)
 {
-  vtkDataArray* array = input->GetPointData()->GetArray(name);
-  if (!array)
-  {
-    return {};
-  }
-  if (array->GetNumberOfComponents() != 1 ||
-    array->GetNumberOfTuples() != input->GetNumberOfPoints())
-  {
-    return cdm::Status::InvalidInput(std::string("The point array ") + name +
-      " needs one component and one value for each point: correct or remove it.");
-  }
-  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  vtkDataArray* array = nullptr;
+  const cdm::Status status =
+    FindScalars(input->GetPointData(), name, "point", input->GetNumberOfPoints(), array);
+  for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
   {
     flags.push_back(array->GetComponent(i, 0) != 0.0);
   }
-  return {};
+  return status;
 }
 
 //--------------------------------------------------------------------------------------------------
 cdm::Status ToFacets(vtkPolyData* input, std::vector<cdm::Id>& facets)
 {
-  vtkDataArray* array = input->GetCellData()->GetArray(StructuralFacetIdName);
-  if (!array)
-  {
-    return {};
-  }
-  if (array->GetNumberOfComponents() != 1 ||
-    array->GetNumberOfTuples() != input->GetNumberOfCells())
-  {
-    return cdm::Status::InvalidInput(std::string("The cell array ") + StructuralFacetIdName +
-      " needs one component and one value for each cell: correct or remove it.");
-  }
+  vtkDataArray* array = nullptr;
+  const cdm::Status status = FindScalars(
+    input->GetCellData(), StructuralFacetIdName, "cell", input->GetNumberOfCells(), array);
   const vtkIdType first = GetFirstPolygon(input);
-  for (vtkIdType i = 0; i < input->GetNumberOfPolys(); ++i)
+  for (vtkIdType i = 0; array && i < input->GetNumberOfPolys(); ++i)
   {
     facets.push_back(static_cast<cdm::Id>(array->GetComponent(first + i, 0)));
   }
-  return {};
+  return status;
 }
 
 //--------------------------------------------------------------------------------------------------
