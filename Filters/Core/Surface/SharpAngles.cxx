@@ -241,45 +241,37 @@ void SharpAngles::ListFacets(const IdLists& pointTriangles)
   this->PointFacets.Build(numberOfPoints, pairs);
 }
 
-/**
- * Of the angle between the edges to two points, in the facets beyond the first edge that bend by
- * more than 90 degrees there.
- */
+/** Of the edge to another point, in the facets of the first edge that are on its side. */
 void SharpAngles::FindShadows(Id corner, Id first, Id other, const IdLists::Range& triangles,
   std::vector<Shadow>& shadows) const
 {
   const Vec3 along = GetDirection(this->Surface, corner, first);
-  // Facets at the first edge, and the way into each, across the edge; facets at the other one.
-  std::vector<std::pair<Id, Vec3>> beside;
-  std::vector<Id> atOther;
+  const auto getHeight = [&](Id point)
+  {
+    const Vec3 way = this->Surface.Points[point] - this->Surface.Points[corner];
+    return way - Dot(way, along) * along;
+  };
+  const Vec3 height = getHeight(other);
+  const double sine = Norm(Cross(along, GetDirection(this->Surface, corner, other)));
+  std::vector<Id> own;
   for (Id t : triangles)
   {
     const TriangleIds& ids = this->Surface.Triangles[t];
     if (std::find(ids.begin(), ids.end(), other) != ids.end())
     {
-      atOther.push_back(this->Facets[t]);
-    }
-    if (std::find(ids.begin(), ids.end(), first) != ids.end())
-    {
-      const Id apex =
-        *std::find_if(ids.begin(), ids.end(), [&](Id id) { return id != corner && id != first; });
-      const Vec3 way = this->Surface.Points[apex] - this->Surface.Points[corner];
-      beside.emplace_back(this->Facets[t], way - Dot(way, along) * along);
+      own.push_back(this->Facets[t]);
     }
   }
-  for (const auto& [facet, across] : beside)
+  for (Id t : triangles)
   {
-    if (std::find(atOther.begin(), atOther.end(), facet) == atOther.end())
+    const TriangleIds& ids = this->Surface.Triangles[t];
+    const auto apex =
+      std::find_if(ids.begin(), ids.end(), [&](Id id) { return id != corner && id != first; });
+    if (std::find(ids.begin(), ids.end(), first) != ids.end() &&
+      std::find(own.begin(), own.end(), this->Facets[t]) == own.end() &&
+      Dot(height, getHeight(*apex)) > 0.0)
     {
-      continue;
-    }
-    const double sine = Norm(Cross(along, GetDirection(this->Surface, corner, other)));
-    for (const auto& [beyond, height] : beside)
-    {
-      if (beyond != facet && Dot(across, height) > 0.0)
-      {
-        shadows.push_back({ beyond, sine });
-      }
+      shadows.push_back({ this->Facets[t], sine });
     }
   }
 }

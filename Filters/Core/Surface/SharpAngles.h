@@ -11,10 +11,10 @@
  *
  * A side is a facet (triangles that no structural edge separates), or a structural edge with the
  * edges that go straight on from it. Facets that come together at a point may be far apart
- * elsewhere: only what the point sees less than 30 degrees apart is across. A sharp plane angle
- * casts a shadow on a facet that bends by more than 90 degrees at one of its edges: points of the
- * angle are in the spheres of triangles there, and are matched by points as close to that edge
- * (PartnerPoints.h). Those and the edge's points are across, too.
+ * elsewhere: only what the point sees less than 30 degrees apart is across. Of two edges with a
+ * sharp plane angle, each casts a shadow on the facets of the other one that are on its side: its
+ * points are in the spheres of triangles there, and are matched by points as close to the other
+ * edge (PartnerPoints.h). Those and the points of that edge are across, too.
  *
  * Cost: O(n log n) to build; O(1) for a tetrahedron. About 60 bytes per triangle.
  */
@@ -54,7 +54,7 @@ public:
   bool IsAcross(const TetrahedronIds& ids) const;
 
 private:
-  /** Where a sharp plane angle falls on the facet beyond one of its edges. */
+  /** Of an edge that makes a sharp plane angle with another one, on a facet of that one. */
   struct Shadow
   {
     Id Facet;
