@@ -102,27 +102,27 @@ Sharp MakeTip(double angle)
   return { surface, edges };
 }
 /**
- * From 0, edges to 1 and 2 with a plane angle between them, and beyond the first edge a facet with
- * the apex 3 that makes a dihedral angle with theirs; the facet's point 4 is seen from 0 at a given
- * angle from the first edge.
+ * From 0, edges to 1 and 2 with a plane angle between them, in a facet or not; at the first edge a
+ * facet with the apex 3, turned by an angle about the edge from where 2 is. Its point 4 is seen
+ * from 0 at a given angle from the first edge.
  */
-Sharp MakeShadow(double angle, double dihedralAngle, double pointAngle)
+Sharp MakeShadow(double angle, bool isFacet, double turn, double pointAngle)
 {
   const Vec3 along{ 1.0, 0.0, 0.0 };
-  const Vec3 across = MakeDirection(dihedralAngle);
+  const Vec3 across = MakeDirection(turn);
   const Vec3 height{ 0.0, across.X, across.Y };
   const Vec3 seen = MakeDirection(pointAngle);
   TriangleMesh surface;
   surface.Points = { { 0.0, 0.0, 0.0 }, along, MakeDirection(angle), 0.5 * along + height,
-    0.4 * (seen.X * along + seen.Y * height) };
-  surface.Triangles = { { 0, 1, 2 }, { 1, 0, 4 }, { 3, 1, 4 }, { 0, 3, 4 } };
+    0.4 * (seen.X * along + seen.Y * height), { 0.0, 0.0, -1.0 } };
+  const Id last = isFacet ? 1 : 5;
+  surface.Triangles = { { 0, 2, last }, { 1, 0, 4 }, { 3, 1, 4 }, { 0, 3, 4 } };
   std::vector<StructuralEdge> edges;
-  for (const EdgeIds& ends :
-    { EdgeIds{ 0, 1 }, EdgeIds{ 0, 2 }, EdgeIds{ 0, 3 }, EdgeIds{ 1, 2 }, EdgeIds{ 1, 3 } })
+  for (Id end : { 1, 2, 3, 5 })
   {
     StructuralEdge edge;
-    edge.Points = ends;
-    edge.DihedralAngle = dihedralAngle;
+    edge.Points = { 0, end };
+    edge.DihedralAngle = 90.0;
     edges.push_back(edge);
   }
   return { surface, edges };
@@ -191,22 +191,26 @@ TEST(SharpAngles, BetweenAnEdgeAndAFacetAtAPoint)
   }
 }
 
-TEST(SharpAngles, CastShadowsOnFacetsBesideThem)
+TEST(SharpAngles, EdgesCastShadowsOnFacetsOfOthers)
 {
   for (double angle : { 1.0, 20.0, 40.0 })
   {
-    for (double dihedralAngle : { 80.0, 100.0 })
+    for (double turn : { 80.0, 100.0 })
     {
       for (double part : { 0.1, 1.0, 1.1 })
       {
-        SCOPED_TRACE(testing::Message() << angle << " " << dihedralAngle << " " << part);
-        const Sharp sharp = MakeShadow(angle, dihedralAngle, part * angle);
-        const bool isAcross = angle < 30.0 && dihedralAngle < 90.0 && part <= 1.0;
-        EXPECT_EQ(sharp.Angles.IsAcross({ 1, 4, Inside, Inside + 1 }), isAcross);
-        EXPECT_EQ(sharp.Angles.IsAcross({ Inside, 4, Inside + 1, 1 }), isAcross);
-        // The facet's corner is far from the edge; a point needs another one on the edge.
-        EXPECT_FALSE(sharp.Angles.IsAcross({ 1, 3, Inside, Inside + 1 }));
-        EXPECT_FALSE(sharp.Angles.IsAcross({ 3, 4, Inside, Inside + 1 }));
+        for (bool isFacet : { true, false })
+        {
+          SCOPED_TRACE(testing::Message()
+            << angle << " " << turn << " " << part << (isFacet ? " in a facet" : ""));
+          const Sharp sharp = MakeShadow(angle, isFacet, turn, part * angle);
+          const bool isAcross = angle < 30.0 && turn < 90.0 && part <= 1.0;
+          EXPECT_EQ(sharp.Angles.IsAcross({ 1, 4, Inside, Inside + 1 }), isAcross);
+          EXPECT_EQ(sharp.Angles.IsAcross({ Inside, 4, Inside + 1, 1 }), isAcross);
+          // The facet's apex is far from the edge; a point needs another one on the edge.
+          EXPECT_FALSE(sharp.Angles.IsAcross({ 1, 3, Inside, Inside + 1 }));
+          EXPECT_FALSE(sharp.Angles.IsAcross({ 3, 4, Inside, Inside + 1 }));
+        }
       }
     }
   }
