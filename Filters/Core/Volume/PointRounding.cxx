@@ -44,9 +44,10 @@ PointRounding::PointRounding(
   std::vector<std::pair<Id, Id>> pairs;
   for (Id t = 0; t < static_cast<Id>(mesh.Tetrahedra.size()); ++t)
   {
+    const bool isDead = mesh.Tetrahedra[t][0] == NoId;
     for (Id point : mesh.Tetrahedra[t])
     {
-      if (point != NoId && point < numberOfPoints && isUsed[point])
+      if (!isDead && point < numberOfPoints && isUsed[point])
       {
         pairs.emplace_back(point, t);
       }
