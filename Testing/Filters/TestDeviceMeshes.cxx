@@ -108,23 +108,21 @@ TEST_P(DeviceMeshes, TurnedAreClean)
   }
 }
 
-TEST_P(DeviceMeshes, TurnedNeedNoMoreSurfacePoints)
+TEST_P(DeviceMeshes, TurnedNeedAsManySurfacePoints)
 {
   for (const int criterion : { 0, 1, 2 })
   {
     const vtkIdType straight = this->CountSurfacePoints(0.0, criterion);
     std::vector<vtkIdType> turned;
-    for (const double angle : { 10.0, 33.0, 45.0, 66.0, 77.0 })
+    for (const double angle : { 1e-3, 10.0, 33.0, 45.0, 66.0, 77.0 })
     {
       turned.push_back(this->CountSurfacePoints(angle, criterion));
     }
     std::sort(turned.begin(), turned.end());
     std::cout << "criterion " << criterion << ": " << straight << " points, turned "
               << turned.front() << " to " << turned.back() << "\n";
-    // What rounding decides moves single points, and seldom a row of them.
-    EXPECT_LE(turned[2], 1.05 * straight);
-    EXPECT_LE(turned.back(), 1.06 * straight);
-    EXPECT_GE(turned.front(), 0.92 * straight);
+    EXPECT_LE(turned.back(), 1.05 * straight);
+    EXPECT_GE(turned.front(), 0.95 * straight);
   }
 }
 

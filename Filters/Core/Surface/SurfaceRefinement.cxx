@@ -104,21 +104,22 @@ void SurfaceRefinement::Enqueue(Id t)
   this->Touch(t);
   this->IsProven[t] = 0;
   this->IsBad[t] = 0;
-  if (this->States[t] != QueueState::First)
+  if (this->States[t] == QueueState::First)
   {
-    this->Enqueue(t, QueueState::First);
+    return;
   }
-}
-
-void SurfaceRefinement::Enqueue(Id t, QueueState state)
-{
-  this->States[t] = state;
   // Once the edges are fine enough, small triangles first: what large ones need depends on them.
   // Without, in order: of almost flat surfaces that would be refined down to the smallest.
   const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-  const double order = this->AreEdgesTested()
-    ? Norm(GetCircumcenterOffset(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]))
-    : static_cast<double>(this->NumberOfEnqueued++);
+  this->Enqueue(t, QueueState::First,
+    this->AreEdgesTested() ? Norm(GetCircumcenterOffset(
+                               this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]))
+                           : this->GetNextNumber());
+}
+
+void SurfaceRefinement::Enqueue(Id t, QueueState state, double order)
+{
+  this->States[t] = state;
   this->Queue.push_back({ state, order, t });
   std::push_heap(this->Queue.begin(), this->Queue.end(), std::greater<>());
 }
@@ -488,10 +489,9 @@ bool SurfaceRefinement::SplitSegment(Id segment, Id disturbing)
   return false;
 }
 
-bool SurfaceRefinement::ResolveByEdge(Id t)
+SurfaceRefinement::DisturbedEdge SurfaceRefinement::FindDisturbedEdge(Id t) const
 {
-  Id bestSegment = NoId;
-  Id bestPoint = NoId;
+  DisturbedEdge best;
   double bestDepth = Infinity;
   const auto consider = [&](Id segment, const std::vector<Id>& points)
   {
@@ -506,8 +506,7 @@ bool SurfaceRefinement::ResolveByEdge(Id t)
       if (point != ends[0] && point != ends[1] && depth < bestDepth &&
         InDiametralSphere(a, b, this->Points[point]) >= 0)
       {
-        bestSegment = segment;
-        bestPoint = point;
+        best = { segment, point, Distance(this->Points[point], middle) };
         bestDepth = depth;
       }
     }
@@ -522,7 +521,7 @@ bool SurfaceRefinement::ResolveByEdge(Id t)
       consider(segment, this->Found.Cocircular);
     }
   }
-  if (bestSegment == NoId)
+  if (best.Segment == NoId)
   {
     for (int i = 0; i < 3; ++i)
     {
@@ -533,7 +532,7 @@ bool SurfaceRefinement::ResolveByEdge(Id t)
       }
     }
   }
-  return bestSegment != NoId && this->SplitSegment(bestSegment, bestPoint);
+  return best;
 }
 
 bool SurfaceRefinement::ResolveInFacet(Id t, Id disturbing, const Vec3& target, bool isMirrored)
@@ -718,14 +717,21 @@ void SurfaceRefinement::Process(Id t, QueueState state)
   }
   // Whatever is done now, t is looked at again: the new point need not have changed it.
   this->IsBad[t] = 0;
-  if (this->ResolveByEdge(t))
+  const DisturbedEdge edge = this->FindDisturbedEdge(t);
+  if (edge.Segment != NoId && state == QueueState::First &&
+    this->Options.Criterion == SurfaceCriterion::SmallestSphere)
+  {
+    this->Enqueue(t, QueueState::Edge, edge.Distance);
+    return;
+  }
+  if (edge.Segment != NoId && this->SplitSegment(edge.Segment, edge.Point))
   {
     this->Enqueue(t);
     return;
   }
-  if (state == QueueState::First && !this->AreEdgesTested())
+  if (state != QueueState::Last && !this->AreEdgesTested())
   {
-    this->Enqueue(t, QueueState::Last);
+    this->Enqueue(t, QueueState::Last, this->GetNextNumber());
     return;
   }
   const Id disturbing = !this->Found.InsideSmallestSphere.empty()

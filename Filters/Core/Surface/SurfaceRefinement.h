@@ -101,12 +101,27 @@ private:
    * Unless all edges have been made fine enough before, triangles that only a point in their facet
    * would mend come last, when no edge is left to split: what edges need is needed anyway, and
    * points in facets match those on edges then. In thin parts that saves up to 40 % of the points.
+   *
+   * Edges of triangles whose smallest spheres have to be empty are split in the order of how close
+   * the disturbing point is to the middle, whatever the order of the triangles: up to 47 % fewer
+   * points (2.5 % in the mean), and within 5 % as many if the surface is turned. For the Delaunay
+   * criterion it would save as much, but all points in a sphere have to be looked for there, and
+   * needles, looked at after each split, take five times as long.
    */
   enum class QueueState : char
   {
     None,
     First,
+    Edge,
     Last
+  };
+
+  struct DisturbedEdge
+  {
+    Id Segment = NoId;
+    /** That disturbs the segment, and how far it is from the middle. */
+    Id Point = NoId;
+    double Distance = 0.0;
   };
 
   struct QueueEntry
@@ -138,9 +153,11 @@ private:
   bool IsCocircularFacet(Id t, const SurfaceDelaunayTest::Result& found) const;
   bool FindTooCoarse(Id t, Id& segment) const;
 
+  /** Of those of a triangle that is bad, the one disturbed most, or none. */
+  DisturbedEdge FindDisturbedEdge(Id t) const;
+
   // Each returns true if it has changed the surface.
   bool ResolveByFlip(Id t);
-  bool ResolveByEdge(Id t);
   bool ResolveInFacet(Id t, Id disturbing, const Vec3& target, bool isMirrored);
   bool SplitSegment(Id segment, Id disturbing);
   bool SplitLongestEdge(Id t);
@@ -151,7 +168,8 @@ private:
   void Touch(Id t);
   Vec3 FindCircumcenter(Id t) const;
   void Enqueue(Id t);
-  void Enqueue(Id t, QueueState state);
+  void Enqueue(Id t, QueueState state, double order);
+  double GetNextNumber() { return static_cast<double>(this->NumberOfEnqueued++); }
   void EnqueueEdge(Id segment);
   /** Whether there is a point at the position or nearer than that. */
   bool HasPointNear(const Vec3& position, double distance, Id except = NoId) const

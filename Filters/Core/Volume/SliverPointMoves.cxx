@@ -169,7 +169,7 @@ Status SliverPointMoves::MoveInside(const ExecutionContext& context)
     return status;
   }
   VolumeRefinement refinement = MakeRefinement(parts);
-  status = refinement.PerturbSlivers(this->Target, SliverMeans::Moves, {}, context.Part(0.1, 0.9));
+  status = refinement.PerturbSlivers(this->Target, SliverMeans::Moves, context.Part(0.1, 0.9));
   status = status.IsOk() ? refinement.PerturbSharp(this->Target, context.Part(0.9, 1.0)) : status;
   this->PutTogether(parts, refinement.GetMesh());
   this->MovedPoints += refinement.GetReport().MovedPoints;

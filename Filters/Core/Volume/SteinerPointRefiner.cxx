@@ -36,10 +36,6 @@ constexpr double RoundingGain = 0.75;
 constexpr int MaximumLastPasses = 5;
 /** Slivers wait until no more requests than these are left from badly shaped tetrahedra. */
 constexpr std::size_t FewRequests = 16;
-/** The boundary is split for flat tetrahedra if no more than these are left ... */
-constexpr double FewFlat = 16.0;
-/** ... or than this part of all. */
-constexpr double FewFlatRatio = 1e-3;
 /**
  * Edges of the boundary for a largest volume, in edges of the regular tetrahedron of that volume.
  */
@@ -117,7 +113,6 @@ private:
   Status RefineShapes();
   Status MendSlivers(Outcome& outcome);
   Status MoveOrRequest(Outcome& outcome);
-  bool AreManyFlat() const;
   Status PerturbSlivers(SliverMeans means);
   Status PerturbLastSlivers();
   bool RoundFlatTetrahedraAway();
@@ -466,25 +461,10 @@ Status Refiner::RefineRound(bool isShapeTested)
   return this->Round->RefineByLimits(isShapeTested, this->GetRoundContext());
 }
 
-/**
- * Rounding may leave a few flat tetrahedra, for which the boundary is split then; many are those of
- * a device that is turned, and splits would not end there.
- */
-bool Refiner::AreManyFlat() const
-{
-  const TetMesh& mesh = this->Round->GetMesh();
-  const std::vector<Id> flat = this->Round->FindFlatTetrahedra();
-  const auto count = std::count_if(flat.begin(), flat.end(),
-    [&](Id t) { return !this->IsInevitable(mesh.Tetrahedra[t], mesh.Regions[t]); });
-  return static_cast<double>(count) >
-    std::max(FewFlat, FewFlatRatio * static_cast<double>(mesh.Tetrahedra.size()));
-}
-
 Status Refiner::PerturbSlivers(SliverMeans means)
 {
-  const bool areFlatLeft = means == SliverMeans::Requests && this->AreManyFlat();
-  return this->Round->PerturbSlivers(this->Options.DihedralAngleTarget, means,
-    areFlatLeft ? this->IsSurfaceFree : std::vector<char>(), this->GetRoundContext());
+  return this->Round->PerturbSlivers(
+    this->Options.DihedralAngleTarget, means, this->GetRoundContext());
 }
 
 /** Points that were put in for shapes after the slivers' points were moved leave slivers, too. */

@@ -765,8 +765,8 @@ std::vector<Vec3> VolumeRefinement::MoveSurfacePoints(
   return moves.GetPoints();
 }
 
-Status VolumeRefinement::PerturbSlivers(double target, SliverMeans means,
-  const std::vector<char>& isFree, const ExecutionContext& context)
+Status VolumeRefinement::PerturbSlivers(
+  double target, SliverMeans means, const ExecutionContext& context)
 {
   this->Means = means;
   const Aim aim{ MoveRatio * target, false };
@@ -793,17 +793,13 @@ Status VolumeRefinement::PerturbSlivers(double target, SliverMeans means,
       }
       const TetrahedronIds ids = this->GetMesh().Tetrahedra[sliver.Tetrahedron];
       const bool isBad = sliver.Angle < target;
-      const bool mayRequest = means == SliverMeans::Requests &&
-        (isFree.empty() || !this->IsFlat(sliver.Tetrahedron) ||
-          std::none_of(ids.begin(), ids.end(),
-            [&](Id id) { return id >= this->FirstInside || isFree[id] != 0; }));
       if (this->Mend(
             sliver, aim, isBad && mayInsert ? SliverAttempt::Insertion : SliverAttempt::Move))
       {
         isMended = isMended || isBad;
         continue;
       }
-      if (isBad && isLast && mayRequest)
+      if (isBad && isLast && means == SliverMeans::Requests)
       {
         unmet.push_back(ids);
         const std::array<Vec3, 4> v = this->GetVertices(ids);

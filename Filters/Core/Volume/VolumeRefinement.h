@@ -108,13 +108,8 @@ public:
   void RemoveClosePoints(double smallest, const SizingField& sizing);
   /** Until no tetrahedron breaks a limit, but for those that need the boundary split. */
   Status RefineByLimits(bool isShapeTested, const ExecutionContext& context);
-  /**
-   * Until nothing of what may be done makes angles below the target (degrees) larger.
-   * @param isFree one for each point of the surface, or empty if none is; the boundary is not split
-   *   for a tetrahedron that is flat by rounding if one of its points is
-   */
-  Status PerturbSlivers(double target, SliverMeans means, const std::vector<char>& isFree,
-    const ExecutionContext& context);
+  /** Until nothing of what may be done makes angles below the target (degrees) larger. */
+  Status PerturbSlivers(double target, SliverMeans means, const ExecutionContext& context);
 
   /** Moves points of tetrahedra across sharp angles, as far as all others stay as good. */
   Status PerturbSharp(double target, const ExecutionContext& context);
