@@ -5,16 +5,22 @@
 #include "Core/Meshes/EdgeUses.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace cdm
 {
 namespace
 {
-constexpr double SharpDihedralAngle = 60.0;
-/** Of that angle. */
-constexpr double SharpDihedralCosine = 0.5;
-/** Of 30 degrees. */
-constexpr double SharpPlaneCosine = 0.8660254037844386;
+constexpr double Pi = 3.14159265358979323846;
+/** So much less than 60 degrees, or than the limit of plane angles, is rounding. */
+constexpr double AngleTolerance = 1e-7;
+constexpr double SharpDihedralAngle = 60.0 - AngleTolerance;
+
+double GetCosine(double degrees)
+{
+  return std::cos(degrees * Pi / 180.0);
+}
+
 /** Edges with a smaller sine of the angle between them go straight on: their points are rounded. */
 constexpr double StraightSine = 1e-6;
 
@@ -63,8 +69,9 @@ IdLists ListNeighbors(const TriangleMesh& surface, const std::vector<StructuralE
 } // namespace
 
 SharpAngles::SharpAngles(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
-  const IdLists& pointTriangles)
-  : Surface(surface), Neighbors(ListNeighbors(surface, edges)), IsCorner(surface.Points.size(), 0)
+  const IdLists& pointTriangles, double sharpPlaneAngle)
+  : Surface(surface), SharpPlaneCosine(GetCosine(sharpPlaneAngle - AngleTolerance)),
+    Neighbors(ListNeighbors(surface, edges)), IsCorner(surface.Points.size(), 0)
 {
   const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
   this->Facets = NumberFacets(uses, edges);
@@ -77,9 +84,9 @@ SharpAngles::SharpAngles(const TriangleMesh& surface, const std::vector<Structur
 
 SharpAngles::SharpAngles(SharpAngles&& coarse, const std::vector<StructuralEdge>& edges,
   const IdLists& pointTriangles, const std::vector<Id>& parents)
-  : Surface(coarse.Surface), Neighbors(ListNeighbors(this->Surface, edges)),
-    IsCorner(std::move(coarse.IsCorner)), FacetPairs(std::move(coarse.FacetPairs)),
-    Tips(std::move(coarse.Tips))
+  : Surface(coarse.Surface), SharpPlaneCosine(coarse.SharpPlaneCosine),
+    Neighbors(ListNeighbors(this->Surface, edges)), IsCorner(std::move(coarse.IsCorner)),
+    FacetPairs(std::move(coarse.FacetPairs)), Tips(std::move(coarse.Tips))
 {
   for (Id parent : parents)
   {
@@ -95,6 +102,7 @@ void SharpAngles::FindFacetPairs(
   const std::vector<StructuralEdge>& edges, const std::vector<EdgeUse>& uses)
 {
   const TriangleMesh& surface = this->Surface;
+  const double sharpCosine = GetCosine(SharpDihedralAngle);
   std::vector<Vec3> across;
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end)
   {
@@ -119,7 +127,7 @@ void SharpAngles::FindFacetPairs(
       across.push_back((1.0 / Norm(height)) * height);
       for (std::size_t j = begin; j < i; ++j)
       {
-        if (Dot(across[i - begin], across[j - begin]) > SharpDihedralCosine)
+        if (Dot(across[i - begin], across[j - begin]) > sharpCosine)
         {
           this->FacetPairs.push_back(
             std::minmax(this->Facets[use / 3], this->Facets[uses[j].Use / 3]));
@@ -178,7 +186,8 @@ void SharpAngles::FindTipsAt(Id corner, const IdLists::Range& triangles)
     {
       const std::pair<Id, Id> pair = std::minmax(facet, facets[t]);
       if (facet != facets[t] && !std::binary_search(meeting.begin(), meeting.end(), pair) &&
-        GetSectorCosine(GetDirection(this->Surface, corner, end), first, second) > SharpPlaneCosine)
+        GetSectorCosine(GetDirection(this->Surface, corner, end), first, second) >
+          this->SharpPlaneCosine)
       {
         this->IsCorner[corner] = 1;
         this->Tips.push_back({ pair, corner });
@@ -292,7 +301,7 @@ void SharpAngles::FindArms(const IdLists& pointTriangles)
       for (Id other : neighbors[corner])
       {
         if (other != first &&
-          Dot(direction, GetDirection(surface, corner, other)) > SharpPlaneCosine)
+          Dot(direction, GetDirection(surface, corner, other)) > this->SharpPlaneCosine)
         {
           isSharp = true;
           this->FindShadows(corner, first, other, pointTriangles[corner], shadows);
@@ -379,7 +388,7 @@ bool SharpAngles::AreAcrossTip(const std::pair<Id, Id>& facets, Id p, Id q) cons
     {
       return tip.Point != p && tip.Point != q &&
         Dot(GetDirection(this->Surface, tip.Point, p), GetDirection(this->Surface, tip.Point, q)) >
-        SharpPlaneCosine;
+        this->SharpPlaneCosine;
     });
 }
 
@@ -390,7 +399,7 @@ bool SharpAngles::AreAcrossArms(Id p, Id q) const
     for (Id j : this->PointArms[q])
     {
       if (i != j && this->Arms[i].Corner == this->Arms[j].Corner &&
-        Dot(this->Arms[i].Direction, this->Arms[j].Direction) > SharpPlaneCosine)
+        Dot(this->Arms[i].Direction, this->Arms[j].Direction) > this->SharpPlaneCosine)
       {
         return true;
       }

@@ -5,7 +5,8 @@
  *
  * Sharp are dihedral angles below 60 degrees between two facets at a structural edge, and below 30
  * degrees plane angles between two structural edges at a point, and angles between two facets that
- * come together at a point, but not at an edge there. In these, points of one side ask for points of
+ * come together at a point, but not at an edge there. Where edges have empty smallest spheres, these
+ * are sharp below 60 degrees, too: each edge is split where the other one is. In sharp angles, points of one side ask for points of
  * the other side, closer to the corner and so without end: refinement for shape has to stop there,
  * and the tetrahedra from one side to the other keep the shape that they have.
  *
@@ -31,12 +32,17 @@
 
 namespace cdm
 {
+/** Degrees, below which plane angles are sharp. */
+constexpr double UsualSharpPlaneAngle = 30.0;
+/** Where the smallest spheres of structural edges have to be empty. */
+constexpr double SharpPlaneAngleOfEmptySpheres = 60.0;
+
 class SharpAngles
 {
 public:
   /** Triangles at each point of the surface, which outlives the object. */
   SharpAngles(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
-    const IdLists& pointTriangles);
+    const IdLists& pointTriangles, double sharpPlaneAngle = UsualSharpPlaneAngle);
   /**
    * Of the same surface after some triangles have been split: points have been added, the others
    * are where they were. To find all angles again was a sixth of the time of many small rounds.
@@ -102,6 +108,7 @@ private:
   bool IsInShadow(Id armPoint, Id point) const;
 
   const TriangleMesh& Surface;
+  double SharpPlaneCosine;
   /** Other ends of the structural edges at each point. */
   IdLists Neighbors;
   /** Of each triangle. */

@@ -6,10 +6,11 @@
 namespace cdm
 {
 BoundaryShape::BoundaryShape(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
-  const std::vector<StructuralEdge>& keptEdges)
+  const std::vector<StructuralEdge>& keptEdges, double sharpPlaneAngle)
   : Spheres(surface, keptEdges),
     PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
-    Sharp(surface, edges, this->PointTriangles), Layers(surface, this->PointTriangles)
+    Sharp(surface, edges, this->PointTriangles, sharpPlaneAngle),
+    Layers(surface, this->PointTriangles)
 {
 }
 

@@ -25,9 +25,10 @@ struct BoundaryShape
    * All outlive the object.
    * @param edges structural ones, sorted
    * @param keptEdges those whose smallest spheres stay empty
+   * @param sharpPlaneAngle degrees, see SharpAngles
    */
   BoundaryShape(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
-    const std::vector<StructuralEdge>& keptEdges);
+    const std::vector<StructuralEdge>& keptEdges, double sharpPlaneAngle);
   /**
    * After some triangles have been split. Tetrahedra that stay are in the same sharp angles and
    * thin layers.

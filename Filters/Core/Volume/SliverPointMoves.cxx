@@ -61,12 +61,11 @@ private:
   VolumeRefinement MakeRefinement(Parts& parts) const
   {
     return VolumeRefinement(parts.Mesh, parts.Surface, parts.Structural.Edges, parts.IntactEdges,
-      {}, parts.Interior, this->NoLimits, 0, parts.Memory);
+      {}, parts.Interior, parts.Memory);
   }
   void PutTogether(const Parts& parts, const TetMesh& moved);
 
   const double Target;
-  const TetrahedronLimits NoLimits;
   const std::vector<char>& IsFree;
   TetMesh& Mesh;
   Id& MovedPoints;

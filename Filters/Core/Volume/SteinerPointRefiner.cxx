@@ -90,6 +90,7 @@ private:
   ExecutionContext GetRoundContext() const;
   Status Translate(Status status, const std::vector<Id>& sources) const;
   DelaunaySurfaceRefinerOptions GetSurfaceOptions() const;
+  VolumeRefinementOptions GetRoundOptions() const;
   Status StartRound();
   bool CanSplitInPlace() const;
   Status SplitBoundary();
@@ -256,6 +257,20 @@ Status Refiner::Translate(Status status, const std::vector<Id>& sources) const
   return status;
 }
 
+VolumeRefinementOptions Refiner::GetRoundOptions() const
+{
+  VolumeRefinementOptions options;
+  options.Limits = this->Limits;
+  options.MaximumNewPoints = this->MaximumNewPoints - this->Output.Report.BoundaryPoints -
+    this->Output.Report.InteriorPoints;
+  options.Reserve = FewestReservedPoints + static_cast<Id>(this->Surface.Points.size()) / 4;
+  if (this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges)
+  {
+    options.SharpPlaneAngle = SharpPlaneAngleOfEmptySpheres;
+  }
+  return options;
+}
+
 DelaunaySurfaceRefinerOptions Refiner::GetSurfaceOptions() const
 {
   DelaunaySurfaceRefinerOptions options;
@@ -349,10 +364,7 @@ Status Refiner::StartRound()
   this->Edges = std::move(refined.StructuralEdges);
   this->CollectSurfaceSizes();
   this->Round = std::make_unique<VolumeRefinement>(std::move(made.Mesh), this->Surface, this->Edges,
-    this->Edges, this->SurfaceSizes, this->Interior, this->Limits,
-    this->MaximumNewPoints - this->Output.Report.BoundaryPoints -
-      this->Output.Report.InteriorPoints,
-    this->Memory, FewestReservedPoints + static_cast<Id>(this->Surface.Points.size()) / 4);
+    this->Edges, this->SurfaceSizes, this->Interior, this->Memory, this->GetRoundOptions());
   this->IsSurfaceFree.resize(this->Surface.Points.size(), 1);
   this->IsNew.resize(this->Surface.Points.size(), 1);
   this->Round->NoteNewPoints(this->IsNew);

@@ -69,16 +69,16 @@ std::vector<Id> ListSourceTriangles(const TriangleMesh& surface)
 VolumeRefinement::VolumeRefinement(TetMesh mesh, TriangleMesh& surface,
   std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges,
   const std::vector<double>& surfaceSizes, const std::vector<InteriorPoint>& interior,
-  const TetrahedronLimits& limits, Id maximumNewPoints, SliverMemory& memory, Id reserve)
-  : Mesh(ReservePoints(std::move(mesh), surface.Points.size(), reserve)), Surface(surface),
-    Edges(edges), KeptEdges(keptEdges), Limits(limits),
-    FirstInside(static_cast<Id>(surface.Points.size()) + reserve),
-    MaximumNewPoints(maximumNewPoints), Memory(memory),
-    Shape(std::make_unique<BoundaryShape>(surface, edges, keptEdges)),
+  SliverMemory& memory, const VolumeRefinementOptions& options)
+  : Mesh(ReservePoints(std::move(mesh), surface.Points.size(), options.Reserve)), Surface(surface),
+    Edges(edges), KeptEdges(keptEdges), Limits(options.Limits),
+    FirstInside(static_cast<Id>(surface.Points.size()) + options.Reserve),
+    MaximumNewPoints(options.MaximumNewPoints), Memory(memory),
+    Shape(std::make_unique<BoundaryShape>(surface, edges, keptEdges, options.SharpPlaneAngle)),
     Requests(surface, keptEdges,
       [this](Id point, double distance)
       { return distance >= SizeRatio * this->Points[point].Size; }),
-    Facts(this->Mesh, limits)
+    Facts(this->Mesh, this->Limits)
 {
   for (std::size_t p = 0; p < surface.Points.size(); ++p)
   {

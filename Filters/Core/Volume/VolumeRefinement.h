@@ -62,6 +62,16 @@ struct InteriorPoint
   Id Name = NoId;
 };
 
+struct VolumeRefinementOptions
+{
+  TetrahedronLimits Limits;
+  Id MaximumNewPoints = 0;
+  /** So many points may be added to the surface by SplitBoundary(). */
+  Id Reserve = 0;
+  /** Of structural edges, degrees: see SharpAngles. */
+  double SharpPlaneAngle = UsualSharpPlaneAngle;
+};
+
 /** What may be done about slivers; each also what is above it. */
 enum class SliverMeans
 {
@@ -93,12 +103,11 @@ public:
    * @param keptEdges edges of the surface whose smallest spheres are empty, and stay so
    * @param surfaceSizes as InteriorPoint::Size, one for each point of the surface, or empty
    * @param memory is kept from one boundary to the next, which has more points
-   * @param reserve so many points may be added to the surface by SplitBoundary()
    */
   VolumeRefinement(TetMesh mesh, TriangleMesh& surface, std::vector<StructuralEdge>& edges,
     const std::vector<StructuralEdge>& keptEdges, const std::vector<double>& surfaceSizes,
-    const std::vector<InteriorPoint>& interior, const TetrahedronLimits& limits,
-    Id maximumNewPoints, SliverMemory& memory, Id reserve = 0);
+    const std::vector<InteriorPoint>& interior, SliverMemory& memory,
+    const VolumeRefinementOptions& options = VolumeRefinementOptions());
 
   /** One for each point of the surface: whether it has not been there, or has been elsewhere. */
   void NoteNewPoints(const std::vector<char>& isNew);
@@ -226,7 +235,7 @@ private:
   TriangleMesh& Surface;
   std::vector<StructuralEdge>& Edges;
   const std::vector<StructuralEdge>& KeptEdges;
-  const TetrahedronLimits& Limits;
+  const TetrahedronLimits Limits;
   /** Of the mesh's points; those of the surface, and places for new ones, come before. */
   const Id FirstInside;
   Id MaximumNewPoints;
