@@ -108,11 +108,17 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id disturbing) const
     // Close to an end of the piece, that end is the partner as good as there is: p stays outside of
     // pieces that are shorter than its squared height over its distance along.
     const double rest = std::abs(std::min(way, length - way));
-    const bool isClose = height < NeedleGapRatio * length && rest < CloseEndRatio * height;
+    const bool isOnSphere =
+      std::abs(Dot(a - p, b - p)) <= PerpendicularCosine * Distance(a, p) * Distance(b, p);
+    const bool isClose =
+      (isOnSphere || height < NeedleGapRatio * length) && rest < CloseEndRatio * height;
     if (isClose)
     {
-      const double shorter = std::max(
-        height, rest > 0.0 ? std::min(0.5 * length, 0.5 * height * (height / rest)) : 0.5 * length);
+      // A point that is on the sphere but for rounding is outside of the sphere of any piece.
+      const double longest = isOnSphere ? height
+        : rest > 0.0                    ? 0.5 * height * (height / rest)
+                                        : Infinity;
+      const double shorter = std::max(height, std::min(0.5 * length, longest));
       way = way < 0.5 * length ? shorter : length - shorter;
     }
     const double margin = isThin ? 0.0
