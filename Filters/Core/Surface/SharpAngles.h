@@ -5,14 +5,15 @@
  *
  * Sharp are dihedral angles below 60 degrees between two facets at a structural edge, and below 30
  * degrees plane angles between two structural edges at a point, and angles between two facets that
- * come together at a point, but not at an edge there. Where edges have empty smallest spheres, these
- * are sharp below 60 degrees, too: each edge is split where the other one is. In sharp angles, points of one side ask for points of
- * the other side, closer to the corner and so without end: refinement for shape has to stop there,
- * and the tetrahedra from one side to the other keep the shape that they have.
+ * come together at a point, but not at an edge there. Where edges have to have empty smallest
+ * spheres, these two are sharp below 60 degrees as well: each edge is split where the other one is.
+ * In sharp angles, points of one side ask for points of the other side, closer to the corner and so
+ * without end: refinement for shape has to stop there, and the tetrahedra from one side to the
+ * other keep the shape that they have.
  *
  * A side is a facet (triangles that no structural edge separates), or a structural edge with the
  * edges that go straight on from it. Facets that come together at a point may be far apart
- * elsewhere: only what the point sees less than 30 degrees apart is across. Of two edges with a
+ * elsewhere: only what the point sees less than that angle apart is across. Of two edges with a
  * sharp plane angle, each casts a shadow on the facets of the other one that are on its side: its
  * points are in the spheres of triangles there, and are matched by points as close to the other
  * edge (PartnerPoints.h). Those and the points of that edge are across, too.
@@ -32,7 +33,7 @@
 
 namespace cdm
 {
-/** Degrees, below which plane angles are sharp. */
+/** Degrees; plane angles below are sharp. */
 constexpr double UsualSharpPlaneAngle = 30.0;
 /** Where the smallest spheres of structural edges have to be empty. */
 constexpr double SharpPlaneAngleOfEmptySpheres = 60.0;
