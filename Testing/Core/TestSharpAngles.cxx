@@ -23,10 +23,11 @@ Vec3 MakeDirection(double degrees)
 /** A surface, and what is sharp in it. */
 struct Sharp
 {
-  Sharp(const TriangleMesh& surface, std::vector<StructuralEdge> edges)
+  Sharp(const TriangleMesh& surface, std::vector<StructuralEdge> edges,
+    double planeAngle = UsualSharpPlaneAngle)
     : Surface(surface), Edges(std::move(edges)),
       Angles(this->Surface, this->Edges,
-        ListTrianglesAtPoints(this->Surface.Triangles, this->Surface.Points.size()))
+        ListTrianglesAtPoints(this->Surface.Triangles, this->Surface.Points.size()), planeAngle)
   {
   }
 
@@ -161,6 +162,22 @@ TEST(SharpAngles, BetweenEdges)
     EXPECT_FALSE(sharp.Angles.IsAcross({ 1, 2, Inside, Inside + 1 }));
     EXPECT_FALSE(sharp.Angles.IsAcross({ 0, 3, 4, Inside }));
   }
+}
+
+TEST(SharpAngles, LimitsOfPlaneAnglesAreNotSharp)
+{
+  for (double limit : { UsualSharpPlaneAngle, SharpPlaneAngleOfEmptySpheres })
+  {
+    // As they are and a little smaller than rounding leaves them.
+    for (double less : { 0.0, 1e-13, 1.0 })
+    {
+      const Sharp made = MakeArms(limit - less);
+      const Sharp sharp(made.Surface, made.Edges, limit);
+      EXPECT_EQ(sharp.Angles.IsAcross({ 1, 3, Inside, Inside + 1 }), less == 1.0) << limit;
+    }
+  }
+  EXPECT_FALSE(MakeFacets(60.0).Angles.IsAcross({ 2, 3, Inside, Inside + 1 }));
+  EXPECT_FALSE(MakeFacets(60.0 - 1e-13).Angles.IsAcross({ 2, 3, Inside, Inside + 1 }));
 }
 
 TEST(SharpAngles, BetweenAnEdgeAndAFacetAtAPoint)
