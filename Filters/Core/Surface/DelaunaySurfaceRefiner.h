@@ -13,12 +13,14 @@
  *  2. test each triangle by the chosen criterion, with the double sphere (Crit. 6.1) in at most two
  *     searches of the point octree, and remember the sphere that proves it. For criterion 3.2 the
  *     structural edges come before all triangles, the shortest first, then the smallest triangle;
+ *     for 3.1 those of triangles that fail, the one first whose disturbing point is closest to its
+ *     middle;
  *  3. for a triangle that fails: flip; or split the structural edge that is disturbed at the foot
  *     or the partner of the disturbing point (types P and R); or mirror the disturbing point into
  *     the triangle's facet, about the edge or corner where the facets meet or along the normal; or
  *     insert the projected circumcenter found by the walk (Fig. 6.10); or split the longest edge.
  *     Points in facets come last, when no edge is left to split.
- *     The rules and why they end: README.md beside this file;
+ *     The rules and why they end: Filters/Core/README.md;
  *  4. test again the triangles whose proving sphere holds the new point;
  *  5. with an accuracy angle, facets are curved, and points that mend one triangle may disturb its
  *     neighbors for ever. Triangles of the input where points come much closer than the input's are

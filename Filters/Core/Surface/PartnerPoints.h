@@ -4,7 +4,7 @@
  * @brief Where a new point goes so that it and the point that disturbs leave each other alone.
  *
  * A point that disturbs an edge or a triangle is answered by its partner there (thesis 5.2.2, types
- * P and R; README.md, stage 2, has the proofs): two features never disturb each other for ever.
+ * P and R; Filters/Core/README.md has the proofs): two features never disturb each other for ever.
  *
  *  1. On an edge: the point as far from the common perpendicular of the disturbing point's edge and
  *     this one; for edges with a corner in common that is a rotation about it (type R), for
