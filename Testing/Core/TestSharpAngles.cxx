@@ -102,6 +102,7 @@ Sharp MakeTip(double angle)
   }
   return { surface, edges };
 }
+
 /**
  * From 0, edges to 1 and 2 with a plane angle between them, in a facet or not; at the first edge a
  * facet with the apex 3, turned by an angle about the edge from where 2 is. Its point 4 is seen

@@ -5,6 +5,7 @@
 #include "Core/Basics/ParallelLoop.h"
 #include "Core/Basics/ParallelSort.h"
 #include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Meshes/SimplexIncidence.h"
 #include "Core/Meshes/VolumeSums.h"
@@ -23,7 +24,6 @@ namespace cdm
 {
 namespace
 {
-constexpr double DegreesPerRadian = 57.29577951308232;
 constexpr std::size_t ContinueInterval = 1 << 12;
 constexpr const char* FacetActivity = "Checking facets";
 constexpr std::size_t MaximumNumberOfExamples = 10;

@@ -8,8 +8,6 @@ namespace cdm
 {
 namespace
 {
-constexpr double DegreesPerRadian = 57.29577951308232;
-
 /** Infinite instead of a division by zero, which a debugger or a sanitizer would report. */
 Vec3 Divide(const Vec3& vector, double divisor)
 {

@@ -16,6 +16,8 @@
 
 namespace cdm
 {
+constexpr double DegreesPerRadian = 57.29577951308232;
+
 /** Positive for a tetrahedron of positive orientation. */
 double GetSignedVolume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 

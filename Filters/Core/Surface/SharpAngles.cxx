@@ -2,6 +2,7 @@
 #include "Core/Surface/SharpAngles.h"
 
 #include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/Measures.h"
 #include "Core/Meshes/EdgeUses.h"
 
 #include <algorithm>
@@ -11,14 +12,13 @@ namespace cdm
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 /** So much less than 60 degrees, or than the limit of plane angles, is rounding. */
 constexpr double AngleTolerance = 1e-7;
 constexpr double SharpDihedralAngle = 60.0 - AngleTolerance;
 
 double GetCosine(double degrees)
 {
-  return std::cos(degrees * Pi / 180.0);
+  return std::cos(degrees / DegreesPerRadian);
 }
 
 /** Edges with a smaller sine of the angle between them go straight on: their points are rounded. */
@@ -407,6 +407,7 @@ bool SharpAngles::AreAcrossArms(Id p, Id q) const
   }
   return false;
 }
+
 /** Points of an angle are matched by points of its shadow. */
 bool SharpAngles::IsInShadow(Id armPoint, Id point) const
 {

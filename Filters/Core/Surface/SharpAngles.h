@@ -68,6 +68,7 @@ private:
     /** Of the angle. */
     double Sine;
   };
+
   /** A structural edge as seen from a corner with a sharp angle. */
   struct Arm
   {
@@ -109,7 +110,7 @@ private:
   bool IsInShadow(Id armPoint, Id point) const;
 
   const TriangleMesh& Surface;
-  double SharpPlaneCosine;
+  const double SharpPlaneCosine;
   /** Other ends of the structural edges at each point. */
   IdLists Neighbors;
   /** Of each triangle. */

@@ -13,7 +13,7 @@ namespace cdm
 {
 namespace
 {
-constexpr long double DegreesPerRadian = 57.295779513082320876798154814105L;
+constexpr long double WideDegreesPerRadian = 57.295779513082320876798154814105L;
 
 /** Bend in degrees up to which rounded coordinates may pass for flat. */
 constexpr long double LargestRoundedBend = 1.0L;
@@ -52,7 +52,7 @@ long double GetTurn(const WideVec3& edge, const HalfPlane& first, const HalfPlan
   // (e x u) x (e x v) = e det(e, u, v): both arguments have the factor |e| |first| |second|.
   const long double sine = Dot(first.Normal, second.Arm) * std::sqrt(Dot(edge, edge));
   const long double cosine = Dot(first.Normal, second.Normal);
-  return std::atan2(sine, cosine) * DegreesPerRadian;
+  return std::atan2(sine, cosine) * WideDegreesPerRadian;
 }
 
 bool IsZero(const WideVec3& a)
@@ -256,7 +256,7 @@ bool IsSurelySharp(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, d
   }
   const double sine = Norm(Cross(first, second));
   const double cosine = Dot(first, second);
-  return std::atan2(sine, cosine) * static_cast<double>(DegreesPerRadian) > limit + SafeAngle;
+  return std::atan2(sine, cosine) * static_cast<double>(WideDegreesPerRadian) > limit + SafeAngle;
 }
 } // namespace
 
@@ -311,7 +311,7 @@ bool IsSmoothEdge(
   const long double edgeLength = std::sqrt(Dot(edge, edge));
   const long double sine = std::abs(Dot(first.Normal, second.Arm)) * edgeLength;
   const long double cosine = -Dot(first.Normal, second.Normal);
-  const long double bend = std::atan2(sine, cosine) * DegreesPerRadian;
+  const long double bend = std::atan2(sine, cosine) * WideDegreesPerRadian;
   if (bend <= accuracyAngle)
   {
     return true;
@@ -325,7 +325,7 @@ bool IsSmoothEdge(
   const long double largerHeight =
     std::sqrt(std::max(Dot(first.Normal, first.Normal), Dot(second.Normal, second.Normal))) /
     edgeLength;
-  return largerHeight * std::sin(bend / DegreesPerRadian) <= flatness;
+  return largerHeight * std::sin(bend / WideDegreesPerRadian) <= flatness;
 }
 
 double GetBoundingBoxDiagonal(const std::vector<Vec3>& points)

@@ -44,10 +44,13 @@ PointRounding::PointRounding(
   std::vector<std::pair<Id, Id>> pairs;
   for (Id t = 0; t < static_cast<Id>(mesh.Tetrahedra.size()); ++t)
   {
-    const bool isDead = mesh.Tetrahedra[t][0] == NoId;
+    if (mesh.Tetrahedra[t][0] == NoId)
+    {
+      continue;
+    }
     for (Id point : mesh.Tetrahedra[t])
     {
-      if (!isDead && point < numberOfPoints && isUsed[point])
+      if (point < numberOfPoints && isUsed[point])
       {
         pairs.emplace_back(point, t);
       }

@@ -142,6 +142,7 @@ void AddPolygon(cdm::PolygonSoup& soup, vtkIdType size, const vtkIdType* ids)
   }
   soup.Offsets.push_back(static_cast<cdm::Id>(soup.Connectivity.size()));
 }
+
 /** An array with one value for each point or cell; null without one, and if it does not fit. */
 cdm::Status FindScalars(vtkDataSetAttributes* data, const std::string& name,
   const std::string& owner, vtkIdType numberOfOwners, vtkDataArray*& array)
