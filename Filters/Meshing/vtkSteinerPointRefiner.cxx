@@ -174,6 +174,7 @@ int vtkSteinerPointRefiner::RequestData(
   this->NumberOfBadlyShapedTetrahedra = report.BadlyShaped;
   this->NumberOfSlivers = report.Slivers;
   this->NumberOfInevitableFaults = report.Inevitable;
+  this->NumberOfNegativeCouplings = report.NegativeCouplings;
   if (!status.IsOk())
   {
     return vtkCoreBridge::ReportFailure(this, outputVector, status, namedInput);
@@ -208,6 +209,12 @@ int vtkSteinerPointRefiner::RequestData(
     vtkWarningMacro(<< report.UnresolvedTriangles
                     << " triangles of the boundary do not fulfil the criterion.");
   }
+  if (report.NegativeCouplings > 0)
+  {
+    vtkWarningMacro(<< report.NegativeCouplings
+                    << " edges of the boundary have a negative coupling: allow more points, or use "
+                       "the criterion SmallestSphereAndEdges.");
+  }
   return 1;
 }
 
@@ -234,4 +241,5 @@ void vtkSteinerPointRefiner::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfBadlyShapedTetrahedra: " << this->NumberOfBadlyShapedTetrahedra << "\n";
   os << indent << "NumberOfSlivers: " << this->NumberOfSlivers << "\n";
   os << indent << "NumberOfInevitableFaults: " << this->NumberOfInevitableFaults << "\n";
+  os << indent << "NumberOfNegativeCouplings: " << this->NumberOfNegativeCouplings << "\n";
 }

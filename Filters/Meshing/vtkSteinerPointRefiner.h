@@ -12,7 +12,8 @@
  *  3. points of slivers are moved, inside of their region, each move with a local update of the
  *     Delaunay mesh, and only if the smallest dihedral angle around it grows; where that does not
  *     help points are taken out or added, then points of the boundary moved in their facet or along
- *     their edge, at last the boundary is split.
+ *     their edge, at last the boundary is split;
+ *  4. edges of the boundary with a negative coupling of the box method are split.
  *
  * Inputs: port 0: vtkUnstructuredGrid of VTK_TETRA only, as it comes from
  * vtkAdvancingFrontTetrahedralizer or any other source; cell array RegionId (whole numbers from 0
@@ -37,8 +38,9 @@
  * BoundaryLabels (int, 2 components) and the cell data of port 2.
  *
  * Guarantees: the mesh is Delaunay and keeps the shape of the boundary; each boundary triangle
- * fulfils the criterion. Points that are not free keep their coordinates. It ends for every bound.
- * Deterministic.
+ * fulfils the criterion, and no coupling of the box method is negative, with either criterion, but
+ * for those that a warning counts. Points that are not free keep their coordinates. It ends for
+ * every bound. Deterministic.
  *
  * Failure: an error that names the cells, and empty outputs, for an empty input, cells of another
  * type, tetrahedra that are inverted or flat, a boundary that does not belong to the mesh. An
@@ -163,6 +165,8 @@ public:
   vtkGetMacro(NumberOfBadlyShapedTetrahedra, vtkIdType);
   vtkGetMacro(NumberOfSlivers, vtkIdType);
   vtkGetMacro(NumberOfInevitableFaults, vtkIdType);
+  /** Edges of the boundary with a negative coupling. */
+  vtkGetMacro(NumberOfNegativeCouplings, vtkIdType);
   ///@}
 
 protected:
@@ -193,6 +197,7 @@ protected:
   vtkIdType NumberOfBadlyShapedTetrahedra = 0;
   vtkIdType NumberOfSlivers = 0;
   vtkIdType NumberOfInevitableFaults = 0;
+  vtkIdType NumberOfNegativeCouplings = 0;
 
 private:
   vtkSteinerPointRefiner(const vtkSteinerPointRefiner&) = delete;

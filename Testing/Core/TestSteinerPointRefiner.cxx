@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Certificate/MeshChecks.h"
+#include "Core/Certificate/MeshCriteria.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Surface/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
@@ -128,6 +128,11 @@ void ExpectRight(const SteinerPointRefinerInput& input, const SteinerPointRefine
     EXPECT_NEAR(before.Regions[i].Volume, check.Regions[i].Volume, 1e-12);
   }
 
+  MeshCriteriaReport criteria;
+  ASSERT_TRUE(EvaluateMeshCriteria(output.Mesh, &output.Boundary, {}, {}, criteria).IsOk());
+  EXPECT_EQ(
+    criteria.GetCount(MeshFault::NegativeCoupling) > 0, output.Report.NegativeCouplings > 0);
+
   Id counts[5] = { 0, 0, 0, 0, 0 };
   ASSERT_EQ(output.Faults.size(), output.Mesh.Tetrahedra.size());
   const std::vector<Vec3>& p = output.Mesh.Points;
@@ -190,6 +195,7 @@ void ExpectNoFaults(const SteinerPointRefinerReport& report)
   EXPECT_EQ(report.BadlyShaped, 0);
   EXPECT_EQ(report.Slivers, 0);
   EXPECT_EQ(report.Inevitable, 0);
+  EXPECT_EQ(report.NegativeCouplings, 0);
 }
 } // namespace
 
@@ -283,6 +289,7 @@ TEST(SteinerPointRefiner, RandomComplexesInAnyPosition)
     options.MaximumEdgeLength = 0.3;
     const SteinerPointRefinerOutput output = Refine(input, options);
     EXPECT_EQ(output.Report.TooLarge, 0);
+    EXPECT_EQ(output.Report.NegativeCouplings, 0);
     // The triangles given, refined.
     for (std::size_t t = 0; t < output.Boundary.Triangles.size(); ++t)
     {
@@ -365,6 +372,24 @@ TEST(SteinerPointRefiner, ManyEdgesAtOnePointAreNotRefinedForEver)
   EXPECT_EQ(output.Report.BadlyShaped, 0);
   EXPECT_EQ(output.Report.Slivers, 0);
   EXPECT_LT(output.Mesh.Tetrahedra.size(), 2000u);
+}
+
+TEST(SteinerPointRefiner, SplitsEdgesWithNegativeCouplings)
+{
+  PolygonSoup soup;
+  soup.Points = { { 2.0, 1.0, 0.0 }, { 3.0, 1.0, 0.0 }, { 0.0, 5.0, 0.0 }, { 4.0, 5.0, 6.0 } };
+  soup.Connectivity = { 0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3 };
+  soup.Offsets = { 0, 3, 6, 9, 12 };
+  const Stage3 mesh = MakeMesh(soup);
+  SteinerPointRefinerInput input;
+  input.Mesh = &mesh.Output.Mesh;
+  SteinerPointRefinerOptions options;
+  // Nothing else is asked for.
+  options.RadiusEdgeRatio = 0.0;
+  options.DihedralAngleTarget = 0.0;
+  const SteinerPointRefinerReport report = Refine(input, options).Report;
+  EXPECT_GT(report.BoundaryPoints, 0);
+  ExpectNoFaults(report);
 }
 
 TEST(SteinerPointRefiner, FollowsTheSizing)

@@ -126,8 +126,6 @@ private:
   void EvaluateEdge(
     const EdgeIds& edge, RecordIterator begin, RecordIterator end, BlockResult& result) const;
   bool HasNegativeCotangentSum(RecordIterator begin, RecordIterator end) const;
-  bool HasNegativeCoupling(
-    const EdgeIds& edge, RecordIterator begin, RecordIterator end, Id region) const;
 
   template <typename Block>
   void Join(const std::vector<Block>& blocks);
@@ -465,23 +463,6 @@ bool Evaluator::HasNegativeCotangentSum(RecordIterator begin, RecordIterator end
   return accurateSum.High < -SumTolerance * lengths;
 }
 
-bool Evaluator::HasNegativeCoupling(
-  const EdgeIds& edge, RecordIterator begin, RecordIterator end, Id region) const
-{
-  CouplingSum sum;
-  for (auto record = begin; record != end; ++record)
-  {
-    const Id tetrahedron = record->Simplex / 6;
-    if (this->Mesh.Regions[tetrahedron] == region && this->Orientations[tetrahedron] > 0)
-    {
-      const auto [a, b, c, d] = this->GetCorners(tetrahedron);
-      sum.Add(GetCouplings(a, b, c, d)[record->Simplex % 6]);
-    }
-  }
-  return sum.IsNegative(Distance(this->Mesh.Points[edge[0]], this->Mesh.Points[edge[1]]),
-    [&] { return GetCouplingRounding(this->Mesh, begin, end, region); });
-}
-
 void Evaluator::EvaluateEdge(
   const EdgeIds& edge, RecordIterator begin, RecordIterator end, BlockResult& result) const
 {
@@ -507,7 +488,7 @@ void Evaluator::EvaluateEdge(
     if (isFirst)
     {
       ++result.Couplings;
-      if (!isConvex && this->HasNegativeCoupling(edge, begin, end, region))
+      if (!isConvex && HasNegativeCoupling(this->Mesh, edge, begin, end, region))
       {
         add(MeshFault::NegativeCoupling, region, record->Simplex / 6);
       }

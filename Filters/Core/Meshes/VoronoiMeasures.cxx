@@ -63,6 +63,17 @@ struct Frame
   DoubleDouble SixVolumes;
 };
 
+std::array<Vec3, 4> GetCorners(const TetMesh& mesh, Id tetrahedron)
+{
+  const TetrahedronIds& ids = mesh.Tetrahedra[tetrahedron];
+  return { mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]], mesh.Points[ids[3]] };
+}
+
+bool IsPositive(const std::array<Vec3, 4>& corners)
+{
+  return Orientation(corners[0], corners[1], corners[2], corners[3]) > 0;
+}
+
 /** How much rounding can change the coupling of an edge, as in TetrahedronEdges. */
 double GetRounding(const std::array<Vec3, 4>& corners, int edge)
 {
@@ -148,16 +159,31 @@ double GetCouplingRounding(const TetMesh& mesh,
   for (auto record = begin; record != end; ++record)
   {
     const Id tetrahedron = record->Simplex / 6;
-    const TetrahedronIds& ids = mesh.Tetrahedra[tetrahedron];
-    const std::array<Vec3, 4> corners{ mesh.Points[ids[0]], mesh.Points[ids[1]],
-      mesh.Points[ids[2]], mesh.Points[ids[3]] };
-    if (mesh.Regions[tetrahedron] == region &&
-      Orientation(corners[0], corners[1], corners[2], corners[3]) > 0)
+    const std::array<Vec3, 4> corners = GetCorners(mesh, tetrahedron);
+    if (mesh.Regions[tetrahedron] == region && IsPositive(corners))
     {
       rounding += GetRounding(corners, record->Simplex % 6);
     }
   }
   return rounding;
+}
+
+bool HasNegativeCoupling(const TetMesh& mesh, const EdgeIds& edge,
+  std::vector<SimplexIncidence::Record>::const_iterator begin,
+  std::vector<SimplexIncidence::Record>::const_iterator end, Id region)
+{
+  CouplingSum sum;
+  for (auto record = begin; record != end; ++record)
+  {
+    const Id tetrahedron = record->Simplex / 6;
+    const auto [a, b, c, d] = GetCorners(mesh, tetrahedron);
+    if (mesh.Regions[tetrahedron] == region && IsPositive({ a, b, c, d }))
+    {
+      sum.Add(GetCouplings(a, b, c, d)[record->Simplex % 6]);
+    }
+  }
+  return sum.IsNegative(Distance(mesh.Points[edge[0]], mesh.Points[edge[1]]),
+    [&] { return GetCouplingRounding(mesh, begin, end, region); });
 }
 
 std::array<DoubleDouble, 3> GetVertexAreas(const Vec3& a, const Vec3& b, const Vec3& c)

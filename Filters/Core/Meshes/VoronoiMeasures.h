@@ -72,6 +72,14 @@ private:
   double Lengths = 0.0;
 };
 
+/**
+ * Whether the coupling of an edge, of which all records are given, is negative in a region.
+ * Inverted and flat tetrahedra have no part in it.
+ */
+bool HasNegativeCoupling(const TetMesh& mesh, const EdgeIds& edge,
+  std::vector<SimplexIncidence::Record>::const_iterator begin,
+  std::vector<SimplexIncidence::Record>::const_iterator end, Id region);
+
 /** Circumcenter, its coordinates rounded once; the tetrahedron must not be flat. */
 Vec3 GetAccurateCircumcenter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 

@@ -52,7 +52,7 @@ bool BoundaryRequests::AddEdge(Id edge, bool isDistanceKept)
 /** Not if it is NoId. */
 void BoundaryRequests::AddTriangle(Id triangle)
 {
-  if (triangle != NoId)
+  if (triangle != NoId && !this->IsTriangleRequested[triangle])
   {
     this->IsTriangleRequested[triangle] = 1;
     this->Triangles.push_back(triangle);
@@ -136,26 +136,52 @@ bool BoundaryRequests::AddEdgeOfTwoTriangles(
   return false;
 }
 
+void BoundaryRequests::AddEdgeOrTriangle(const EdgeIds& ends, const IdLists& pointTriangles)
+{
+  if (const StructuralEdge* const edge = FindStructuralEdge(this->SurfaceEdges, ends))
+  {
+    this->AddEdge(static_cast<Id>(edge - this->SurfaceEdges.data()), true);
+    return;
+  }
+  std::vector<Id> triangles;
+  for (Id t : pointTriangles[ends[0]])
+  {
+    const TriangleIds& corners = this->Surface.Triangles[t];
+    if (std::find(corners.begin(), corners.end(), ends[1]) != corners.end())
+    {
+      triangles.push_back(t);
+    }
+  }
+  this->AddLargest(triangles);
+}
+
 void BoundaryRequests::AddLargestTriangle(const TetrahedronIds& ids, const IdLists& pointTriangles)
+{
+  std::vector<Id> triangles;
+  for (Id id : ids)
+  {
+    if (id < static_cast<Id>(this->Surface.Points.size()))
+    {
+      triangles.insert(triangles.end(), pointTriangles[id].begin(), pointTriangles[id].end());
+    }
+  }
+  this->AddLargest(triangles);
+}
+
+/** Of those that may be split. */
+void BoundaryRequests::AddLargest(const std::vector<Id>& triangles)
 {
   double largest = 0.0;
   Id best = NoId;
-  for (Id id : ids)
+  for (Id t : triangles)
   {
-    if (id >= static_cast<Id>(this->Surface.Points.size()))
+    const TriangleIds& corners = this->Surface.Triangles[t];
+    const double radius = Norm(GetCircumcenterOffset(this->Surface.Points[corners[0]],
+      this->Surface.Points[corners[1]], this->Surface.Points[corners[2]]));
+    if (radius > largest && this->MayHavePoint(corners, radius))
     {
-      continue;
-    }
-    for (Id t : pointTriangles[id])
-    {
-      const TriangleIds& corners = this->Surface.Triangles[t];
-      const double radius = Norm(GetCircumcenterOffset(this->Surface.Points[corners[0]],
-        this->Surface.Points[corners[1]], this->Surface.Points[corners[2]]));
-      if (radius > largest && this->MayHavePoint(corners, radius))
-      {
-        largest = radius;
-        best = t;
-      }
+      largest = radius;
+      best = t;
     }
   }
   this->AddTriangle(best);

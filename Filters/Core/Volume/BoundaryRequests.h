@@ -47,6 +47,8 @@ public:
    * @return whether that is so
    */
   bool AddEdgeOfTwoTriangles(const TetrahedronIds& ids, const IdLists& pointTriangles);
+  /** An edge of the boundary, or the largest triangle at it if it is within a facet. */
+  void AddEdgeOrTriangle(const EdgeIds& ends, const IdLists& pointTriangles);
   /** The largest triangle at the tetrahedron's points on the boundary that may be split. */
   void AddLargestTriangle(const TetrahedronIds& ids, const IdLists& pointTriangles);
 
@@ -59,6 +61,7 @@ private:
   bool MayHavePoint(const Ids& ids, double distance) const;
   bool AddEdge(Id edge, bool isDistanceKept);
   void AddTriangle(Id triangle);
+  void AddLargest(const std::vector<Id>& triangles);
 
   const TriangleMesh& Surface;
   const std::vector<StructuralEdge>& SurfaceEdges;

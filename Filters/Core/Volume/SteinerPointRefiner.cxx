@@ -7,6 +7,7 @@
 #include "Core/Meshes/ShortestEdges.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "Core/Volume/FeatureSizes.h"
+#include "Core/Volume/NegativeCouplings.h"
 #include "Core/Volume/PointRounding.h"
 #include "Core/Volume/SteinerPointChecks.h"
 #include "Core/Volume/VolumeRefinement.h"
@@ -29,6 +30,8 @@ constexpr Id MaximumRounds = 1000;
 constexpr int MaximumSliverRounds = 40;
 /** Moves of the boundary's points in a row that leave as many slivers as before. */
 constexpr int MaximumMoves = 4;
+/** Rounds in a row that split the boundary for negative couplings in vain. */
+constexpr int MaximumCouplingRounds = 4;
 /** Roundings of points in a row that do not do away with a quarter of the flat tetrahedra. */
 constexpr int MaximumRoundings = 3;
 constexpr double RoundingGain = 0.75;
@@ -113,6 +116,7 @@ private:
   Status RefineSizes();
   Status RefineShapes();
   Status MendSlivers(Outcome& outcome);
+  bool RequestCouplings();
   Status MoveOrRequest(Outcome& outcome);
   Status PerturbSlivers(SliverMeans means);
   Status PerturbLastSlivers();
@@ -156,6 +160,8 @@ private:
   Patience Moves{ MaximumMoves };
   /** Over slivers. */
   Patience SliverRounds{ MaximumSliverRounds };
+  /** Over negative couplings. */
+  Patience Couplings{ MaximumCouplingRounds };
   /** Points of flat tetrahedra that rounding has left, sorted. */
   std::vector<TetrahedronIds> LeftFlat;
   /** Whether the last round has split nothing of what was requested. */
@@ -622,6 +628,8 @@ void Refiner::FindFaults()
 void Refiner::MakeOutput()
 {
   this->FindFaults();
+  this->Output.Report.NegativeCouplings = static_cast<Id>(
+    FindNegativeCouplings(this->Output.Mesh, this->Surface, this->Options.NumberOfThreads).size());
   std::vector<Id> sources = this->SurfaceSources;
   sources.resize(this->Surface.Points.size(), NoId);
   for (const InteriorPoint& point : this->Interior)
@@ -709,6 +717,21 @@ Status Refiner::RefineShapes()
   return status;
 }
 
+/** False if nothing is to be done, or if a few times in a row have not made them fewer. */
+bool Refiner::RequestCouplings()
+{
+  const std::size_t requests = this->CountRequests();
+  const std::size_t negative = this->Round->RequestNegativeCouplings(this->Options.NumberOfThreads);
+  if (this->CountRequests() == requests || this->Round->IsFull() ||
+    this->Couplings.IsOver(negative))
+  {
+    return false;
+  }
+  this->Couplings.NoteTry();
+  this->SliverRounds.Renew();
+  return true;
+}
+
 /** Where few shapes need the boundary split, or none that can be. */
 Status Refiner::MendSlivers(Outcome& outcome)
 {
@@ -740,8 +763,14 @@ Status Refiner::MendSlivers(Outcome& outcome)
   {
     return status;
   }
-  outcome = Outcome::Done;
-  return target > 0.0 ? this->PerturbLastSlivers() : status;
+  // The last passes, which take long, may make others.
+  outcome = this->RequestCouplings() ? Outcome::Requested : Outcome::Done;
+  if (outcome == Outcome::Done && target > 0.0)
+  {
+    status = this->PerturbLastSlivers();
+    outcome = status.IsOk() && this->RequestCouplings() ? Outcome::Requested : Outcome::Done;
+  }
+  return status;
 }
 
 /** Moves of points inside, of points of the surface if these help, at last requests. */

@@ -21,12 +21,15 @@
  *     tetrahedra are flat because points lie on a circle but for rounding, such points are rounded
  *     in another way (PointRounding.h). The boundary is split for slivers that nothing else helps,
  *     and for flat tetrahedra only if their points are all given or few are left. At last points
- *     of tetrahedra across sharp angles are moved, as far as all others stay as good.
+ *     of tetrahedra across sharp angles are moved, as far as all others stay as good;
+ *  5. where nothing else is requested, edges of the boundary with a negative coupling are to be
+ *     split (NegativeCouplings.h), and it goes on from 3.
  * It ends when a round requests nothing, or nothing that can be done, or when forty rounds for
  * slivers in a row have not made these fewer.
  *
  * Guarantees: the mesh is Delaunay by the pulling rule and conforms to the same surface; facets on
- * it fulfil criterion 3.1 at least. Points of the mesh that are not free keep their coordinates;
+ * it fulfil criterion 3.1 at least. No coupling of the box method is negative but for those that the
+ * report counts. Points of the mesh that are not free keep their coordinates;
  * those of the surface that are stay in their facets and on their edges. Deterministic, whatever
  * the number of threads. Tetrahedra across thin layers (ThinLayers.h) and across sharp angles
  * (SharpAngles.h), which would be refined for ever, are not refined for their shape: Faults tells
@@ -126,6 +129,8 @@ struct SteinerPointRefinerReport
   Id Inevitable = 0;
   /** Triangles of the boundary that break the criterion; see DelaunaySurfaceRefiner.h. */
   Id UnresolvedTriangles = 0;
+  /** Edges of the boundary with a negative coupling. */
+  Id NegativeCouplings = 0;
 };
 
 struct SteinerPointRefinerOutput

@@ -4,6 +4,7 @@
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Search/PlaceSearch.h"
+#include "Core/Volume/NegativeCouplings.h"
 #include "Core/Volume/SurfacePointMoves.h"
 
 #include <algorithm>
@@ -836,6 +837,18 @@ Status VolumeRefinement::PerturbSlivers(
     }
   }
   return Status();
+}
+
+std::size_t VolumeRefinement::RequestNegativeCouplings(int numberOfThreads)
+{
+  // Points of the surface have the same ids there.
+  const std::vector<EdgeIds> edges =
+    FindNegativeCouplings(this->MakeMesh(), this->Surface, numberOfThreads);
+  for (const EdgeIds& edge : edges)
+  {
+    this->Requests.AddEdgeOrTriangle(edge, this->Shape->PointTriangles);
+  }
+  return edges.size();
 }
 
 Status VolumeRefinement::PerturbSharp(double target, const ExecutionContext& context)

@@ -137,6 +137,12 @@ public:
   std::vector<Vec3> MoveSurfacePoints(
     double target, const std::vector<char>& isFree, bool areEdgesKept);
 
+  /**
+   * Edges of the boundary with a negative coupling, or triangles at those within facets.
+   * @return how many edges there are, whether they may be split or not
+   */
+  std::size_t RequestNegativeCouplings(int numberOfThreads);
+
   /** What is to be split in the boundary. */
   const BoundaryRequests& GetRequests() const { return this->Requests; }
 

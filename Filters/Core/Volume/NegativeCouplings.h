@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file NegativeCouplings.h
+ * @brief Edges of a boundary with a negative coupling in the box method.
+ *
+ * Within a region a Delaunay mesh has none. At an edge of the boundary the Voronoi facet ends where
+ * it meets the triangles there. A part of it counts negative where it lies beyond the edge, which
+ * takes a point in the edge's smallest sphere: Crit. 3.2 would exclude that for all edges at once,
+ * Crit. 3.1 does so within facets.
+ *
+ * Only edges whose smallest spheres are not empty are looked at. Deterministic. Cost: O(n), 20 bytes
+ * per tetrahedron.
+ * Reference: P. Fleischmann, thesis, 3.1.
+ */
+#ifndef cdmNegativeCouplings_h
+#define cdmNegativeCouplings_h
+
+#include "Core/Meshes/TetMesh.h"
+#include "Core/Meshes/TriangleMesh.h"
+
+#include <vector>
+
+namespace cdm
+{
+/**
+ * Those whose coupling in a region is negative, ascending.
+ * @param mesh without dead tetrahedra
+ * @param boundary on the points of the mesh
+ */
+std::vector<EdgeIds> FindNegativeCouplings(
+  const TetMesh& mesh, const TriangleMesh& boundary, int numberOfThreads);
+} // namespace cdm
+
+#endif

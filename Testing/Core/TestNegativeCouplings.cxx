@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Basics/SortedIds.h"
+#include "Core/Certificate/MeshCriteria.h"
+#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Surface/DelaunaySurfaceRefiner.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
+#include "Core/Volume/NegativeCouplings.h"
+#include "RandomComplexes.h"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+#include <random>
+#include <string>
+
+using namespace cdm;
+
+namespace
+{
+/** Edges that the certificate finds at fault. */
+std::vector<EdgeIds> FindByCertificate(const TetMesh& mesh, const TriangleMesh& boundary)
+{
+  MeshCriteriaReport report;
+  EXPECT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, {}, report).IsOk());
+  std::vector<EdgeIds> edges;
+  for (const MeshViolation& violation : report.Violations)
+  {
+    if (violation.Fault == MeshFault::NegativeCoupling)
+    {
+      edges.push_back(MakeEdge(violation.Points[0], violation.Points[1]));
+    }
+  }
+  SortUnique(edges);
+  return edges;
+}
+} // namespace
+
+/** Two of its edges, opposite to each other, have points in their smallest spheres, no facet has. */
+TEST(NegativeCouplings, OfATetrahedron)
+{
+  TetMesh mesh;
+  mesh.Points = { { 2.0, 1.0, 0.0 }, { 3.0, 1.0, 0.0 }, { 0.0, 5.0, 0.0 }, { 4.0, 5.0, 6.0 } };
+  mesh.Tetrahedra = { { 0, 1, 2, 3 } };
+  mesh.Regions = { 0 };
+  TriangleMesh boundary;
+  boundary.Points = mesh.Points;
+  boundary.Triangles = { { 0, 2, 1 }, { 0, 1, 3 }, { 1, 2, 3 }, { 2, 0, 3 } };
+  const std::vector<EdgeIds> edges = FindNegativeCouplings(mesh, boundary, 1);
+  EXPECT_EQ(edges, (std::vector<EdgeIds>{ { 0, 3 }, { 1, 2 } }));
+  EXPECT_EQ(edges, FindByCertificate(mesh, boundary));
+}
+
+TEST(NegativeCouplings, AreThoseOfTheCertificate)
+{
+  std::size_t total = 0;
+  for (unsigned int seed = 1; seed <= 40; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 generator(seed);
+    BoundaryTriangulatorOutput boundary;
+    ASSERT_TRUE(TriangulateBoundary(
+      MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, 4, 0.1 * seed), {}, {}, boundary)
+                  .IsOk());
+    DelaunaySurfaceRefinerInput input;
+    input.Surface = &boundary.Surface;
+    DelaunaySurfaceRefinerOptions options;
+    options.Criterion = SurfaceCriterion::SmallestSphere;
+    DelaunaySurfaceRefinerOutput refined;
+    ASSERT_TRUE(RefineDelaunaySurface(input, options, {}, refined).IsOk());
+    AdvancingFrontTetrahedralizerInput front;
+    front.Surface = &refined.Surface;
+    AdvancingFrontTetrahedralizerOutput made;
+    ASSERT_TRUE(TetrahedralizeByAdvancingFront(front, {}, {}, made).IsOk());
+    const std::vector<EdgeIds> edges = FindNegativeCouplings(made.Mesh, made.Boundary, 2);
+    EXPECT_EQ(edges, FindByCertificate(made.Mesh, made.Boundary));
+    EXPECT_EQ(edges, FindNegativeCouplings(made.Mesh, made.Boundary, 1));
+    total += edges.size();
+  }
+  std::cout << total << " edges\n";
+  EXPECT_GT(total, 0u);
+}
