@@ -164,6 +164,8 @@ private:
   Patience Couplings{ MaximumCouplingRounds };
   /** Points of flat tetrahedra that rounding has left, sorted. */
   std::vector<TetrahedronIds> LeftFlat;
+  /** Whether points at sharp angles have been moved. */
+  bool IsSharpPerturbed = false;
   /** Whether the last round has split nothing of what was requested. */
   bool IsStuck = false;
 };
@@ -485,7 +487,10 @@ Status Refiner::PerturbSlivers(SliverMeans means)
     this->Options.DihedralAngleTarget, means, this->GetRoundContext());
 }
 
-/** Points that were put in for shapes after the slivers' points were moved leave slivers, too. */
+/**
+ * Points that were put in for shapes after the slivers' points were moved leave slivers, too. Those
+ * at sharp angles are moved once: each time would make other couplings negative.
+ */
 Status Refiner::PerturbLastSlivers()
 {
   Status status;
@@ -501,9 +506,12 @@ Status Refiner::PerturbLastSlivers()
     }
     status = status.IsOk() ? this->RefineRound(true) : status;
   }
-  return status.IsOk()
-    ? this->Round->PerturbSharp(this->Options.DihedralAngleTarget, this->GetRoundContext())
-    : status;
+  if (status.IsOk() && !this->IsSharpPerturbed)
+  {
+    this->IsSharpPerturbed = true;
+    status = this->Round->PerturbSharp(this->Options.DihedralAngleTarget, this->GetRoundContext());
+  }
+  return status;
 }
 
 void Refiner::CollectReport()
