@@ -562,19 +562,13 @@ cdm::Status vtkConformingDelaunayMesher::MeshPolygons(const std::string& prefix,
   steiner->SetCriterion(this->Criterion);
   steiner->SetAccuracyAngle(this->AccuracyAngle);
   steiner->SetRadiusEdgeRatio(this->RadiusEdgeRatio);
-  steiner->SetDihedralAngleTarget(this->DihedralAngleTarget);
+  steiner->SetDihedralAngleTarget(this->RemoveSlivers ? this->DihedralAngleTarget : 0.0);
   steiner->SetMaximumVolume(this->MaximumVolume);
   steiner->SetMaximumEdgeLength(this->MaximumEdgeLength);
-  // What makes the tetrahedra that the sliver remover gets; its second output is their boundary.
-  vtkAlgorithm* maker = tetrahedralizer;
-  if (this->AddSteinerPoints)
-  {
-    maker = steiner;
-  }
   vtkNew<vtkSliverRemover> remover;
-  remover->SetInputConnection(maker->GetOutputPort());
+  remover->SetInputConnection(tetrahedralizer->GetOutputPort());
   remover->SetDihedralAngleTarget(this->DihedralAngleTarget);
-  if (this->Criterion != Delaunay || this->AddSteinerPoints)
+  if (this->Criterion != Delaunay)
   {
     // Peeling turns a diagonal of the boundary, which the stronger criteria do not allow.
     remover->SetFlatnessRatio(0.0);
@@ -603,23 +597,27 @@ cdm::Status vtkConformingDelaunayMesher::MeshPolygons(const std::string& prefix,
     status = RunStage(
       run, tetrahedralizer, "Tetrahedralization", 0.5, this->AddSteinerPoints ? 0.6 : 0.85);
   }
+  // The last stages that make tetrahedra, and their boundary.
+  vtkAlgorithm* last = tetrahedralizer;
+  vtkAlgorithm* lastWithBoundary = tetrahedralizer;
   if (status.IsOk() && this->AddSteinerPoints)
   {
-    status = RunStage(run, steiner, "Steiner points", 0.6, 0.85);
+    status = RunStage(run, steiner, "Steiner points", 0.6, 0.95);
+    last = lastWithBoundary = steiner;
   }
-  if (status.IsOk() && this->RemoveSlivers)
+  else if (status.IsOk() && this->RemoveSlivers)
   {
     status = RunStage(run, remover, "Sliver removal", 0.85, 0.95);
+    last = remover;
   }
   if (status.IsOk())
   {
     status = vtkCoreBridge::Guard(
       [&]
       {
-        return Finish(run,
-          vtkUnstructuredGrid::SafeDownCast(
-            (this->RemoveSlivers ? remover.Get() : maker)->GetOutputDataObject(0)),
-          vtkPolyData::SafeDownCast(maker->GetOutputDataObject(1)), remover, mesh, boundary);
+        return Finish(run, vtkUnstructuredGrid::SafeDownCast(last->GetOutputDataObject(0)),
+          vtkPolyData::SafeDownCast(lastWithBoundary->GetOutputDataObject(1)), remover, mesh,
+          boundary);
       });
   }
   problems->ShallowCopy(triangulator->GetOutputDataObject(1));

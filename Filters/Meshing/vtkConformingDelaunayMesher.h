@@ -9,9 +9,9 @@
  *  2. vtkDelaunaySurfaceRefiner: structural edges, flips and new points until the surface is part
  *     of its Delaunay mesh (6.3);
  *  3. vtkAdvancingFrontTetrahedralizer: tetrahedra for every enclosed region (6.4);
- *  4. vtkSteinerPointRefiner, if AddSteinerPoints is on (5.6, 6.5): generated points are free,
- *     those of port 1 are not;
- *  5. vtkSliverRemover, if RemoveSlivers is on (3.4.7, 5.7);
+ *  4. vtkSliverRemover, if RemoveSlivers is on (3.4.7, 5.7); or
+ *  5. vtkSteinerPointRefiner, if AddSteinerPoints is on (5.6, 6.5), which removes slivers itself:
+ *     generated points are free, those of port 1 are not;
  *  6. a check of the result, from the output alone.
  *
  * Inputs: port 0: vtkPolyData, any list of polygons, optionally with the two-component cell array
@@ -216,7 +216,10 @@ public:
   ///@}
 
   ///@{
-  /** Whether to run vtkSliverRemover. Default on. */
+  /**
+   * Whether tetrahedra with a dihedral angle below DihedralAngleTarget are to be removed: by
+   * vtkSteinerPointRefiner if AddSteinerPoints is on, otherwise by vtkSliverRemover. Default on.
+   */
   vtkSetMacro(RemoveSlivers, bool);
   vtkGetMacro(RemoveSlivers, bool);
   vtkBooleanMacro(RemoveSlivers, bool);
@@ -226,9 +229,10 @@ public:
   /**
    * Whether to run vtkSteinerPointRefiner: new points on the boundary and inside until no
    * tetrahedron has an edge longer than MaximumEdgeLength or the sizing, is larger than
-   * MaximumVolume, has a larger radius-edge ratio or a smaller dihedral angle than asked for, but
-   * for those at sharp input angles and across thin layers. Criterion Delaunay counts as
-   * SmallestSphere. Default off.
+   * MaximumVolume, has a larger radius-edge ratio or, with RemoveSlivers, a smaller dihedral angle
+   * than asked for, but for those at sharp input angles and across thin layers, and until no
+   * coupling of the box method is negative. Criterion Delaunay counts as SmallestSphere. Default
+   * off.
    */
   vtkSetMacro(AddSteinerPoints, bool);
   vtkGetMacro(AddSteinerPoints, bool);
@@ -255,9 +259,8 @@ public:
 
   ///@{
   /**
-   * Tetrahedra with a smaller dihedral angle are treated by the sliver remover and, up to 40
-   * degrees, by the Steiner point refiner. Degrees; default
-   * 15; range 0 to 70.
+   * Tetrahedra with a smaller dihedral angle are slivers; with AddSteinerPoints, more than 40 count
+   * as 40. Degrees; default 15; range 0 to 70.
    */
   vtkSetClampMacro(DihedralAngleTarget, double, 0.0, 70.0);
   vtkGetMacro(DihedralAngleTarget, double);

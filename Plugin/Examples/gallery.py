@@ -78,7 +78,6 @@ def MakeMesh(device, length=0.0, sizing=None, points=None):
     mesher.AddSteinerPointsOn()
     mesher.SetRadiusEdgeRatio(2.0)
     mesher.SetDihedralAngleTarget(TARGET)
-    mesher.RemoveSliversOff()
     mesher.Update()
     return Certify(mesher.GetOutputDataObject(0), mesher.GetOutputDataObject(1))
 

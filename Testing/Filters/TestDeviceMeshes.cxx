@@ -64,7 +64,6 @@ public:
     this->Mesher->AddSteinerPointsOn();
     this->Mesher->SetRadiusEdgeRatio(limits.RadiusEdgeRatio);
     this->Mesher->SetDihedralAngleTarget(Target);
-    this->Mesher->RemoveSliversOff();
     this->Criteria->SetInputConnection(0, this->Mesher->GetOutputPort());
     this->Criteria->SetInputConnection(1, this->Source->GetOutputPort());
     this->Criteria->Update();

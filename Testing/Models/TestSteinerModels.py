@@ -42,7 +42,6 @@ def mesh(path, are_edges_empty):
     else:
         mesher.SetCriterionToSmallestSphere()
     mesher.AddSteinerPointsOn()
-    mesher.RemoveSliversOff()
     mesher.Update()
     criteria = vtkDelaunayMeshCriteria()
     criteria.SetInputConnection(0, mesher.GetOutputPort(0))

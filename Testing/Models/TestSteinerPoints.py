@@ -44,8 +44,6 @@ def mesh(surface, volume, criterion):
     mesher.SetInputData(surface)
     mesher.SetCriterion(criterion)
     mesher.AddSteinerPointsOn()
-    # Its flips within the layers would make tetrahedra that RefinementFault says nothing of.
-    mesher.RemoveSliversOff()
     mesher.SetMaximumVolume(volume)
     mesher.SetDihedralAngleTarget(TARGET)
     start = time.process_time()
