@@ -3,6 +3,7 @@
 
 #include <vtkCleanPolyData.h>
 #include <vtkConformingDelaunayMesher.h>
+#include <vtkDelaunayMeshCriteria.h>
 #include <vtkFieldData.h>
 #include <vtkMath.h>
 #include <vtkSphereSource.h>
@@ -355,6 +356,33 @@ TEST(ConformingDelaunayMesherFilter, AddsSteinerPoints)
           0.3 * 0.3 * (1.0 + 1e-12));
       }
     }
+  }
+}
+
+/** The sliver remover is not run after them: there is nothing left for it to do. */
+TEST(ConformingDelaunayMesherFilter, SteinerPointsRemoveSliversIfAsked)
+{
+  vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetInputData(MakeTwoBoxes(true));
+  mesher->AddSteinerPointsOn();
+  mesher->SetMaximumEdgeLength(0.15);
+  vtkNew<vtkDelaunayMeshCriteria> criteria;
+  criteria->SetInputConnection(0, mesher->GetOutputPort(0));
+  criteria->SetInputConnection(1, mesher->GetOutputPort(1));
+  for (const bool isRemoving : { false, true })
+  {
+    mesher->SetRemoveSlivers(isRemoving);
+    vtkNew<EventRecorder> recorder;
+    recorder->Watch(mesher);
+    criteria->Update();
+    mesher->RemoveObserver(recorder);
+    EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+    const double angle =
+      criteria->GetOutput()->GetCellData()->GetArray("SmallestDihedralAngle")->GetRange()[0];
+    EXPECT_EQ(angle >= mesher->GetDihedralAngleTarget(), isRemoving) << angle;
+    EXPECT_TRUE(criteria->GetIsClean()) << criteria->GetCertificate();
+    EXPECT_TRUE(std::none_of(recorder->Texts.begin(), recorder->Texts.end(),
+      [](const std::string& text) { return Contains(text, "Sliver removal"); }));
   }
 }
 
