@@ -1,25 +1,29 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Steiner points in the models of the collection: no slivers, whatever the shape.
 
-    TestSteinerModels.py --shared FOLDER [--edges] [--minimum-points N] [--maximum-points N]
+    TestSteinerModels.py --shared FOLDER --validator PROGRAM --output FOLDER [--edges]
+        [--minimum-points N] [--maximum-points N]
 
 Each valid model with so many points is meshed by the composite mesher with AddSteinerPoints, its
 default limits (radius-edge ratio 1.4, dihedral angle 15 degrees), and triangles with empty
 smallest spheres; with --edges, structural edges have them, too. The certificate has to be clean
 for that criterion, no coupling of the box method may be negative. No dihedral angle is below 15
-degrees but in thin layers and at sharp angles (RefinementFault 4). Prints a table. Exit status 77:
-no models.
+degrees but in thin layers and at sharp angles (RefinementFault 4). An independent validator has to
+find the mesh Delaunay, conforming and without triangles that break the criterion, too. Prints a table.
+Exit status 77: no models.
 """
 import argparse
 import csv
+import json
 import os
+import subprocess
 import sys
 import time
 
 import numpy
 from conforming_delaunay import vtkConformingDelaunayMesher, vtkDelaunayMeshCriteria
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridWriter
 
 TARGET = 15.0
 INEVITABLE = 4
@@ -29,6 +33,9 @@ CLEAN = ("InvertedTetrahedra", "FlatTetrahedra", "NonDelaunayTetrahedra", "Facet
 # With --edges. Two edges that are 0.0006 apart and 2168 long are split down to the smallest edge
 # that the surface stage makes, MinimumEdgeRatio of the diagonal: a warning counts the triangles.
 EDGES = ("EdgeSphereViolations",)
+# The same in the validator's words.
+VALIDATOR_CLEAN = ("equatorial_violations",)
+VALIDATOR_EDGES = ("diametral_violations_structural",)
 TOO_SHARP = {"cgal_step"}
 
 
@@ -50,9 +57,31 @@ def mesh(path, are_edges_empty):
     return criteria.GetOutput(0)
 
 
+def validate(program, path, mesh, output, counts):
+    """What the validator finds fault with, and those of its counts that are not zero."""
+    os.makedirs(os.path.dirname(output), exist_ok=True)
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetFileName(output)
+    writer.SetInputData(mesh)
+    writer.SetDataModeToBinary()
+    writer.SetCompressorTypeToNone()
+    writer.Write()
+    run = subprocess.run([program, path, output, "--quiet", "--threads", "1", "--samples", "50000",
+                          "--tol", "1e-9"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                         universal_newlines=True)
+    os.remove(output)
+    report = json.loads(run.stdout)
+    if report["verdict"] != "ok":
+        return [reason["code"] for reason in report.get("reasons", [{"code": run.stderr}])]
+    return ["%d %s" % (report["finite_volume"][count], count)
+            for count in counts if report["finite_volume"][count]]
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--shared", required=True)
+    parser.add_argument("--validator", required=True)
+    parser.add_argument("--output", required=True)
     parser.add_argument("--edges", action="store_true")
     parser.add_argument("--minimum-points", type=int, default=0)
     parser.add_argument("--maximum-points", type=int, default=sys.maxsize)
@@ -72,7 +101,8 @@ def main():
     for row in sorted(models, key=lambda row: int(row["points"])):
         name = row["id"]
         start = time.process_time()
-        judged = mesh(os.path.join(folder, row["file"]), arguments.edges)
+        path = os.path.join(folder, row["file"])
+        judged = mesh(path, arguments.edges)
         summary = judged.GetFieldData()
         angles = vtk_to_numpy(judged.GetCellData().GetArray("SmallestDihedralAngle"))
         kinds = judged.GetCellData().GetArray("RefinementFault")
@@ -82,9 +112,13 @@ def main():
         print("%-28s %8d %7.2f %8d %10d %8.2f" % (
             name, len(angles), others.min() if len(others) else angles.min(), slivers,
             int((kinds == INEVITABLE).sum()), time.process_time() - start), flush=True)
-        faults = CLEAN + (EDGES if arguments.edges and name not in TOO_SHARP else ())
+        are_edges_judged = arguments.edges and name not in TOO_SHARP
+        faults = CLEAN + (EDGES if are_edges_judged else ())
         wrong = ["%d %s" % (summary.GetArray(fault).GetValue(0), fault)
                  for fault in faults if summary.GetArray(fault).GetValue(0)]
+        wrong += validate(
+            arguments.validator, path, judged, os.path.join(arguments.output, name + ".vtu"),
+            VALIDATOR_CLEAN + (VALIDATOR_EDGES if are_edges_judged else ()))
         if slivers:
             wrong.append("%d slivers" % slivers)
         if wrong:
