@@ -2,11 +2,11 @@
 #include "Core/Volume/NegativeCouplings.h"
 
 #include "Core/Basics/SortedIds.h"
-#include "Core/Meshes/SimplexIncidence.h"
 #include "Core/Meshes/VoronoiMeasures.h"
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace cdm
 {
@@ -26,65 +26,104 @@ std::vector<EdgeIds> ListEdges(const std::vector<TriangleIds>& triangles)
   return edges;
 }
 
-using RecordIterator = std::vector<SimplexIncidence::Record>::const_iterator;
-
-/** Whether another point of the tetrahedra at the edge lies in its smallest sphere. */
-bool IsSphereFilled(
-  const TetMesh& mesh, const EdgeIds& edge, RecordIterator begin, RecordIterator end)
+/** Calls visit(tetrahedron, i, edge) for each edge i of a tetrahedron between two first points. */
+template <typename Visitor>
+void ForEachEdgeOfFirstPoints(const TetMesh& mesh, std::size_t numberOfPoints, Visitor&& visit)
 {
-  const Vec3& a = mesh.Points[edge[0]];
-  const Vec3& b = mesh.Points[edge[1]];
-  return std::any_of(begin, end,
-    [&](const SimplexIncidence::Record& record)
+  const Id end = static_cast<Id>(numberOfPoints);
+  for (std::size_t t = 0; t < mesh.Tetrahedra.size(); ++t)
+  {
+    const TetrahedronIds& ids = mesh.Tetrahedra[t];
+    for (int i = 0; i < 6 && ids[0] != NoId; ++i)
     {
-      const TetrahedronIds& ids = mesh.Tetrahedra[record.Simplex / 6];
-      const int(&others)[2] = TetrahedronEdges[5 - record.Simplex % 6];
-      return std::any_of(std::begin(others), std::end(others),
-        [&](int i) { return Dot(a - mesh.Points[ids[i]], b - mesh.Points[ids[i]]) < 0.0; });
+      const Id a = ids[TetrahedronEdges[i][0]];
+      const Id b = ids[TetrahedronEdges[i][1]];
+      if (a < end && b < end)
+      {
+        visit(static_cast<Id>(t), i, MakeEdge(a, b));
+      }
+    }
+  }
+}
+
+/** Whether one of the other two points of the tetrahedron lies in the smallest sphere of an edge. */
+bool IsSphereFilled(const TetMesh& mesh, Id tetrahedron, int edge)
+{
+  const TetrahedronIds& ids = mesh.Tetrahedra[tetrahedron];
+  const Vec3& a = mesh.Points[ids[TetrahedronEdges[edge][0]]];
+  const Vec3& b = mesh.Points[ids[TetrahedronEdges[edge][1]]];
+  const auto isInside = [&](int vertex)
+  { return Dot(a - mesh.Points[ids[vertex]], b - mesh.Points[ids[vertex]]) < 0.0; };
+  return isInside(TetrahedronEdges[5 - edge][0]) || isInside(TetrahedronEdges[5 - edge][1]);
+}
+
+/** Edges of the boundary whose smallest spheres are not empty, ascending. */
+std::vector<EdgeIds> FindFilledEdges(const TetMesh& mesh, const TriangleMesh& boundary)
+{
+  std::vector<EdgeIds> filled;
+  ForEachEdgeOfFirstPoints(mesh, boundary.Points.size(),
+    [&](Id tetrahedron, int i, const EdgeIds& edge)
+    {
+      if (IsSphereFilled(mesh, tetrahedron, i))
+      {
+        filled.push_back(edge);
+      }
     });
+  SortUnique(filled);
+  std::vector<EdgeIds> edges;
+  if (!filled.empty())
+  {
+    const std::vector<EdgeIds> all = ListEdges(boundary.Triangles);
+    std::set_intersection(
+      filled.begin(), filled.end(), all.begin(), all.end(), std::back_inserter(edges));
+  }
+  return edges;
 }
 
 bool HasNegativeCouplingInAnyRegion(
-  const TetMesh& mesh, const EdgeIds& edge, RecordIterator begin, RecordIterator end)
+  const TetMesh& mesh, const EdgeIds& edge, const std::vector<SimplexIncidence::Record>& records)
 {
   std::vector<Id> regions;
-  for (auto record = begin; record != end; ++record)
+  for (const SimplexIncidence::Record& record : records)
   {
-    regions.push_back(mesh.Regions[record->Simplex / 6]);
+    regions.push_back(mesh.Regions[record.Simplex / 6]);
   }
   SortUnique(regions);
   return std::any_of(regions.begin(), regions.end(),
-    [&](Id region) { return HasNegativeCoupling(mesh, edge, begin, end, region); });
+    [&](Id region)
+    { return HasNegativeCoupling(mesh, edge, records.begin(), records.end(), region); });
 }
 } // namespace
 
-std::vector<EdgeIds> FindNegativeCouplings(
-  const TetMesh& mesh, const TriangleMesh& boundary, int numberOfThreads)
+std::vector<EdgeIds> FindNegativeCouplings(const TetMesh& mesh, const TriangleMesh& boundary)
 {
-  const std::vector<EdgeIds> edges = ListEdges(boundary.Triangles);
-  std::vector<EdgeIds> negative;
-  const SimplexIncidence incidence(mesh, numberOfThreads);
-  std::vector<SimplexIncidence::Record> scratch;
-  for (std::size_t first = 0, last = 0; first < edges.size(); first = last)
-  {
-    const Id point = edges[first][0];
-    while (last < edges.size() && edges[last][0] == point)
+  const std::vector<EdgeIds> edges = FindFilledEdges(mesh, boundary);
+  // Of each edge the tetrahedra, as in SimplexIncidence.
+  std::vector<std::pair<EdgeIds, Id>> simplices;
+  ForEachEdgeOfFirstPoints(mesh, edges.empty() ? 0 : boundary.Points.size(),
+    [&](Id tetrahedron, int i, const EdgeIds& edge)
     {
-      ++last;
-    }
-    const auto begin = edges.begin() + static_cast<std::ptrdiff_t>(first);
-    const auto end = edges.begin() + static_cast<std::ptrdiff_t>(last);
-    incidence.ForEachEdge(point, scratch,
-      [&](const TriangleIds& ids, RecordIterator firstRecord, RecordIterator lastRecord)
+      if (std::binary_search(edges.begin(), edges.end(), edge))
       {
-        const EdgeIds edge{ ids[0], ids[1] };
-        if (std::binary_search(begin, end, edge) &&
-          IsSphereFilled(mesh, edge, firstRecord, lastRecord) &&
-          HasNegativeCouplingInAnyRegion(mesh, edge, firstRecord, lastRecord))
-        {
-          negative.push_back(edge);
-        }
-      });
+        simplices.emplace_back(edge, 6 * tetrahedron + i);
+      }
+    });
+  std::sort(simplices.begin(), simplices.end());
+
+  std::vector<EdgeIds> negative;
+  std::vector<SimplexIncidence::Record> records;
+  for (std::size_t first = 0, last = 0; first < simplices.size(); first = last)
+  {
+    const EdgeIds& edge = simplices[first].first;
+    records.clear();
+    for (; last < simplices.size() && simplices[last].first == edge; ++last)
+    {
+      records.push_back({ edge[1], NoId, simplices[last].second });
+    }
+    if (HasNegativeCouplingInAnyRegion(mesh, edge, records))
+    {
+      negative.push_back(edge);
+    }
   }
   return negative;
 }

@@ -8,8 +8,8 @@
  * takes a point in the edge's smallest sphere: Crit. 3.2 would exclude that for all edges at once,
  * Crit. 3.1 does so within facets.
  *
- * Only edges whose smallest spheres are not empty are looked at. Deterministic. Cost: O(n), 20 bytes
- * per tetrahedron.
+ * Only edges whose smallest spheres are not empty are looked at. Deterministic. Cost: O(n) for n
+ * tetrahedra, twice through all of them.
  * Reference: P. Fleischmann, thesis, 3.1.
  */
 #ifndef cdmNegativeCouplings_h
@@ -24,11 +24,9 @@ namespace cdm
 {
 /**
  * Those whose coupling in a region is negative, ascending.
- * @param mesh without dead tetrahedra
- * @param boundary on the points of the mesh
+ * @param mesh has the points of the boundary first; tetrahedra whose first vertex is NoId do not count
  */
-std::vector<EdgeIds> FindNegativeCouplings(
-  const TetMesh& mesh, const TriangleMesh& boundary, int numberOfThreads);
+std::vector<EdgeIds> FindNegativeCouplings(const TetMesh& mesh, const TriangleMesh& boundary);
 } // namespace cdm
 
 #endif

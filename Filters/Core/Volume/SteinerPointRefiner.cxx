@@ -636,8 +636,8 @@ void Refiner::FindFaults()
 void Refiner::MakeOutput()
 {
   this->FindFaults();
-  this->Output.Report.NegativeCouplings = static_cast<Id>(
-    FindNegativeCouplings(this->Output.Mesh, this->Surface, this->Options.NumberOfThreads).size());
+  this->Output.Report.NegativeCouplings =
+    static_cast<Id>(FindNegativeCouplings(this->Output.Mesh, this->Surface).size());
   std::vector<Id> sources = this->SurfaceSources;
   sources.resize(this->Surface.Points.size(), NoId);
   for (const InteriorPoint& point : this->Interior)
@@ -729,7 +729,7 @@ Status Refiner::RefineShapes()
 bool Refiner::RequestCouplings()
 {
   const std::size_t requests = this->CountRequests();
-  const std::size_t negative = this->Round->RequestNegativeCouplings(this->Options.NumberOfThreads);
+  const std::size_t negative = this->Round->RequestNegativeCouplings();
   if (this->CountRequests() == requests || this->Round->IsFull() ||
     this->Couplings.IsOver(negative))
   {

@@ -839,11 +839,9 @@ Status VolumeRefinement::PerturbSlivers(
   return Status();
 }
 
-std::size_t VolumeRefinement::RequestNegativeCouplings(int numberOfThreads)
+std::size_t VolumeRefinement::RequestNegativeCouplings()
 {
-  // Points of the surface have the same ids there.
-  const std::vector<EdgeIds> edges =
-    FindNegativeCouplings(this->MakeMesh(), this->Surface, numberOfThreads);
+  const std::vector<EdgeIds> edges = FindNegativeCouplings(this->GetMesh(), this->Surface);
   for (const EdgeIds& edge : edges)
   {
     this->Requests.AddEdgeOrTriangle(edge, this->Shape->PointTriangles);

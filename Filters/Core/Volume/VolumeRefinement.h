@@ -141,7 +141,7 @@ public:
    * Edges of the boundary with a negative coupling, or triangles at those within facets.
    * @return how many edges there are, whether they may be split or not
    */
-  std::size_t RequestNegativeCouplings(int numberOfThreads);
+  std::size_t RequestNegativeCouplings();
 
   /** What is to be split in the boundary. */
   const BoundaryRequests& GetRequests() const { return this->Requests; }
