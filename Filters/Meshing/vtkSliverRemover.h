@@ -28,7 +28,8 @@
  * Guarantees: no point is added or removed; those that are not free keep their coordinates, corners
  * of the boundary always. No tetrahedron is inverted or flat. Unless QualityBeforeDelaunay is on: a
  * mesh that was Delaunay is so still, and boundary triangles that fulfilled criterion 3.1 or 3.2
- * still do. Regions and boundaries keep their shape, but for what is peeled off. Deterministic.
+ * still do; with 3.1 alone, moved points may make couplings of the box method negative where facets
+ * meet. Regions and boundaries keep their shape, but for what is peeled off. Deterministic.
  *
  * Failure: an error that names the cells, and an empty output, for an empty input, cells of another
  * type, tetrahedra that are inverted, flat or overlap, an array FreePoint of the wrong size. An

@@ -34,7 +34,11 @@ void ForEachEdgeOfFirstPoints(const TetMesh& mesh, std::size_t numberOfPoints, V
   for (std::size_t t = 0; t < mesh.Tetrahedra.size(); ++t)
   {
     const TetrahedronIds& ids = mesh.Tetrahedra[t];
-    for (int i = 0; i < 6 && ids[0] != NoId; ++i)
+    if (ids[0] == NoId)
+    {
+      continue;
+    }
+    for (int i = 0; i < 6; ++i)
     {
       const Id a = ids[TetrahedronEdges[i][0]];
       const Id b = ids[TetrahedronEdges[i][1]];

@@ -19,21 +19,20 @@
  *     inside. Then new and free points of the surface are moved within their facets and along their
  *     edges, where that makes the smallest angle larger (SurfacePointMoves.h). Before that, where
  *     tetrahedra are flat because points lie on a circle but for rounding, such points are rounded
- *     in another way (PointRounding.h). The boundary is split for slivers that nothing else helps,
- *     and for flat tetrahedra only if their points are all given or few are left. At last points
- *     of tetrahedra across sharp angles are moved, as far as all others stay as good;
+ *     in another way (PointRounding.h). The boundary is split for slivers that nothing else helps.
+ *     At last points of tetrahedra across sharp angles are moved, as far as all others stay as good;
  *  5. where nothing else is requested, edges of the boundary with a negative coupling are to be
  *     split (NegativeCouplings.h), and it goes on from 3.
  * It ends when a round requests nothing, or nothing that can be done, or when forty rounds for
  * slivers in a row have not made these fewer.
  *
  * Guarantees: the mesh is Delaunay by the pulling rule and conforms to the same surface; facets on
- * it fulfil criterion 3.1 at least. No coupling of the box method is negative but for those that the
- * report counts. Points of the mesh that are not free keep their coordinates;
- * those of the surface that are stay in their facets and on their edges. Deterministic, whatever
- * the number of threads. Tetrahedra across thin layers (ThinLayers.h) and across sharp angles
- * (SharpAngles.h), which would be refined for ever, are not refined for their shape: Faults tells
- * which tetrahedra miss what was asked for, the report counts them.
+ * it fulfil criterion 3.1 at least. No coupling of the box method is negative but for those that
+ * the report counts. Points of the mesh that are not free keep their coordinates; those of the
+ * surface that are stay in their facets and on their edges. Deterministic, whatever the number of
+ * threads. Tetrahedra across thin layers (ThinLayers.h) and across sharp angles (SharpAngles.h),
+ * which would be refined for ever, are not refined for their shape: Faults tells which tetrahedra
+ * miss what was asked for, the report counts them.
  * Failure: InvalidInput names tetrahedra without a region, inverted or flat ones, triangles that
  * are no facets or facets that are missing among them, points that are not finite. Cells are
  * tetrahedra if no boundary is given, otherwise its triangles. The output is then empty, as after
