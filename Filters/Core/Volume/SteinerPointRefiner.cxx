@@ -7,7 +7,6 @@
 #include "Core/Meshes/ShortestEdges.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "Core/Volume/FeatureSizes.h"
-#include "Core/Volume/NegativeCouplings.h"
 #include "Core/Volume/PointRounding.h"
 #include "Core/Volume/SteinerPointChecks.h"
 #include "Core/Volume/VolumeRefinement.h"
@@ -636,8 +635,6 @@ void Refiner::FindFaults()
 void Refiner::MakeOutput()
 {
   this->FindFaults();
-  this->Output.Report.NegativeCouplings =
-    static_cast<Id>(FindNegativeCouplings(this->Output.Mesh, this->Surface).size());
   std::vector<Id> sources = this->SurfaceSources;
   sources.resize(this->Surface.Points.size(), NoId);
   for (const InteriorPoint& point : this->Interior)
@@ -714,6 +711,8 @@ Status Refiner::RefineShapes()
     }
     if (outcome != Outcome::Moved && this->Output.Report.Rounds >= MaximumRounds)
     {
+      // Counts them only.
+      this->RequestCouplings();
       outcome = Outcome::Done;
     }
     if (status.IsOk() && outcome != Outcome::Done)
@@ -725,11 +724,15 @@ Status Refiner::RefineShapes()
   return status;
 }
 
-/** False if nothing is to be done, or if a few times in a row have not made them fewer. */
+/**
+ * Counts negative couplings. False if nothing is to be done, or if a few times in a row have not
+ * made them fewer.
+ */
 bool Refiner::RequestCouplings()
 {
   const std::size_t requests = this->CountRequests();
   const std::size_t negative = this->Round->RequestNegativeCouplings();
+  this->Output.Report.NegativeCouplings = static_cast<Id>(negative);
   if (this->CountRequests() == requests || this->Round->IsFull() ||
     this->Couplings.IsOver(negative))
   {
