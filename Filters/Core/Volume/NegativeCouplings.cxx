@@ -2,30 +2,16 @@
 #include "Core/Volume/NegativeCouplings.h"
 
 #include "Core/Basics/SortedIds.h"
+#include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/VoronoiMeasures.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 namespace cdm
 {
 namespace
 {
-/** Ascending. */
-std::vector<EdgeIds> ListEdges(const std::vector<TriangleIds>& triangles)
-{
-  std::vector<EdgeIds> edges;
-  edges.reserve(3 * triangles.size());
-  for (const TriangleIds& ids : triangles)
-  {
-    edges.insert(edges.end(),
-      { MakeEdge(ids[0], ids[1]), MakeEdge(ids[1], ids[2]), MakeEdge(ids[2], ids[0]) });
-  }
-  SortUnique(edges);
-  return edges;
-}
-
 /** Calls visit(tetrahedron, i, edge) for each edge i of a tetrahedron between two first points. */
 template <typename Visitor>
 void ForEachEdgeOfFirstPoints(const TetMesh& mesh, std::size_t numberOfPoints, Visitor&& visit)
@@ -75,11 +61,13 @@ std::vector<EdgeIds> FindFilledEdges(const TetMesh& mesh, const TriangleMesh& bo
     });
   SortUnique(filled);
   std::vector<EdgeIds> edges;
-  if (!filled.empty())
+  for (const EdgeUse& use : SortEdgeUses(boundary.Triangles, boundary.Points.size()))
   {
-    const std::vector<EdgeIds> all = ListEdges(boundary.Triangles);
-    std::set_intersection(
-      filled.begin(), filled.end(), all.begin(), all.end(), std::back_inserter(edges));
+    if (std::binary_search(filled.begin(), filled.end(), use.GetPoints()) &&
+      (edges.empty() || edges.back() != use.GetPoints()))
+    {
+      edges.push_back(use.GetPoints());
+    }
   }
   return edges;
 }
