@@ -109,8 +109,8 @@ def SetDisplacement(mesh, boundary, begin, end):
     mesh.GetPointData().SetVectors(displacement)
 
 
-def Grow(mesh, boundary, begin, end):
-    """One time step: the new tetrahedra, their boundary, numbers of points removed and new ones."""
+def Move(mesh, boundary, begin, end):
+    """Moves the boundary through one time step: the remesher that has done it."""
     moving = vtkUnstructuredGrid()
     moving.ShallowCopy(mesh)
     SetDisplacement(moving, boundary, begin, end)
@@ -120,6 +120,13 @@ def Grow(mesh, boundary, begin, end):
     # The tapering surface is smooth: its triangles may be flipped.
     remesher.SetAccuracyAngle(30.0)
     remesher.SetMaximumEdgeLength(1.5 * SPACING)
+    remesher.Update()
+    return remesher
+
+
+def Grow(mesh, boundary, begin, end):
+    """One time step: the new tetrahedra, their boundary, numbers of points removed and new ones."""
+    remesher = Move(mesh, boundary, begin, end)
     # Couplings only: no shape is asked for.
     refiner = vtkSteinerPointRefiner()
     refiner.SetInputConnection(remesher.GetOutputPort())

@@ -17,7 +17,8 @@ import growing_oxide
 before, boundary = growing_oxide.MakeMesh()
 after = before
 for begin, end in ((0.0, 0.4), (0.4, 1.0)):
-    after, boundary, remesher = growing_oxide.Grow(after, boundary, begin, end)
+    remesher = growing_oxide.Move(after, boundary, begin, end)
+    after, boundary = remesher.GetOutputDataObject(0), remesher.GetOutputDataObject(1)
     assert remesher.GetNumberOfTopologyChanges() == 0
     assert remesher.GetNumberOfUnresolvedTriangles() == 0
     faults = growing_oxide.CountFaults(after, boundary)
