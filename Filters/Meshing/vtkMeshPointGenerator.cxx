@@ -8,7 +8,7 @@
 #include "CoreBridge/Reports.h"
 #include "CoreBridge/SizingInputs.h"
 
-#include "Core/Volume/MeshPointGenerator.h"
+#include "Core/MeshPoints/MeshPointGenerator.h"
 
 #include <vtkCellArray.h>
 #include <vtkDataSet.h>

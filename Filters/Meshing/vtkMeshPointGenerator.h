@@ -48,7 +48,7 @@
  * with the default number of iterations.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
- * 1999: the placements. Filters/Core/Volume/MeshPointGenerator.h is the engine.
+ * 1999: the placements. Filters/Core/MeshPoints/MeshPointGenerator.h is the engine.
  */
 #ifndef vtkMeshPointGenerator_h
 #define vtkMeshPointGenerator_h

@@ -8,7 +8,7 @@
 #include "CoreBridge/Reports.h"
 #include "CoreBridge/Tuples.h"
 
-#include "Core/Volume/SliverRemover.h"
+#include "Core/Improvement/SliverRemover.h"
 
 #include <vtkCellData.h>
 #include <vtkDataArray.h>

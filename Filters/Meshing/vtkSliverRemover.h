@@ -40,7 +40,7 @@
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
  * 1999: local transformations; J. Tournois et al., "Perturbing slivers in 3D Delaunay meshes",
- * 2009: moved points. Filters/Core/Volume/SliverRemover.h is the engine.
+ * 2009: moved points. Filters/Core/Improvement/SliverRemover.h is the engine.
  */
 #ifndef vtkSliverRemover_h
 #define vtkSliverRemover_h

@@ -9,7 +9,7 @@
 #include "CoreBridge/SizingInputs.h"
 #include "CoreBridge/Tuples.h"
 
-#include "Core/Volume/SteinerPointRefiner.h"
+#include "Core/Improvement/SteinerPointRefiner.h"
 
 #include <vtkCellData.h>
 #include <vtkInformation.h>

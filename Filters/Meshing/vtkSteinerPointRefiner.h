@@ -50,8 +50,8 @@
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
  * 1999; J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998; J. Tournois et
- * al., "Perturbing slivers in 3D Delaunay meshes", 2009. Filters/Core/Volume/SteinerPointRefiner.h
- * is the engine.
+ * al., "Perturbing slivers in 3D Delaunay meshes", 2009.
+ * Filters/Core/Improvement/SteinerPointRefiner.h is the engine.
  */
 #ifndef vtkSteinerPointRefiner_h
 #define vtkSteinerPointRefiner_h

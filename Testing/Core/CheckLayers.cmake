@@ -2,7 +2,8 @@
 # Core knows no VTK, Meshing knows no ParaView, CGAL is seen by one file only; a folder of Core knows
 # only those before it.
 #   cmake -D SOURCE_DIR=<folder of the project> -P CheckLayers.cmake
-set(folders Basics Geometry Search Meshes Sizing Delaunay Certificate Surface Volume Interfaces)
+set(folders Basics Geometry Search Meshes Sizing Delaunay Certificate Surface MeshPoints Volume
+  Improvement Interfaces)
 file(GLOB core "${SOURCE_DIR}/Filters/Core/*/*.h" "${SOURCE_DIR}/Filters/Core/*/*.cxx")
 file(GLOB meshing "${SOURCE_DIR}/Filters/Meshing/*.h" "${SOURCE_DIR}/Filters/Meshing/*.cxx"
   "${SOURCE_DIR}/Filters/Meshing/Devices/*.h" "${SOURCE_DIR}/Filters/Meshing/Devices/*.cxx")

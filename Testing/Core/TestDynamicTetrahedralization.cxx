@@ -2,10 +2,10 @@
 #include "Core/Certificate/MeshChecks.h"
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 #include "Core/Geometry/Measures.h"
+#include "Core/Improvement/BoundarySpheres.h"
 #include "Core/Surface/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
-#include "Core/Volume/BoundarySpheres.h"
 #include "RandomComplexes.h"
 
 #include <gtest/gtest.h>

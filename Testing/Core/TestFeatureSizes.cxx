@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Volume/FeatureSizes.h"
+#include "Core/Improvement/FeatureSizes.h"
 
 #include <gtest/gtest.h>
 

@@ -2,10 +2,10 @@
 #include "Core/Certificate/MeshChecks.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
+#include "Core/MeshPoints/MeshPointGenerator.h"
 #include "Core/Surface/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
-#include "Core/Volume/MeshPointGenerator.h"
 #include "RandomComplexes.h"
 
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Basics/SortedIds.h"
 #include "Core/Certificate/MeshCriteria.h"
+#include "Core/Improvement/NegativeCouplings.h"
 #include "Core/Surface/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
-#include "Core/Volume/NegativeCouplings.h"
 #include "RandomComplexes.h"
 
 #include <gtest/gtest.h>

@@ -2,10 +2,10 @@
 #include "Core/Certificate/MeshChecks.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
+#include "Core/Improvement/SliverRemover.h"
 #include "Core/Meshes/MeshBoundary.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
-#include "Core/Volume/SliverRemover.h"
 #include "HullMeshes.h"
 
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Certificate/MeshCriteria.h"
 #include "Core/Geometry/Measures.h"
+#include "Core/Improvement/SteinerPointRefiner.h"
 #include "Core/Surface/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
-#include "Core/Volume/SteinerPointRefiner.h"
 #include "RandomComplexes.h"
 
 #include <gtest/gtest.h>

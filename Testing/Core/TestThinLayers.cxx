@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Volume/ThinLayers.h"
+#include "Core/Improvement/ThinLayers.h"
 
 #include <gtest/gtest.h>
 

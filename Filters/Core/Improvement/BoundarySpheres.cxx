@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Improvement/BoundarySpheres.h"
+
+#include "Core/Geometry/Measures.h"
+#include "Core/Geometry/Predicates.h"
+
+namespace cdm
+{
+namespace
+{
+/** What the exact test has to see: the centers and radii of the balls are rounded. */
+constexpr double Margin = 1.0 + 1e-6;
+} // namespace
+
+BoundarySpheres::BoundarySpheres(
+  const TriangleMesh& surface, const std::vector<StructuralEdge>& edges)
+  : Surface(surface), Edges(edges)
+{
+  const Id count = static_cast<Id>(surface.Triangles.size());
+  for (Id t = 0; t < count; ++t)
+  {
+    const TriangleIds& ids = surface.Triangles[t];
+    const Vec3& a = surface.Points[ids[0]];
+    const Vec3 offset = GetCircumcenterOffset(a, surface.Points[ids[1]], surface.Points[ids[2]]);
+    this->Balls.Set(t, a + offset, Margin * Norm(offset));
+  }
+  for (std::size_t e = 0; e < edges.size(); ++e)
+  {
+    const Vec3& a = surface.Points[edges[e].Points[0]];
+    const Vec3& b = surface.Points[edges[e].Points[1]];
+    this->Balls.Set(count + static_cast<Id>(e), 0.5 * (a + b), 0.5 * Margin * Distance(a, b));
+  }
+}
+
+void BoundarySpheres::Find(const Vec3& position, Disturbed& disturbed)
+{
+  disturbed.Triangles.clear();
+  disturbed.Edges.clear();
+  this->Balls.Find(position, this->Near);
+  const Id count = static_cast<Id>(this->Surface.Triangles.size());
+  const std::vector<Vec3>& points = this->Surface.Points;
+  for (Id id : this->Near)
+  {
+    if (id >= count)
+    {
+      const EdgeIds& ends = this->Edges[id - count].Points;
+      if (InDiametralSphere(points[ends[0]], points[ends[1]], position) >= 0)
+      {
+        disturbed.Edges.push_back(id - count);
+      }
+      continue;
+    }
+    const TriangleIds& ids = this->Surface.Triangles[id];
+    if (InEquatorialSphere(points[ids[0]], points[ids[1]], points[ids[2]], position) >= 0)
+    {
+      disturbed.Triangles.push_back(id);
+    }
+  }
+}
+} // namespace cdm

@@ -1,0 +1,565 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Improvement/BoundarySplits.h"
+
+#include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/Predicates.h"
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+bool Contains(const std::vector<TriangleIds>& sorted, const TriangleIds& key)
+{
+  return std::binary_search(sorted.begin(), sorted.end(), key);
+}
+
+std::vector<Vec3> CollectPointsInside(const DynamicTetrahedralization& mesh, Id firstInside)
+{
+  std::vector<Vec3> points;
+  for (Id p = firstInside; p < mesh.GetNumberOfPoints(); ++p)
+  {
+    if (mesh.GetTetrahedronAt(p) != NoId)
+    {
+      points.push_back(mesh.GetPoint(p));
+    }
+  }
+  return points;
+}
+} // namespace
+
+BoundarySplits::BoundarySplits(DynamicTetrahedralization& mesh, Id firstInside,
+  TriangleMesh& surface, std::vector<StructuralEdge>& edges,
+  const DelaunaySurfaceRefinerOptions& options, const SizingField& sizing)
+  : Mesh(mesh), FirstInside(firstInside), Surface(surface), Edges(edges),
+    Refinement(surface, edges, CollectPointsInside(mesh, firstInside), options, sizing, true),
+    SourceCells(surface.SourceCells)
+{
+  this->SurfacePoints.resize(surface.Points.size());
+  std::iota(this->SurfacePoints.begin(), this->SurfacePoints.end(), 0);
+  for (Id p = firstInside; p < mesh.GetNumberOfPoints(); ++p)
+  {
+    const bool isThere = mesh.GetTetrahedronAt(p) != NoId;
+    this->RefinementPoints.push_back(isThere ? static_cast<Id>(this->SurfacePoints.size()) : NoId);
+    if (isThere)
+    {
+      this->SurfacePoints.push_back(NoId);
+    }
+  }
+  this->ListEdges();
+}
+
+/** Those that have come, moved or gone since the last run. */
+Status BoundarySplits::FollowPoints(const ExecutionContext& context)
+{
+  const std::vector<Vec3>& points = this->Refinement.GetPoints();
+  std::vector<std::pair<Id, Vec3>> moves;
+  for (std::size_t p = 0; p < points.size(); ++p)
+  {
+    const Id point = this->SurfacePoints[p];
+    if (point != NoId && points[p] != this->Surface.Points[point])
+    {
+      moves.emplace_back(static_cast<Id>(p), this->Surface.Points[point]);
+    }
+  }
+  this->Moved.clear();
+  for (Id point = 0; point < static_cast<Id>(this->Surface.Points.size()); ++point)
+  {
+    if (this->Mesh.GetPoint(point) != this->Surface.Points[point])
+    {
+      this->Moved.push_back(point);
+    }
+  }
+  this->RefinementPoints.resize(this->Mesh.GetNumberOfPoints() - this->FirstInside, NoId);
+  for (Id p = this->FirstInside; p < this->Mesh.GetNumberOfPoints(); ++p)
+  {
+    Id& known = this->RefinementPoints[p - this->FirstInside];
+    const bool isThere = this->Mesh.GetTetrahedronAt(p) != NoId;
+    if (known != NoId && !isThere)
+    {
+      this->Refinement.RemoveMeshPoint(known);
+      known = NoId;
+    }
+    else if (known == NoId && isThere)
+    {
+      known = this->Refinement.AddMeshPoint(this->Mesh.GetPoint(p));
+      this->SurfacePoints.push_back(NoId);
+    }
+    else if (isThere && points[known] != this->Mesh.GetPoint(p))
+    {
+      moves.emplace_back(known, this->Mesh.GetPoint(p));
+    }
+  }
+  this->Refinement.MovePoints(moves);
+  return this->Refinement.Refine(context);
+}
+
+Id BoundarySplits::FindSegment(const EdgeIds& edge) const
+{
+  const StructuralEdge* const found = FindStructuralEdge(this->Edges, MakeEdge(edge[0], edge[1]));
+  return found != nullptr ? this->Segments[found - this->Edges.data()] : NoId;
+}
+
+Status BoundarySplits::Run(
+  std::vector<Id>& triangles, std::vector<EdgeIds>& edges, const ExecutionContext& context)
+{
+  this->Changed.clear();
+  Status status = this->IsUsable() ? this->FollowPoints(context) : Status();
+  this->CanGoOn = this->CanGoOn && status.IsOk() && this->Update();
+  const Id numberOfPoints = static_cast<Id>(this->Surface.Points.size());
+  // Segments by then: their edges are listed anew at the end.
+  std::vector<std::pair<EdgeIds, Id>> segments;
+  for (const EdgeIds& edge : edges)
+  {
+    segments.emplace_back(edge, this->IsUsable() ? this->FindSegment(edge) : NoId);
+  }
+  std::size_t done = 0;
+  for (; done < edges.size() && status.IsOk() && this->IsUsable(); ++done)
+  {
+    const auto& [edge, segment] = segments[done];
+    if (segment == NoId)
+    {
+      continue;
+    }
+    const EdgeIds& ends = this->Refinement.GetSurface().GetSegment(segment).Points;
+    if (MakeEdge(this->SurfacePoints[ends[0]], this->SurfacePoints[ends[1]]) ==
+      MakeEdge(edge[0], edge[1]))
+    {
+      status = this->Refinement.SplitSegment(segment, context);
+      this->CanGoOn = this->Update();
+    }
+  }
+  edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(done));
+  done = 0;
+  for (; done < triangles.size() && status.IsOk() && this->IsUsable(); ++done)
+  {
+    const TriangleIds& ids = this->Surface.Triangles[triangles[done]];
+    if (*std::max_element(ids.begin(), ids.end()) < numberOfPoints)
+    {
+      status = this->Refinement.SplitTriangle(triangles[done], context);
+      this->CanGoOn = this->Update();
+    }
+  }
+  triangles.erase(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(done));
+  if (this->IsUsable())
+  {
+    this->ListEdges();
+  }
+  return status;
+}
+
+TriangleIds BoundarySplits::Translate(const TriangleIds& refined) const
+{
+  return { this->SurfacePoints[refined[0]], this->SurfacePoints[refined[1]],
+    this->SurfacePoints[refined[2]] };
+}
+
+/** To make the mesh fit the refined surface. False if that cannot be done; then nothing changes. */
+bool BoundarySplits::Update()
+{
+  const std::vector<Vec3>& refined = this->Refinement.GetPoints();
+  const std::vector<Vec3> points(
+    refined.begin() + static_cast<std::ptrdiff_t>(this->SurfacePoints.size()), refined.end());
+  Id next = static_cast<Id>(this->Surface.Points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    this->SurfacePoints.push_back(next++);
+  }
+  std::vector<Id> touched = this->Refinement.TakeTouched();
+  const bool isResolved = std::none_of(
+    touched.begin(), touched.end(), [this](Id t) { return this->Refinement.IsUnresolved(t); });
+  if (!isResolved || next > this->FirstInside)
+  {
+    return false;
+  }
+  this->Refinement.PullCocircular(touched);
+  const std::vector<Id> pulled = this->Refinement.TakeTouched();
+  touched.insert(touched.end(), pulled.begin(), pulled.end());
+  SortUnique(touched);
+  this->CollectTriangles(touched);
+  if (this->Triangles.empty() && this->Moved.empty())
+  {
+    return points.empty();
+  }
+  if (!this->CollectConflicts(points, touched))
+  {
+    return false;
+  }
+  this->CollectCavity(points);
+  if (!this->Filling.Run(this->Around) || !this->AreWallsComplete())
+  {
+    return false;
+  }
+  this->Adopt(points);
+  this->Moved.clear();
+  return true;
+}
+
+/** What has changed in the surface. */
+void BoundarySplits::CollectTriangles(const std::vector<Id>& touched)
+{
+  const Id count = static_cast<Id>(this->Surface.Triangles.size());
+  this->Triangles.clear();
+  this->Vanished.clear();
+  this->Made.clear();
+  for (Id t : touched)
+  {
+    const RefinableSurface::Triangle& refined = this->Refinement.GetSurface().GetTriangle(t);
+    NewTriangle triangle{ t, this->Translate(refined.Points), refined.Labels,
+      this->SourceCells[refined.Source] };
+    if (refined.IsTurned)
+    {
+      std::swap(triangle.Ids[1], triangle.Ids[2]);
+      std::swap(triangle.Labels.Front, triangle.Labels.Back);
+    }
+    const TriangleIds key = Sorted(triangle.Ids);
+    if (t < count && Sorted(this->Surface.Triangles[t]) == key)
+    {
+      continue;
+    }
+    this->Triangles.push_back(triangle);
+    this->Made.push_back(key);
+    if (t < count)
+    {
+      this->Vanished.push_back(Sorted(this->Surface.Triangles[t]));
+    }
+  }
+  // Flips may have brought triangles to other places.
+  SortUnique(this->Made);
+  SortUnique(this->Vanished);
+  std::vector<TriangleIds> both;
+  std::set_intersection(this->Made.begin(), this->Made.end(), this->Vanished.begin(),
+    this->Vanished.end(), std::back_inserter(both));
+  const auto isInBoth = [&both](const TriangleIds& key) { return Contains(both, key); };
+  this->Made.erase(
+    std::remove_if(this->Made.begin(), this->Made.end(), isInBoth), this->Made.end());
+  this->Vanished.erase(
+    std::remove_if(this->Vanished.begin(), this->Vanished.end(), isInBoth), this->Vanished.end());
+}
+
+/** The facets that are a triangle of the surface, as part of Sides. False if there are none. */
+bool BoundarySplits::FindSides(const TriangleIds& ids)
+{
+  // Tetrahedra at a point hang together across facets, but where outer facets meet in an edge only.
+  // New points have fewer of them than corners of the input, which may have thousands.
+  const TetMesh& mesh = this->Mesh.GetMesh();
+  for (auto point = ids.rbegin(); point != ids.rend(); ++point)
+  {
+    ++this->Search;
+    this->Open.assign(1, this->Mesh.GetTetrahedronAt(*point));
+    this->Visits[this->Open.front()] = this->Search;
+    while (!this->Open.empty())
+    {
+      const Id t = this->Open.back();
+      this->Open.pop_back();
+      const TetrahedronIds& vertices = mesh.Tetrahedra[t];
+      for (int i = 0; i < 4; ++i)
+      {
+        const Id neighbor = mesh.Neighbors[t][i];
+        if (Sorted(GetFacet(vertices, i)) == ids)
+        {
+          this->Sides.push_back(4 * t + i);
+          if (neighbor != NoId)
+          {
+            this->Sides.push_back(neighbor);
+          }
+          this->Open.clear();
+          return true;
+        }
+        if (neighbor != NoId && vertices[i] != *point && this->Visits[neighbor / 4] != this->Search)
+        {
+          this->Visits[neighbor / 4] = this->Search;
+          this->Open.push_back(neighbor / 4);
+        }
+      }
+    }
+  }
+  return false;
+}
+
+/**
+ * To the cavity, if it has a point, or another position is in or on its sphere, and this search is
+ * the first to ask.
+ */
+void BoundarySplits::Visit(Id tetrahedron, Id point, const Vec3& position)
+{
+  if (this->Visits[tetrahedron] == this->Search)
+  {
+    return;
+  }
+  this->Visits[tetrahedron] = this->Search;
+  const TetMesh& mesh = this->Mesh.GetMesh();
+  const TetrahedronIds& ids = mesh.Tetrahedra[tetrahedron];
+  if (std::find(ids.begin(), ids.end(), point) == ids.end() &&
+    InSphere(mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]], mesh.Points[ids[3]],
+      position) < 0)
+  {
+    return;
+  }
+  this->Open.push_back(tetrahedron);
+  if (this->IsInCavity[tetrahedron] == 0)
+  {
+    this->IsInCavity[tetrahedron] = 1;
+    this->Tetrahedra.push_back(tetrahedron);
+  }
+}
+
+/** All tetrahedra of any region at points that are moved, or whose spheres hold new places. */
+bool BoundarySplits::CollectConflicts(
+  const std::vector<Vec3>& points, const std::vector<Id>& touched)
+{
+  this->Sides.clear();
+  this->Visits.resize(this->Mesh.GetNumberOfTetrahedra(), 0);
+  for (const TriangleIds& ids : this->Vanished)
+  {
+    if (!this->FindSides(ids))
+    {
+      return false;
+    }
+  }
+  this->Tetrahedra.clear();
+  this->IsInCavity.resize(this->Mesh.GetNumberOfTetrahedra(), 0);
+  const auto search = [this](const std::vector<Id>& sides, Id point, const Vec3& position)
+  {
+    ++this->Search;
+    for (Id side : sides)
+    {
+      this->Visit(side / 4, point, position);
+    }
+    while (!this->Open.empty())
+    {
+      const Id t = this->Open.back();
+      this->Open.pop_back();
+      for (Id neighbor : this->Mesh.GetMesh().Neighbors[t])
+      {
+        if (neighbor != NoId)
+        {
+          this->Visit(neighbor / 4, point, position);
+        }
+      }
+    }
+  };
+  for (const Vec3& position : points)
+  {
+    search(this->Sides, NoId, position);
+  }
+  // All triangles at a point that is moved are touched.
+  std::vector<std::pair<Id, Id>> around;
+  for (Id t : touched)
+  {
+    for (int i = 0; i < 3 && t < static_cast<Id>(this->Surface.Triangles.size()); ++i)
+    {
+      const Id point = this->Surface.Triangles[t][i];
+      if (std::binary_search(this->Moved.begin(), this->Moved.end(), point))
+      {
+        around.emplace_back(point, t);
+      }
+    }
+  }
+  std::sort(around.begin(), around.end());
+  const std::size_t numberOfSides = this->Sides.size();
+  for (std::size_t k = 0; k < around.size(); ++k)
+  {
+    const auto [point, t] = around[k];
+    if (!this->FindSides(Sorted(this->Surface.Triangles[t])))
+    {
+      return false;
+    }
+    if (k + 1 == around.size() || around[k + 1].first != point)
+    {
+      search(
+        { this->Sides.begin() + static_cast<std::ptrdiff_t>(numberOfSides), this->Sides.end() },
+        point, this->Surface.Points[point]);
+      this->Sides.resize(numberOfSides);
+    }
+  }
+  return true;
+}
+
+/** Of a new triangle, turned in any way. */
+Id BoundarySplits::GetRegionInFront(const TriangleIds& ids) const
+{
+  const TriangleIds key = Sorted(ids);
+  const auto triangle = std::find_if(this->Triangles.begin(), this->Triangles.end(),
+    [&key](const NewTriangle& other) { return Sorted(other.Ids) == key; });
+  // The same turn has each point follow the same one.
+  const TriangleIds& others = triangle->Ids;
+  const auto first = std::find(others.begin(), others.end(), ids[0]) - others.begin();
+  return others[(first + 1) % 3] == ids[1] ? triangle->Labels.Front : triangle->Labels.Back;
+}
+
+void BoundarySplits::CollectCavity(const std::vector<Vec3>& points)
+{
+  const TetMesh& mesh = this->Mesh.GetMesh();
+  Cavity& cavity = this->Around;
+  cavity = Cavity();
+  cavity.Walls = this->Made;
+  this->Outer.clear();
+  this->WallRegions.clear();
+  this->FoundRegions.clear();
+  this->Bared.clear();
+  for (Id t : this->Tetrahedra)
+  {
+    const TetrahedronIds& ids = mesh.Tetrahedra[t];
+    cavity.Numbers.insert(cavity.Numbers.end(), ids.begin(), ids.end());
+    for (int i = 0; i < 4; ++i)
+    {
+      const TriangleIds facet = GetFacet(ids, i);
+      const TriangleIds key = Sorted(facet);
+      const Id neighbor = mesh.Neighbors[t][i];
+      const bool isInside = neighbor != NoId && this->IsInCavity[neighbor / 4] != 0;
+      const bool isVanished = Contains(this->Vanished, key);
+      if (isInside && !isVanished && mesh.Regions[neighbor / 4] != mesh.Regions[t])
+      {
+        this->WallRegions.emplace_back(key, mesh.Regions[t]);
+        if (neighbor / 4 > t)
+        {
+          cavity.Walls.push_back(facet);
+        }
+      }
+      else if (!isInside && !isVanished)
+      {
+        const TriangleIds border{ facet[0], facet[2], facet[1] };
+        const Id region =
+          Contains(this->Made, key) ? this->GetRegionInFront(border) : mesh.Regions[t];
+        if (region < 0)
+        {
+          // The surface is now on the other side of a flat tetrahedron, which is gone.
+          this->Bared.push_back(neighbor);
+        }
+        else
+        {
+          cavity.Border.push_back(border);
+          cavity.Regions.push_back(region);
+          this->Outer.push_back(neighbor);
+        }
+        if (neighbor != NoId && Contains(this->Made, key))
+        {
+          this->FoundRegions.emplace_back(key, mesh.Regions[neighbor / 4]);
+        }
+      }
+    }
+  }
+  // A new point that rounding has put beside the plane leaves a tetrahedron there as it is: a flat
+  // one comes between it and the surface.
+  for (Id side : this->Sides)
+  {
+    if (this->IsInCavity[side / 4] == 0)
+    {
+      const TriangleIds facet = GetFacet(mesh.Tetrahedra[side / 4], side % 4);
+      cavity.Numbers.insert(cavity.Numbers.end(), facet.begin(), facet.end());
+      cavity.Border.push_back(facet);
+      cavity.Regions.push_back(mesh.Regions[side / 4]);
+      this->Outer.push_back(side);
+    }
+  }
+  for (Id t : this->Tetrahedra)
+  {
+    this->IsInCavity[t] = 0;
+  }
+  const Id first = static_cast<Id>(this->Surface.Points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    cavity.Numbers.push_back(first + static_cast<Id>(i));
+  }
+  SortUnique(cavity.Numbers);
+  cavity.Points.reserve(cavity.Numbers.size());
+  for (Id id : cavity.Numbers)
+  {
+    cavity.Points.push_back(id < first ? this->Surface.Points[id]
+        : id < this->FirstInside       ? points[id - first]
+                                       : mesh.Points[id]);
+  }
+}
+
+/** Whether all regions at walls have cells there: a region may lie between walls alone. */
+bool BoundarySplits::AreWallsComplete()
+{
+  for (const NewTriangle& triangle : this->Triangles)
+  {
+    const TriangleIds key = Sorted(triangle.Ids);
+    if (Contains(this->Made, key))
+    {
+      for (Id region : { triangle.Labels.Back, triangle.Labels.Front })
+      {
+        if (region >= 0)
+        {
+          this->WallRegions.emplace_back(key, region);
+        }
+      }
+    }
+  }
+  std::sort(this->WallRegions.begin(), this->WallRegions.end());
+  for (const CavityFilling::Cell& cell : this->Filling.GetCells())
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      const TriangleIds key = Sorted(GetFacet(cell.Ids, i));
+      const auto wall = std::lower_bound(
+        this->WallRegions.begin(), this->WallRegions.end(), std::pair<TriangleIds, Id>(key, NoId));
+      if (wall != this->WallRegions.end() && wall->first == key)
+      {
+        this->FoundRegions.emplace_back(key, cell.Region);
+      }
+    }
+  }
+  std::sort(this->FoundRegions.begin(), this->FoundRegions.end());
+  return this->FoundRegions == this->WallRegions;
+}
+
+void BoundarySplits::Adopt(const std::vector<Vec3>& points)
+{
+  for (const Vec3& position : points)
+  {
+    this->Mesh.SetPoint(static_cast<Id>(this->Surface.Points.size()), position);
+    this->Surface.Points.push_back(position);
+  }
+  for (Id point : this->Moved)
+  {
+    this->Mesh.SetPoint(point, this->Surface.Points[point]);
+  }
+  for (Id facet : this->Bared)
+  {
+    this->Mesh.MakeOuter(facet);
+  }
+  this->Mesh.Replace(this->Tetrahedra, this->Outer, this->Filling.GetCells());
+  const std::vector<Id>& changed = this->Mesh.GetChanged();
+  this->Changed.insert(this->Changed.end(), changed.begin(), changed.end());
+
+  const std::size_t count = this->Refinement.GetSurface().GetNumberOfTriangles();
+  this->Surface.Triangles.resize(count);
+  this->Surface.Labels.resize(count);
+  this->Surface.SourceCells.resize(count);
+  for (const NewTriangle& triangle : this->Triangles)
+  {
+    this->Surface.Triangles[triangle.Index] = triangle.Ids;
+    this->Surface.Labels[triangle.Index] = triangle.Labels;
+    this->Surface.SourceCells[triangle.Index] = triangle.Source;
+  }
+}
+
+/** As the refinement has them, sorted. */
+void BoundarySplits::ListEdges()
+{
+  const RefinableSurface& refined = this->Refinement.GetSurface();
+  std::vector<std::pair<EdgeIds, Id>> order;
+  for (Id s = 0; s < refined.GetNumberOfSegments(); ++s)
+  {
+    const EdgeIds& ends = refined.GetSegment(s).Points;
+    order.emplace_back(MakeEdge(this->SurfacePoints[ends[0]], this->SurfacePoints[ends[1]]), s);
+  }
+  std::sort(order.begin(), order.end());
+  this->Edges.clear();
+  this->Segments.clear();
+  for (const auto& [ends, s] : order)
+  {
+    const RefinableSurface::Segment& segment = refined.GetSegment(s);
+    this->Edges.push_back({ ends, segment.Kind, segment.Chain, segment.DihedralAngle });
+    this->Segments.push_back(s);
+  }
+}
+} // namespace cdm

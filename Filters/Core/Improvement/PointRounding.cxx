@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Improvement/PointRounding.h"
+
+#include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/Measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+/**
+ * How far from the plane and the circle a fourth point may lie, in radii: far more than rounding.
+ */
+constexpr double RoundingRatio = 1e-8;
+/** Cells whose centers are closer, in radii, are one degenerate cell. */
+constexpr double SameCellRatio = 1e-3;
+/** How far a point moves at most along each axis, in units in the last place. */
+constexpr int MaximumSteps = 4;
+/** Distance of a sphere's center from the span of the others, in lengths of it, that is enough. */
+constexpr double EnoughMargin = 1.0;
+} // namespace
+
+PointRounding::PointRounding(
+  const TetMesh& mesh, const TriangleMesh& surface, const std::vector<Id>& flat)
+  : Mesh(mesh), Surface(surface), Flat(flat), IsFlat(mesh.Tetrahedra.size(), 0)
+{
+  const Id numberOfPoints = static_cast<Id>(surface.Points.size());
+  std::vector<char> isUsed(surface.Points.size(), 0);
+  for (Id t : flat)
+  {
+    this->IsFlat[t] = 1;
+    for (Id point : mesh.Tetrahedra[t])
+    {
+      isUsed[point] = 1;
+    }
+  }
+  std::vector<std::pair<Id, Id>> pairs;
+  for (Id t = 0; t < static_cast<Id>(mesh.Tetrahedra.size()); ++t)
+  {
+    if (mesh.Tetrahedra[t][0] == NoId)
+    {
+      continue;
+    }
+    for (Id point : mesh.Tetrahedra[t])
+    {
+      if (point < numberOfPoints && isUsed[point])
+      {
+        pairs.emplace_back(point, t);
+      }
+    }
+  }
+  this->Stars.Build(numberOfPoints, pairs);
+  pairs.clear();
+  for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()); ++t)
+  {
+    for (Id point : surface.Triangles[t])
+    {
+      if (isUsed[point])
+      {
+        pairs.emplace_back(point, t);
+      }
+    }
+  }
+  this->Triangles.Build(numberOfPoints, pairs);
+}
+
+Vec3 PointRounding::GetCenter(Id tetrahedron) const
+{
+  const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
+  return GetCircumcenter(this->Mesh.Points[ids[0]], this->Mesh.Points[ids[1]],
+    this->Mesh.Points[ids[2]], this->Mesh.Points[ids[3]]);
+}
+
+/**
+ * @param cells on both sides of the quadrangle that are not flat
+ * @param isComplete whether these are all; at an outer facet the other side is as if mirrored
+ * @return false if both sides are one degenerate cell, or none is known
+ */
+bool PointRounding::AddQuadrangle(const std::vector<Vec3>& points, const std::array<Id, 3>& others,
+  const std::vector<Id>& cells, bool isComplete, std::vector<Quadrangle>& quadrangles) const
+{
+  Quadrangle quadrangle;
+  quadrangle.Corner = points[others[0]];
+  const WideVec3 u = WideVec3::FromDifference(points[others[1]], quadrangle.Corner);
+  const WideVec3 v = WideVec3::FromDifference(points[others[2]], quadrangle.Corner);
+  const WideVec3 normal = Cross(u, v);
+  const long double square = Dot(normal, normal);
+  const WideVec3 first = Cross(normal, u);
+  const WideVec3 second = Cross(v, normal);
+  quadrangle.Center = (Dot(v, v) * first + Dot(u, u) * second) / (2.0L * square);
+  quadrangle.Normal = normal / std::sqrt(square);
+  const Vec3 center = quadrangle.Corner + quadrangle.Center.Round();
+  if (cells.empty() || !IsFinite(center))
+  {
+    return false;
+  }
+  const double smallest = SameCellRatio * Norm(quadrangle.Center.Round());
+  quadrangle.Low = std::numeric_limits<double>::infinity();
+  quadrangle.High = -quadrangle.Low;
+  for (Id cell : cells)
+  {
+    const double height = Dot(this->GetCenter(cell) - center, quadrangle.Normal.Round());
+    quadrangle.Low = std::min(quadrangle.Low, height);
+    quadrangle.High = std::max(quadrangle.High, height);
+  }
+  if (!isComplete)
+  {
+    quadrangle.High = std::max(std::abs(quadrangle.Low), std::abs(quadrangle.High)) + smallest;
+    quadrangle.Low = -quadrangle.High;
+  }
+  if (!(quadrangle.High - quadrangle.Low >= smallest))
+  {
+    return false;
+  }
+  quadrangles.push_back(quadrangle);
+  return true;
+}
+
+std::vector<PointRounding::Quadrangle> PointRounding::FindQuadrangles(
+  Id point, const std::vector<Vec3>& points) const
+{
+  const Id numberOfPoints = static_cast<Id>(points.size());
+  std::vector<Id> around;
+  for (Id t : this->Stars[point])
+  {
+    for (Id id : this->Mesh.Tetrahedra[t])
+    {
+      if (id != point && id < numberOfPoints)
+      {
+        around.push_back(id);
+      }
+    }
+  }
+  SortUnique(around);
+
+  std::vector<Quadrangle> quadrangles;
+  std::set<std::array<Id, 3>> known;
+  const auto add = [&](std::array<Id, 3> others, const std::vector<Id>& cells, bool isComplete)
+  {
+    std::sort(others.begin(), others.end());
+    if (known.count(others) == 0 &&
+      this->AddQuadrangle(points, others, cells, isComplete, quadrangles))
+    {
+      known.insert(others);
+    }
+  };
+  std::vector<Id> cells;
+  for (Id t : this->Stars[point])
+  {
+    const TetrahedronIds& ids = this->Mesh.Tetrahedra[t];
+    const std::array<Id, 4>& neighbors = this->Mesh.Neighbors[t];
+    const auto addCell = [&](Id neighbor)
+    {
+      if (neighbor != NoId && !this->IsFlat[neighbor / 4])
+      {
+        cells.push_back(neighbor / 4);
+      }
+    };
+    const std::size_t place = std::find(ids.begin(), ids.end(), point) - ids.begin();
+    const std::array<Id, 3> others{ ids[(place + 1) % 4], ids[(place + 2) % 4],
+      ids[(place + 3) % 4] };
+    cells.clear();
+    if (this->IsFlat[t])
+    {
+      std::for_each(neighbors.begin(), neighbors.end(), addCell);
+      add(others, cells, cells.size() == neighbors.size());
+      continue;
+    }
+    for (std::size_t i = 1; i < 4; ++i)
+    {
+      // A facet at the point, and what lies with it on a circle.
+      const std::array<Id, 2> ends{ others[i % 3], others[(i + 1) % 3] };
+      if (std::max(ends[0], ends[1]) >= numberOfPoints)
+      {
+        continue;
+      }
+      cells.assign(1, t);
+      addCell(neighbors[(place + 1 + (i + 2) % 3) % 4]);
+      const Vec3 normal = Cross(points[ends[0]] - points[point], points[ends[1]] - points[point]);
+      const Vec3 center = GetCircumcenter(points[point], points[ends[0]], points[ends[1]]);
+      const double radius = Distance(center, points[point]);
+      for (Id other : around)
+      {
+        const Vec3 way = points[other] - center;
+        if (other != ends[0] && other != ends[1] &&
+          std::abs(Dot(way, normal)) < RoundingRatio * radius * Norm(normal) &&
+          std::abs(Norm(way) - radius) < RoundingRatio * radius)
+        {
+          add({ ends[0], ends[1], other }, cells, cells.size() == 2);
+        }
+      }
+    }
+  }
+  return quadrangles;
+}
+
+/** Along which axes the point may move: no facet at it lies across them. */
+std::array<bool, 3> PointRounding::FindFreeAxes(Id point) const
+{
+  std::array<bool, 3> isFree{ true, true, true };
+  for (Id t : this->Triangles[point])
+  {
+    const TriangleIds& ids = this->Surface.Triangles[t];
+    const Vec3& a = this->Surface.Points[ids[0]];
+    const Vec3& b = this->Surface.Points[ids[1]];
+    const Vec3& c = this->Surface.Points[ids[2]];
+    isFree[0] = isFree[0] && !(a.X == b.X && a.X == c.X);
+    isFree[1] = isFree[1] && !(a.Y == b.Y && a.Y == c.Y);
+    isFree[2] = isFree[2] && !(a.Z == b.Z && a.Z == c.Z);
+  }
+  return isFree;
+}
+
+/**
+ * How far the centers of the spheres through the quadrangles and the position are at least from the
+ * span of the cells' centers, in lengths of that; not positive if a flat tetrahedron fits in.
+ */
+double PointRounding::Rate(const Vec3& position, const std::vector<Quadrangle>& quadrangles)
+{
+  double smallest = EnoughMargin;
+  for (const Quadrangle& quadrangle : quadrangles)
+  {
+    const WideVec3 way = WideVec3::FromDifference(position, quadrangle.Corner);
+    const long double power = 0.5L * Dot(way, way) - Dot(way, quadrangle.Center);
+    const long double height = Dot(way, quadrangle.Normal);
+    if (height == 0.0L && power != 0.0L)
+    {
+      continue;
+    }
+    // Not a number if the position is exact.
+    const double center = static_cast<double>(power / height);
+    const double span = quadrangle.High - quadrangle.Low;
+    const double margin = center < quadrangle.Low ? (quadrangle.Low - center) / span
+      : center > quadrangle.High                  ? (center - quadrangle.High) / span
+                                                  : 0.0;
+    smallest = std::min(smallest, margin);
+    if (smallest <= 0.0)
+    {
+      break;
+    }
+  }
+  return smallest;
+}
+
+void PointRounding::Move(const std::vector<char>& isFree, std::vector<Vec3>& points) const
+{
+  double largest = 0.0;
+  for (const Vec3& point : points)
+  {
+    largest = std::max({ largest, std::abs(point.X), std::abs(point.Y), std::abs(point.Z) });
+  }
+  const double step =
+    std::ldexp(std::numeric_limits<double>::epsilon(), largest > 0.0 ? std::ilogb(largest) : 0);
+  std::vector<char> isMoved(points.size(), 0);
+  for (Id t : this->Flat)
+  {
+    const TetrahedronIds& ids = this->Mesh.Tetrahedra[t];
+    if (std::any_of(ids.begin(), ids.end(), [&](Id id) { return isMoved[id]; }))
+    {
+      continue;
+    }
+    Id moved = NoId;
+    Vec3 best;
+    double margin = 0.0;
+    for (Id point : ids)
+    {
+      if (!isFree[point])
+      {
+        continue;
+      }
+      const std::vector<Quadrangle> quadrangles = this->FindQuadrangles(point, points);
+      const std::array<bool, 3> isFreeAxis = this->FindFreeAxes(point);
+      for (int shell = 1; shell <= MaximumSteps && margin < EnoughMargin; ++shell)
+      {
+        const int x = isFreeAxis[0] ? shell : 0;
+        const int y = isFreeAxis[1] ? shell : 0;
+        const int z = isFreeAxis[2] ? shell : 0;
+        for (int i = -x; i <= x; ++i)
+        {
+          for (int j = -y; j <= y; ++j)
+          {
+            for (int k = -z; k <= z; ++k)
+            {
+              if (std::max({ std::abs(i), std::abs(j), std::abs(k) }) != shell)
+              {
+                continue;
+              }
+              const Vec3 position = points[point] + step * Vec3{ 1.0 * i, 1.0 * j, 1.0 * k };
+              const double rating = Rate(position, quadrangles);
+              if (rating > margin)
+              {
+                margin = rating;
+                best = position;
+                moved = point;
+              }
+            }
+          }
+        }
+      }
+    }
+    if (moved != NoId)
+    {
+      points[moved] = best;
+      isMoved[moved] = 1;
+    }
+  }
+}
+} // namespace cdm

@@ -1,0 +1,460 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Improvement/SurfacePointMoves.h"
+
+#include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/Box.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Search/PlaceSearch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+/**
+ * Triangles within this part of the surface's diagonal of a plane lie in it: far more than
+ * rounding.
+ */
+constexpr double PlaneRatio = 1e-12;
+/** Edges that bend by less than this, in radians, are one line. */
+constexpr double LineAngle = 1e-9;
+/** Larger cavities mean that the point has come close to something far away. */
+constexpr std::size_t LargestCavity = 500;
+
+/** Opposite ways in a plane, or along a line. */
+std::vector<Vec3> MakeDirections(const Vec3& axis, bool isLine)
+{
+  if (isLine)
+  {
+    return { axis, -1.0 * axis };
+  }
+  // The axis along which the plane has no component stays exact.
+  Vec3 least;
+  least[std::abs(axis.X) <= std::abs(axis.Y) && std::abs(axis.X) <= std::abs(axis.Z) ? 0
+      : std::abs(axis.Y) <= std::abs(axis.Z)                                         ? 1
+                                                                                     : 2] = 1.0;
+  Vec3 u = Cross(axis, least);
+  u = (1.0 / Norm(u)) * u;
+  const Vec3 v = Cross(axis, u);
+  std::vector<Vec3> directions;
+  for (int i = -1; i <= 1; ++i)
+  {
+    for (int j = -1; j <= 1; ++j)
+    {
+      if (i != 0 || j != 0)
+      {
+        directions.push_back(static_cast<double>(i) * u + static_cast<double>(j) * v);
+      }
+    }
+  }
+  return directions;
+}
+
+/** The point of a plane or line through the origin nearest to a position; along the axes exact. */
+Vec3 Project(const Vec3& position, const Vec3& origin, const Vec3& axis, bool isLine)
+{
+  Vec3 projected = isLine ? origin + Dot(position - origin, axis) * axis
+                          : position + Dot(origin - position, axis) * axis;
+  for (int i = 0; i < 3; ++i)
+  {
+    if (std::abs(axis[i]) == 1.0)
+    {
+      projected[i] = isLine ? position[i] : origin[i];
+    }
+    else if (axis[i] == 0.0)
+    {
+      projected[i] = isLine ? origin[i] : position[i];
+    }
+  }
+  return projected;
+}
+} // namespace
+
+SurfacePointMoves::SurfacePointMoves(DynamicTetrahedralization& mesh, const TriangleMesh& surface,
+  const IdLists& pointTriangles, const std::vector<StructuralEdge>& edges,
+  const std::vector<StructuralEdge>& keptEdges, Rules rules)
+  : Mesh(mesh), Surface(surface), Points(surface.Points), PointTriangles(pointTriangles),
+    Edges(edges), KeptEdges(keptEdges), Given(std::move(rules))
+{
+  Box box;
+  for (const Vec3& point : surface.Points)
+  {
+    box.Add(point);
+  }
+  this->Flatness = PlaneRatio * Distance(box.Low, box.High);
+}
+
+/** Other ends of the structural edges at a point. */
+std::vector<Id> SurfacePointMoves::FindEdgeEnds(Id point) const
+{
+  std::vector<Id> ends;
+  for (Id t : this->PointTriangles[point])
+  {
+    for (Id other : this->Surface.Triangles[t])
+    {
+      if (other != point && FindStructuralEdge(this->Edges, MakeEdge(point, other)) != nullptr)
+      {
+        ends.push_back(other);
+      }
+    }
+  }
+  SortUnique(ends);
+  return ends;
+}
+
+/** Whether triangles at a point that are connected across its smooth edges lie in one plane. */
+bool SurfacePointMoves::ArePlanar(Id point, const std::vector<Id>& ends) const
+{
+  const std::vector<Vec3>& points = this->Points;
+  for (Id t : this->PointTriangles[point])
+  {
+    const TriangleIds& ids = this->Surface.Triangles[t];
+    Vec3 normal = Cross(points[ids[1]] - points[ids[0]], points[ids[2]] - points[ids[0]]);
+    normal = (1.0 / Norm(normal)) * normal;
+    for (Id other : this->PointTriangles[point])
+    {
+      const TriangleIds& others = this->Surface.Triangles[other];
+      // Neighbors share an edge at the point that is no structural one.
+      const bool areNeighbors = std::any_of(others.begin(), others.end(),
+        [&](Id id)
+        {
+          return id != point && std::find(ids.begin(), ids.end(), id) != ids.end() &&
+            !std::binary_search(ends.begin(), ends.end(), id);
+        });
+      if (areNeighbors &&
+        std::any_of(others.begin(), others.end(),
+          [&](Id id)
+          { return std::abs(Dot(points[id] - points[point], normal)) > this->Flatness; }))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool SurfacePointMoves::FindSupport(Id point, Support& support) const
+{
+  const std::vector<Id> ends = this->FindEdgeEnds(point);
+  const Vec3& origin = this->Points[point];
+  support.IsLine = ends.size() == 2;
+  if (support.IsLine)
+  {
+    const Vec3 u = this->Points[ends[0]] - origin;
+    const Vec3 v = this->Points[ends[1]] - origin;
+    if (Dot(u, v) > 0.0 || Norm(Cross(u, v)) > LineAngle * Norm(u) * Norm(v))
+    {
+      return false;
+    }
+    support.Axis = (1.0 / Norm(u - v)) * (u - v);
+  }
+  else if (ends.empty())
+  {
+    double largest = 0.0;
+    for (Id t : this->PointTriangles[point])
+    {
+      const TriangleIds& ids = this->Surface.Triangles[t];
+      const Vec3 normal = Cross(
+        this->Points[ids[1]] - this->Points[ids[0]], this->Points[ids[2]] - this->Points[ids[0]]);
+      if (Norm(normal) > largest)
+      {
+        largest = Norm(normal);
+        support.Axis = (1.0 / largest) * normal;
+      }
+    }
+  }
+  else
+  {
+    return false;
+  }
+  support.Directions = MakeDirections(support.Axis, support.IsLine);
+  return this->ArePlanar(point, ends);
+}
+
+void SurfacePointMoves::CollectStar(Id point)
+{
+  this->Star.assign(1, this->Mesh.GetTetrahedronAt(point));
+  for (std::size_t k = 0; k < this->Star.size(); ++k)
+  {
+    const Id t = this->Star[k];
+    for (int i = 0; i < 4; ++i)
+    {
+      const Id neighbor = this->Mesh.GetMesh().Neighbors[t][i];
+      if (neighbor != NoId && this->Mesh.GetMesh().Tetrahedra[t][i] != point &&
+        std::find(this->Star.begin(), this->Star.end(), neighbor / 4) == this->Star.end())
+      {
+        this->Star.push_back(neighbor / 4);
+      }
+    }
+  }
+}
+
+/** The smallest angle that counts, and how far away the nearest other point is. */
+double SurfacePointMoves::MeasureStar(Id point, double& nearest) const
+{
+  const TetMesh& mesh = this->Mesh.GetMesh();
+  double smallest = 180.0;
+  nearest = std::numeric_limits<double>::infinity();
+  for (Id t : this->Star)
+  {
+    const TetrahedronIds& ids = mesh.Tetrahedra[t];
+    for (Id id : ids)
+    {
+      if (id != point)
+      {
+        nearest = std::min(nearest, Distance(mesh.Points[id], mesh.Points[point]));
+      }
+    }
+    if (this->Given.HasAngle(ids, mesh.Regions[t]))
+    {
+      smallest = std::min(smallest,
+        GetSmallestDihedralAngle(
+          mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]], mesh.Points[ids[3]]));
+    }
+  }
+  return smallest;
+}
+
+/** Whether no triangle at the point would turn over. */
+bool SurfacePointMoves::KeepsTurns(Id point, const Vec3& position) const
+{
+  const auto isKept = [&](Id t)
+  {
+    const TriangleIds& ids = this->Surface.Triangles[t];
+    const auto getNormal = [&](const Vec3& moved)
+    {
+      std::array<Vec3, 3> v;
+      for (int i = 0; i < 3; ++i)
+      {
+        v[i] = ids[i] == point ? moved : this->Points[ids[i]];
+      }
+      return Cross(v[1] - v[0], v[2] - v[0]);
+    };
+    return Dot(getNormal(this->Points[point]), getNormal(position)) > 0.0;
+  };
+  const IdLists::Range triangles = this->PointTriangles[point];
+  return std::all_of(triangles.begin(), triangles.end(), isKept);
+}
+
+/** Whether a facet is one of the surface's triangles. */
+bool SurfacePointMoves::IsOnSurface(const TriangleIds& ids) const
+{
+  return IsTriangle(this->Surface.Triangles, this->PointTriangles, ids);
+}
+
+/** What is at the point, and in conflict with the position; false if this is too much. */
+bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
+{
+  const TetMesh& mesh = this->Mesh.GetMesh();
+  this->Tetrahedra = this->Star;
+  std::vector<Id> outer;
+  const auto isIn = [&](Id t)
+  {
+    return std::find(this->Tetrahedra.begin(), this->Tetrahedra.end(), t) != this->Tetrahedra.end();
+  };
+  for (std::size_t k = 0; k < this->Tetrahedra.size(); ++k)
+  {
+    for (Id neighbor : mesh.Neighbors[this->Tetrahedra[k]])
+    {
+      const Id t = neighbor == NoId ? NoId : neighbor / 4;
+      if (t == NoId || isIn(t) || std::find(outer.begin(), outer.end(), t) != outer.end())
+      {
+        continue;
+      }
+      const TetrahedronIds& ids = mesh.Tetrahedra[t];
+      const bool isInConflict = InSphere(mesh.Points[ids[0]], mesh.Points[ids[1]],
+                                  mesh.Points[ids[2]], mesh.Points[ids[3]], position) >= 0;
+      (isInConflict ? this->Tetrahedra : outer).push_back(t);
+    }
+    if (this->Tetrahedra.size() > LargestCavity)
+    {
+      return false;
+    }
+  }
+
+  Cavity& cavity = this->Around;
+  cavity = Cavity();
+  this->Outer.clear();
+  const auto isAtPoint = [&](const TriangleIds& ids)
+  { return std::find(ids.begin(), ids.end(), point) != ids.end(); };
+  for (Id t : this->Tetrahedra)
+  {
+    const TetrahedronIds& ids = mesh.Tetrahedra[t];
+    cavity.Numbers.insert(cavity.Numbers.end(), ids.begin(), ids.end());
+    for (int i = 0; i < 4; ++i)
+    {
+      const TriangleIds facet = GetFacet(ids, i);
+      const Id neighbor = mesh.Neighbors[t][i];
+      const bool isInside = neighbor != NoId && isIn(neighbor / 4);
+      const bool isTriangle = this->IsOnSurface(facet);
+      if (!isInside && !isTriangle &&
+        (neighbor == NoId || mesh.Regions[neighbor / 4] != mesh.Regions[t]))
+      {
+        // What lies beyond may be in conflict with the new tetrahedra.
+        return false;
+      }
+      if (!isInside && !isAtPoint(facet))
+      {
+        cavity.Border.push_back({ facet[0], facet[2], facet[1] });
+        cavity.Regions.push_back(mesh.Regions[t]);
+        this->Outer.push_back(neighbor);
+      }
+      else if ((!isInside || neighbor / 4 > t) && isTriangle)
+      {
+        cavity.Walls.push_back(facet);
+      }
+    }
+  }
+  // Tetrahedra that meet the others in an edge only would be left out.
+  if (std::count_if(cavity.Walls.begin(), cavity.Walls.end(), isAtPoint) !=
+    static_cast<std::ptrdiff_t>(this->PointTriangles[point].size()))
+  {
+    return false;
+  }
+  SortUnique(cavity.Numbers);
+  cavity.Points.reserve(cavity.Numbers.size());
+  for (Id id : cavity.Numbers)
+  {
+    cavity.Points.push_back(id == point ? position : mesh.Points[id]);
+  }
+  return true;
+}
+
+/** Of the triangles at the cavity and, where they count, of its structural edges. */
+bool SurfacePointMoves::AreSpheresEmpty(Id point, const Vec3& position) const
+{
+  const auto getPoint = [&](Id id) { return id == point ? position : this->Points[id]; };
+  const auto isEmpty = [&](const auto& ids, const auto& isInside)
+  {
+    if (std::find(ids.begin(), ids.end(), point) == ids.end())
+    {
+      return !isInside(position);
+    }
+    for (std::size_t i = 0; i < this->Around.Numbers.size(); ++i)
+    {
+      if (std::find(ids.begin(), ids.end(), this->Around.Numbers[i]) == ids.end() &&
+        isInside(this->Around.Points[i]))
+      {
+        return false;
+      }
+    }
+    return true;
+  };
+  const auto isTriangleEmpty = [&](const TriangleIds& ids)
+  {
+    const std::array<Vec3, 3> v{ getPoint(ids[0]), getPoint(ids[1]), getPoint(ids[2]) };
+    if (!isEmpty(
+          ids, [&](const Vec3& other) { return InEquatorialSphere(v[0], v[1], v[2], other) > 0; }))
+    {
+      return false;
+    }
+    for (int i = 0; i < 3; ++i)
+    {
+      const EdgeIds edge = MakeEdge(ids[i], ids[(i + 1) % 3]);
+      const Vec3& a = v[i];
+      const Vec3& b = v[(i + 1) % 3];
+      if (FindStructuralEdge(this->KeptEdges, edge) != nullptr &&
+        !isEmpty(edge, [&](const Vec3& other) { return InDiametralSphere(a, b, other) > 0; }))
+      {
+        return false;
+      }
+    }
+    return true;
+  };
+  return std::all_of(this->Around.Walls.begin(), this->Around.Walls.end(), isTriangleEmpty) &&
+    std::all_of(this->Around.Border.begin(), this->Around.Border.end(),
+      [&](const TriangleIds& ids) { return !this->IsOnSurface(ids) || isTriangleEmpty(ids); });
+}
+
+double SurfacePointMoves::Rate(Id point, const Vec3& position, double required)
+{
+  if (!this->KeepsTurns(point, position) || !this->CollectCavity(point, position))
+  {
+    return 0.0;
+  }
+  const Cavity& cavity = this->Around;
+  for (std::size_t i = 0; i < cavity.Numbers.size(); ++i)
+  {
+    const Id id = cavity.Numbers[i];
+    if (id != point && Distance(position, cavity.Points[i]) < this->Given.GetClearance(id))
+    {
+      return 0.0;
+    }
+  }
+  if (!this->AreSpheresEmpty(point, position) || !this->Filling.Run(cavity))
+  {
+    return 0.0;
+  }
+  const TetMesh& mesh = this->Mesh.GetMesh();
+  const auto getVertices = [&](const TetrahedronIds& ids)
+  {
+    std::array<Vec3, 4> v;
+    for (int i = 0; i < 4; ++i)
+    {
+      v[i] = ids[i] == point ? position : mesh.Points[ids[i]];
+    }
+    return v;
+  };
+  double smallest = 180.0;
+  Id broken = 0;
+  for (const CavityFilling::Cell& cell : this->Filling.GetCells())
+  {
+    const std::array<Vec3, 4> v = getVertices(cell.Ids);
+    if (this->Given.HasAngle(cell.Ids, cell.Region))
+    {
+      smallest = std::min(smallest, GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]));
+      if (smallest <= required)
+      {
+        return 0.0;
+      }
+    }
+    broken += this->Given.BreaksLimit(cell.Ids, v);
+  }
+  for (std::size_t k = 0; k < this->Tetrahedra.size() && broken > 0; ++k)
+  {
+    const TetrahedronIds& ids = mesh.Tetrahedra[this->Tetrahedra[k]];
+    broken -= this->Given.BreaksLimit(
+      ids, { mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]], mesh.Points[ids[3]] });
+  }
+  return broken > 0 ? 0.0 : smallest;
+}
+
+bool SurfacePointMoves::Move(Id point, const TetrahedronIds& sliver, double target)
+{
+  Support support;
+  if (!this->FindSupport(point, support))
+  {
+    return false;
+  }
+  this->CollectStar(point);
+  double nearest = 0.0;
+  const Vec3& old = this->Points[point];
+  Place best{ old, this->MeasureStar(point, nearest) + SmallestGain, false };
+  const auto rate = [&](const Vec3& position, double required)
+  { return this->Rate(point, position, required); };
+  for (Id other : sliver)
+  {
+    if (other != point)
+    {
+      TryPlace(Project(this->Mesh.GetPoint(other), old, support.Axis, support.IsLine), rate, best);
+    }
+  }
+  SearchPlace(old, FirstMove * nearest, support.Directions, target, rate, best);
+  if (!best.IsFound)
+  {
+    return false;
+  }
+  // The place that was tried last need not be the best one.
+  this->CollectCavity(point, best.Position);
+  this->Filling.Run(this->Around);
+  this->Mesh.SetPoint(point, best.Position);
+  this->Mesh.Replace(this->Tetrahedra, this->Outer, this->Filling.GetCells());
+  this->Points[point] = best.Position;
+  return true;
+}
+} // namespace cdm

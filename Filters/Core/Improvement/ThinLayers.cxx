@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Improvement/ThinLayers.h"
+
+#include "Core/Basics/DisjointSets.h"
+#include "Core/Meshes/EdgeUses.h"
+#include "Core/Meshes/TetMesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+/** A side is at least so many times as wide as a thin layer is thick. */
+constexpr double AspectRatio = 20.0;
+/** Of the angle between normals of one side: 45 degrees. */
+constexpr double SmoothCosine = 0.7071067811865476;
+/**
+ * Cosine of the angles between the sides of a layer, and of a side's normal and an upright edge.
+ */
+constexpr double AcrossCosine = 0.85;
+/**
+ * Length of an upright edge across a layer, in lengths of the longest edge of its tetrahedron ...
+ */
+constexpr double ThinRatio = 0.75;
+/** ... and thickness of the layer if the edge is not upright. */
+constexpr double VeryThinRatio = 0.35;
+
+/** Twice the area long, to the front. */
+Vec3 GetNormal(const TriangleMesh& surface, Id t)
+{
+  const TriangleIds& ids = surface.Triangles[t];
+  const Vec3& a = surface.Points[ids[0]];
+  return Cross(surface.Points[ids[1]] - a, surface.Points[ids[2]] - a);
+}
+
+Id GetRegion(const TriangleMesh& surface, Id face)
+{
+  const RegionPair& labels = surface.Labels[face / 2];
+  return face % 2 == 0 ? labels.Back : labels.Front;
+}
+} // namespace
+
+ThinLayers::ThinLayers(const TriangleMesh& surface, const IdLists& pointTriangles)
+  : Surface(surface), PointTriangles(pointTriangles)
+{
+  for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()); ++t)
+  {
+    const Vec3 normal = GetNormal(surface, t);
+    for (double sign : { 1.0, -1.0 })
+    {
+      this->Faces.push_back({ sign / Norm(normal) * normal });
+    }
+  }
+  this->MeasureWidths();
+}
+
+ThinLayers::ThinLayers(
+  const ThinLayers& coarse, const IdLists& pointTriangles, const std::vector<Id>& parents)
+  : Surface(coarse.Surface), PointTriangles(pointTriangles)
+{
+  for (Id parent : parents)
+  {
+    this->Faces.push_back(coarse.Faces[2 * parent]);
+    this->Faces.push_back(coarse.Faces[2 * parent + 1]);
+  }
+}
+
+void ThinLayers::MeasureWidths()
+{
+  const std::size_t count = this->Faces.size();
+  DisjointSets sides(count);
+  // Faces and the lengths of their edges at which the side ends.
+  std::vector<std::pair<Id, double>> rims;
+  const std::vector<EdgeUse> uses =
+    SortEdgeUses(this->Surface.Triangles, this->Surface.Points.size());
+  std::vector<Id> around;
+  for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end)
+  {
+    around.clear();
+    for (; end < uses.size() && uses[end].Edge == uses[begin].Edge; ++end)
+    {
+      around.push_back(2 * (uses[end].Use / 3));
+      around.push_back(2 * (uses[end].Use / 3) + 1);
+    }
+    const EdgeIds ends = uses[begin].GetPoints();
+    const double length = Distance(this->Surface.Points[ends[0]], this->Surface.Points[ends[1]]);
+    for (Id face : around)
+    {
+      const Id region = GetRegion(this->Surface, face);
+      bool goesOn = false;
+      for (Id other : around)
+      {
+        if (other != face && GetRegion(this->Surface, other) == region &&
+          Dot(this->Faces[face].Normal, this->Faces[other].Normal) > SmoothCosine)
+        {
+          sides.Unite(face, other);
+          goesOn = true;
+        }
+      }
+      if (!goesOn)
+      {
+        rims.emplace_back(face, length);
+      }
+    }
+  }
+
+  std::vector<double> areas(count, 0.0);
+  std::vector<double> perimeters(count, 0.0);
+  for (const auto& [face, length] : rims)
+  {
+    perimeters[sides.Find(face)] += length;
+  }
+  for (Id face = 0; face < static_cast<Id>(count); ++face)
+  {
+    areas[sides.Find(face)] += 0.5 * Norm(GetNormal(this->Surface, face / 2));
+  }
+  for (Id face = 0; face < static_cast<Id>(count); ++face)
+  {
+    const Id side = sides.Find(face);
+    const double square = std::sqrt(areas[side]);
+    this->Faces[face].Width =
+      perimeters[side] * square > 4.0 * areas[side] ? 4.0 * areas[side] / perimeters[side] : square;
+  }
+}
+
+/** As seen from a region; null if it does not bound it. */
+const ThinLayers::Face* ThinLayers::GetFace(Id triangle, Id region) const
+{
+  const RegionPair& labels = this->Surface.Labels[triangle];
+  return labels.Back == region ? &this->Faces[2 * triangle]
+    : labels.Front == region   ? &this->Faces[2 * triangle + 1]
+                               : nullptr;
+}
+
+bool ThinLayers::IsAcross(const TetrahedronIds& ids, Id region) const
+{
+  const std::vector<Vec3>& points = this->Surface.Points;
+  if (*std::max_element(ids.begin(), ids.end()) >= static_cast<Id>(points.size()))
+  {
+    return false;
+  }
+  double longest = 0.0;
+  for (const auto& edge : TetrahedronEdges)
+  {
+    longest = std::max(longest, Distance(points[ids[edge[0]]], points[ids[edge[1]]]));
+  }
+  return std::any_of(std::begin(TetrahedronEdges), std::end(TetrahedronEdges),
+    [&](const int(&edge)[2])
+    {
+      const Vec3 direction = points[ids[edge[1]]] - points[ids[edge[0]]];
+      const double length = Norm(direction);
+      for (Id t : this->PointTriangles[ids[edge[0]]])
+      {
+        const Face* const first = this->GetFace(t, region);
+        // How far it is to the other side.
+        const double height = first != nullptr ? -Dot(first->Normal, direction) : 0.0;
+        const bool isUpright = height >= AcrossCosine * length && length <= ThinRatio * longest;
+        if (height <= 0.0 || AspectRatio * height > first->Width ||
+          (!isUpright && height > VeryThinRatio * longest))
+        {
+          continue;
+        }
+        for (Id u : this->PointTriangles[ids[edge[1]]])
+        {
+          const Face* const second = this->GetFace(u, region);
+          if (second != nullptr && Dot(first->Normal, second->Normal) <= -AcrossCosine &&
+            AspectRatio * height <= second->Width)
+          {
+            return true;
+          }
+        }
+      }
+      return false;
+    });
+}
+} // namespace cdm
