@@ -136,9 +136,7 @@ private:
   }
   std::array<Vec3, 4> GetCorners(Id tetrahedron) const
   {
-    const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
-    const std::vector<Vec3>& points = this->Mesh.Points;
-    return { points[ids[0]], points[ids[1]], points[ids[2]], points[ids[3]] };
+    return cdm::GetCorners(this->Mesh.Points, this->Mesh.Tetrahedra[tetrahedron]);
   }
 
   const TetMesh& Mesh;

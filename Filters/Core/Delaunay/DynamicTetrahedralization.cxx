@@ -107,8 +107,7 @@ Id DynamicTetrahedralization::Locate(const Vec3& position, Id first) const
 bool DynamicTetrahedralization::IsInConflict(Id tetrahedron, const Vec3& position, Id number) const
 {
   const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
-  const std::array<Vec3, 4> vertices{ this->Mesh.Points[ids[0]], this->Mesh.Points[ids[1]],
-    this->Mesh.Points[ids[2]], this->Mesh.Points[ids[3]] };
+  const std::array<Vec3, 4> vertices = cdm::GetCorners(this->Mesh.Points, ids);
   const int side = InSphere(vertices[0], vertices[1], vertices[2], vertices[3], position);
   return side != 0 ? side > 0 : GetPulledPosition(vertices, ids, position, number, Orientation) > 0;
 }

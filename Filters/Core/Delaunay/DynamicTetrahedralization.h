@@ -58,6 +58,10 @@ public:
    */
   const TetMesh& GetMesh() const { return this->Mesh; }
   const Vec3& GetPoint(Id point) const { return this->Mesh.Points[point]; }
+  std::array<Vec3, 4> GetCorners(Id tetrahedron) const
+  {
+    return cdm::GetCorners(this->Mesh.Points, this->Mesh.Tetrahedra[tetrahedron]);
+  }
   Id GetNumberOfPoints() const { return static_cast<Id>(this->Mesh.Points.size()); }
   Id GetNumberOfTetrahedra() const { return static_cast<Id>(this->Mesh.Tetrahedra.size()); }
   bool IsDead(Id tetrahedron) const { return this->Mesh.Tetrahedra[tetrahedron][0] == NoId; }

@@ -294,9 +294,8 @@ void BoundarySplits::Visit(Id tetrahedron, Id point, const Vec3& position)
   this->Visits[tetrahedron] = this->Search;
   const TetMesh& mesh = this->Mesh.GetMesh();
   const TetrahedronIds& ids = mesh.Tetrahedra[tetrahedron];
-  if (std::find(ids.begin(), ids.end(), point) == ids.end() &&
-    InSphere(mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]], mesh.Points[ids[3]],
-      position) < 0)
+  const auto [a, b, c, d] = GetCorners(mesh.Points, ids);
+  if (std::find(ids.begin(), ids.end(), point) == ids.end() && InSphere(a, b, c, d, position) < 0)
   {
     return;
   }

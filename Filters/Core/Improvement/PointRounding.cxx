@@ -73,9 +73,8 @@ PointRounding::PointRounding(
 
 Vec3 PointRounding::GetCenter(Id tetrahedron) const
 {
-  const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
-  return GetCircumcenter(this->Mesh.Points[ids[0]], this->Mesh.Points[ids[1]],
-    this->Mesh.Points[ids[2]], this->Mesh.Points[ids[3]]);
+  const auto [a, b, c, d] = GetCorners(this->Mesh.Points, this->Mesh.Tetrahedra[tetrahedron]);
+  return GetCircumcenter(a, b, c, d);
 }
 
 /**

@@ -3,7 +3,8 @@
 
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Predicates.h"
-#include "Core/Improvement/VolumeRefinement.h"
+#include "Core/Improvement/RefinedMesh.h"
+#include "Core/Improvement/SliverPerturbation.h"
 #include "Core/Meshes/MeshBoundary.h"
 #include "Core/Search/SphereCriteria.h"
 #include "Core/Surface/StructuralEdges.h"
@@ -58,10 +59,10 @@ private:
   };
   Status TakeApart(const ExecutionContext& context, Parts& parts) const;
   Status KeepIntact(const ExecutionContext& context, Parts& parts) const;
-  VolumeRefinement MakeRefinement(Parts& parts) const
+  RefinedMesh MakeMesh(Parts& parts) const
   {
-    return VolumeRefinement(parts.Mesh, parts.Surface, parts.Structural.Edges, parts.IntactEdges,
-      {}, parts.Interior, parts.Memory);
+    return RefinedMesh(parts.Mesh, { parts.Surface, parts.Structural.Edges, parts.IntactEdges },
+      parts.Interior, parts.Memory);
   }
   void PutTogether(const Parts& parts, const TetMesh& moved);
 
@@ -167,11 +168,11 @@ Status SliverPointMoves::MoveInside(const ExecutionContext& context)
   {
     return status;
   }
-  VolumeRefinement refinement = MakeRefinement(parts);
-  status = refinement.PerturbSlivers(this->Target, SliverMeans::Moves, context.Part(0.1, 0.9));
-  status = status.IsOk() ? refinement.PerturbSharp(this->Target, context.Part(0.9, 1.0)) : status;
-  this->PutTogether(parts, refinement.GetMesh());
-  this->MovedPoints += refinement.GetReport().MovedPoints;
+  RefinedMesh mesh = this->MakeMesh(parts);
+  status = PerturbSlivers(this->Target, SliverMeans::Moves, context.Part(0.1, 0.9), mesh);
+  status = status.IsOk() ? PerturbSharp(this->Target, context.Part(0.9, 1.0), mesh) : status;
+  this->PutTogether(parts, mesh.GetMesh());
+  this->MovedPoints += mesh.GetReport().MovedPoints;
   return status;
 }
 
@@ -191,8 +192,8 @@ Status SliverPointMoves::MoveBoundary(const ExecutionContext& context, bool& isM
     {
       return Status::Aborted();
     }
-    VolumeRefinement refinement = MakeRefinement(parts);
-    const std::vector<Vec3> places = refinement.MoveSurfacePoints(this->Target, isFree, true);
+    RefinedMesh mesh = this->MakeMesh(parts);
+    const std::vector<Vec3> places = MoveSurfacePoints(this->Target, isFree, true, mesh);
     std::vector<Vec3> points = this->Mesh.Points;
     std::vector<Id> moved;
     for (Id p = 0; p < static_cast<Id>(places.size()); ++p)
@@ -236,7 +237,7 @@ Status SliverPointMoves::MoveBoundary(const ExecutionContext& context, bool& isM
     {
       isMoved = !moved.empty();
       this->MovedPoints += static_cast<Id>(moved.size());
-      this->PutTogether(parts, refinement.GetMesh());
+      this->PutTogether(parts, mesh.GetMesh());
       return Status();
     }
   }

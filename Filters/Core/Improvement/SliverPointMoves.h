@@ -7,7 +7,7 @@
  *  1. triangles and edges of the boundary (outer facets and interfaces) whose smallest spheres are
  *     empty are found: these stay empty. Near other outer facets nothing is moved, since what lies
  *     beyond could be in conflict;
- *  2. points inside are moved (VolumeRefinement.h);
+ *  2. points inside are moved (SliverPerturbation.h);
  *  3. if points of the boundary are free, too, they are moved in their plane or on their line
  *     (SurfacePointMoves.h). This does not see what lies beyond outer facets: if one of those
  *     spheres is found to be filled afterwards, the moves that fill it are taken back, and 3. is

@@ -5,6 +5,8 @@
 #include "Core/Geometry/Measures.h"
 #include "Core/Improvement/FeatureSizes.h"
 #include "Core/Improvement/PointRounding.h"
+#include "Core/Improvement/RefinedMesh.h"
+#include "Core/Improvement/SliverPerturbation.h"
 #include "Core/Improvement/SteinerPointChecks.h"
 #include "Core/Improvement/VolumeRefinement.h"
 #include "Core/Meshes/MeshBoundary.h"
@@ -92,7 +94,7 @@ private:
   ExecutionContext GetRoundContext() const;
   Status Translate(Status status, const std::vector<Id>& sources) const;
   DelaunaySurfaceRefinerOptions GetSurfaceOptions() const;
-  VolumeRefinementOptions GetRoundOptions() const;
+  RefinedMeshOptions GetRoundOptions() const;
   Status StartRound();
   bool CanSplitInPlace() const;
   Status SplitBoundary();
@@ -148,7 +150,7 @@ private:
   std::unique_ptr<FeatureSizes> Features;
   std::vector<InteriorPoint> Interior;
   SliverMemory Memory;
-  std::unique_ptr<VolumeRefinement> Round;
+  std::unique_ptr<RefinedMesh> Round;
   /** One for each point of the surface: whether it was made or moved since the mesh was made. */
   std::vector<char> IsNew;
   /** One for each point of the surface: whether it may be moved in its facet or along its edge. */
@@ -264,9 +266,9 @@ Status Refiner::Translate(Status status, const std::vector<Id>& sources) const
   return status;
 }
 
-VolumeRefinementOptions Refiner::GetRoundOptions() const
+RefinedMeshOptions Refiner::GetRoundOptions() const
 {
-  VolumeRefinementOptions options;
+  RefinedMeshOptions options;
   options.Limits = this->Limits;
   options.MaximumNewPoints = this->MaximumNewPoints - this->Output.Report.BoundaryPoints -
     this->Output.Report.InteriorPoints;
@@ -275,6 +277,7 @@ VolumeRefinementOptions Refiner::GetRoundOptions() const
   {
     options.SharpPlaneAngle = SharpPlaneAngleOfEmptySpheres;
   }
+  options.SurfaceSizes = this->SurfaceSizes;
   return options;
 }
 
@@ -370,8 +373,9 @@ Status Refiner::StartRound()
   this->Surface.Points = std::move(refined.Surface.Points);
   this->Edges = std::move(refined.StructuralEdges);
   this->CollectSurfaceSizes();
-  this->Round = std::make_unique<VolumeRefinement>(std::move(made.Mesh), this->Surface, this->Edges,
-    this->Edges, this->SurfaceSizes, this->Interior, this->Memory, this->GetRoundOptions());
+  this->Round = std::make_unique<RefinedMesh>(std::move(made.Mesh),
+    RefinedBoundary{ this->Surface, this->Edges, this->Edges }, this->Interior, this->Memory,
+    this->GetRoundOptions());
   this->IsSurfaceFree.resize(this->Surface.Points.size(), 1);
   this->IsNew.resize(this->Surface.Points.size(), 1);
   this->Round->NoteNewPoints(this->IsNew);
@@ -477,13 +481,13 @@ void Refiner::MeasureSizes()
 
 Status Refiner::RefineRound(bool isShapeTested)
 {
-  return this->Round->RefineByLimits(isShapeTested, this->GetRoundContext());
+  return RefineByLimits(isShapeTested, this->GetRoundContext(), *this->Round);
 }
 
 Status Refiner::PerturbSlivers(SliverMeans means)
 {
-  return this->Round->PerturbSlivers(
-    this->Options.DihedralAngleTarget, means, this->GetRoundContext());
+  return cdm::PerturbSlivers(
+    this->Options.DihedralAngleTarget, means, this->GetRoundContext(), *this->Round);
 }
 
 /**
@@ -508,7 +512,7 @@ Status Refiner::PerturbLastSlivers()
   if (status.IsOk() && !this->IsSharpPerturbed)
   {
     this->IsSharpPerturbed = true;
-    status = this->Round->PerturbSharp(this->Options.DihedralAngleTarget, this->GetRoundContext());
+    status = PerturbSharp(this->Options.DihedralAngleTarget, this->GetRoundContext(), *this->Round);
   }
   return status;
 }
@@ -517,7 +521,7 @@ void Refiner::CollectReport()
 {
   if (this->Round)
   {
-    const VolumeRefinementReport& report = this->Round->GetReport();
+    const RefinedMeshReport& report = this->Round->GetReport();
     this->Output.Report.InteriorPoints += report.InsertedPoints;
     this->Output.Report.MovedPoints += report.MovedPoints;
     this->Output.Report.RemovedPoints += report.RemovedPoints;
@@ -563,14 +567,15 @@ bool Refiner::RoundFlatTetrahedraAway()
  */
 bool Refiner::MoveSurfacePoints()
 {
-  if (this->Moves.IsOver(this->Round->CountSlivers(this->Options.DihedralAngleTarget)))
+  if (this->Moves.IsOver(CountSlivers(this->Options.DihedralAngleTarget, *this->Round)))
   {
     this->Moves.Renew();
     return false;
   }
   this->Moves.NoteTry();
-  return this->MoveSurface(this->Round->MoveSurfacePoints(this->Options.DihedralAngleTarget,
-    this->IsSurfaceFree, this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges));
+  return this->MoveSurface(
+    cdm::MoveSurfacePoints(this->Options.DihedralAngleTarget, this->IsSurfaceFree,
+      this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges, *this->Round));
 }
 
 /** False if all points stay where they are. */
@@ -597,8 +602,8 @@ bool Refiner::MoveSurface(const std::vector<Vec3>& places)
 /** Of a tetrahedron of surface and interior points: in a thin layer, or at a sharp angle. */
 bool Refiner::IsInevitable(const TetrahedronIds& ids, Id region) const
 {
-  const SharpAngles& sharp = this->Round->GetSharpAngles();
-  return this->Round->GetLayers().IsAcross(ids, region) || sharp.IsAtCorner(ids) ||
+  const SharpAngles& sharp = this->Round->GetShape().Sharp;
+  return this->Round->GetShape().Layers.IsAcross(ids, region) || sharp.IsAtCorner(ids) ||
     sharp.IsAcross(ids);
 }
 
@@ -609,8 +614,7 @@ void Refiner::FindFaults()
   for (std::size_t t = 0; t < mesh.Tetrahedra.size(); ++t)
   {
     const TetrahedronIds& ids = mesh.Tetrahedra[t];
-    const std::array<Vec3, 4> v{ mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]],
-      mesh.Points[ids[3]] };
+    const std::array<Vec3, 4> v = GetCorners(mesh.Points, ids);
     Vec3 target;
     double severity = 0.0;
     const TetrahedronFault fault = this->Limits.Find(v, true, target, severity);
@@ -750,7 +754,7 @@ Status Refiner::MendSlivers(Outcome& outcome)
   const bool isFull = this->Round->IsFull();
   const Id inserted = this->Round->GetReport().InsertedPoints;
   const double target = this->Options.DihedralAngleTarget;
-  if (target > 0.0 && !this->SliverRounds.IsOver(this->Round->CountSlivers(target)))
+  if (target > 0.0 && !this->SliverRounds.IsOver(CountSlivers(target, *this->Round)))
   {
     if (!isFull && this->RoundFlatTetrahedraAway())
     {
@@ -819,7 +823,7 @@ Status Refiner::Run()
   status = status.IsOk() ? this->StartRound() : status;
   if (status.IsOk())
   {
-    this->Round->RemoveClosePoints(this->Options.MinimumEdgeLength, this->Input.Sizing);
+    RemoveClosePoints(this->Options.MinimumEdgeLength, this->Input.Sizing, *this->Round);
     status = this->RefineSizes();
   }
   status = status.IsOk() ? this->RefineShapes() : status;

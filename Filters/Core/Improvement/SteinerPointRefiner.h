@@ -16,11 +16,12 @@
  *     a twentieth of the shortest edge that was there before; what disturbs the boundary is
  *     requested to be split instead;
  *  4. if little is requested any more: points of slivers are moved, taken out or added, first those
- *     inside. Then new and free points of the surface are moved within their facets and along their
- *     edges, where that makes the smallest angle larger (SurfacePointMoves.h). Before that, where
- *     tetrahedra are flat because points lie on a circle but for rounding, such points are rounded
- *     in another way (PointRounding.h). The boundary is split for slivers that nothing else helps.
- *     At last points of tetrahedra across sharp angles are moved, as far as all others stay as good;
+ *     inside (SliverPerturbation.h). Then new and free points of the surface are moved within their
+ *     facets and along their edges, where that makes the smallest angle larger
+ *     (SurfacePointMoves.h). Before that, where tetrahedra are flat because points lie on a circle
+ *     but for rounding, such points are rounded in another way (PointRounding.h). The boundary is
+ *     split for slivers that nothing else helps. At last points of tetrahedra across sharp angles
+ *     are moved, as far as all others stay as good;
  *  5. where nothing else is requested, edges of the boundary with a negative coupling are to be
  *     split (NegativeCouplings.h), and it goes on from 3.
  * It ends when a round requests nothing, or nothing that can be done, or when forty rounds for

@@ -212,9 +212,8 @@ double SurfacePointMoves::MeasureStar(Id point, double& nearest) const
     }
     if (this->Given.HasAngle(ids, mesh.Regions[t]))
     {
-      smallest = std::min(smallest,
-        GetSmallestDihedralAngle(
-          mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]], mesh.Points[ids[3]]));
+      const auto [a, b, c, d] = GetCorners(mesh.Points, ids);
+      smallest = std::min(smallest, GetSmallestDihedralAngle(a, b, c, d));
     }
   }
   return smallest;
@@ -266,10 +265,8 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
       {
         continue;
       }
-      const TetrahedronIds& ids = mesh.Tetrahedra[t];
-      const bool isInConflict = InSphere(mesh.Points[ids[0]], mesh.Points[ids[1]],
-                                  mesh.Points[ids[2]], mesh.Points[ids[3]], position) >= 0;
-      (isInConflict ? this->Tetrahedra : outer).push_back(t);
+      const auto [a, b, c, d] = GetCorners(mesh.Points, mesh.Tetrahedra[t]);
+      (InSphere(a, b, c, d, position) >= 0 ? this->Tetrahedra : outer).push_back(t);
     }
     if (this->Tetrahedra.size() > LargestCavity)
     {
@@ -418,8 +415,7 @@ double SurfacePointMoves::Rate(Id point, const Vec3& position, double required)
   for (std::size_t k = 0; k < this->Tetrahedra.size() && broken > 0; ++k)
   {
     const TetrahedronIds& ids = mesh.Tetrahedra[this->Tetrahedra[k]];
-    broken -= this->Given.BreaksLimit(
-      ids, { mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]], mesh.Points[ids[3]] });
+    broken -= this->Given.BreaksLimit(ids, GetCorners(mesh.Points, ids));
   }
   return broken > 0 ? 0.0 : smallest;
 }

@@ -20,20 +20,13 @@ TetrahedronFacts::Known& TetrahedronFacts::Get(Id tetrahedron)
   return known;
 }
 
-std::array<Vec3, 4> TetrahedronFacts::GetVertices(Id tetrahedron) const
-{
-  const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[tetrahedron];
-  return { this->Mesh.GetPoint(ids[0]), this->Mesh.GetPoint(ids[1]), this->Mesh.GetPoint(ids[2]),
-    this->Mesh.GetPoint(ids[3]) };
-}
-
 double TetrahedronFacts::GetAngle(Id tetrahedron)
 {
   Known& known = this->Get(tetrahedron);
   if (known.Angle < 0.0)
   {
-    const std::array<Vec3, 4> v = this->GetVertices(tetrahedron);
-    known.Angle = GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]);
+    const auto [a, b, c, d] = this->Mesh.GetCorners(tetrahedron);
+    known.Angle = GetSmallestDihedralAngle(a, b, c, d);
   }
   return known.Angle;
 }
@@ -44,7 +37,8 @@ TetrahedronFault TetrahedronFacts::GetFault(Id tetrahedron, double& severity)
   if (!known.Fault)
   {
     Vec3 target;
-    known.Fault = this->Limits.Find(this->GetVertices(tetrahedron), true, target, known.Severity);
+    known.Fault =
+      this->Limits.Find(this->Mesh.GetCorners(tetrahedron), true, target, known.Severity);
   }
   severity = known.Severity;
   return *known.Fault;

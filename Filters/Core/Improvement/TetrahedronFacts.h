@@ -51,7 +51,6 @@ private:
     std::optional<bool> IsAcrossSharp;
   };
   Known& Get(Id tetrahedron);
-  std::array<Vec3, 4> GetVertices(Id tetrahedron) const;
 
   const DynamicTetrahedralization& Mesh;
   const TetrahedronLimits& Limits;

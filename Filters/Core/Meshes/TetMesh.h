@@ -12,6 +12,7 @@
 #include "Core/Basics/Types.h"
 #include "Core/Basics/Vec3.h"
 
+#include <array>
 #include <vector>
 
 namespace cdm
@@ -46,6 +47,14 @@ inline TriangleIds GetFacet(const TetrahedronIds& tetrahedron, int facet)
 {
   return { tetrahedron[FacetVertices[facet][0]], tetrahedron[FacetVertices[facet][1]],
     tetrahedron[FacetVertices[facet][2]] };
+}
+
+/** Where the vertices are. */
+inline std::array<Vec3, 4> GetCorners(
+  const std::vector<Vec3>& points, const TetrahedronIds& tetrahedron)
+{
+  return { points[tetrahedron[0]], points[tetrahedron[1]], points[tetrahedron[2]],
+    points[tetrahedron[3]] };
 }
 
 /** Drops tetrahedra whose vertex 0 is NoId; the others keep their order. */

@@ -63,12 +63,6 @@ struct Frame
   DoubleDouble SixVolumes;
 };
 
-std::array<Vec3, 4> GetCorners(const TetMesh& mesh, Id tetrahedron)
-{
-  const TetrahedronIds& ids = mesh.Tetrahedra[tetrahedron];
-  return { mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]], mesh.Points[ids[3]] };
-}
-
 bool IsPositive(const std::array<Vec3, 4>& corners)
 {
   return Orientation(corners[0], corners[1], corners[2], corners[3]) > 0;
@@ -159,7 +153,7 @@ double GetCouplingRounding(const TetMesh& mesh,
   for (auto record = begin; record != end; ++record)
   {
     const Id tetrahedron = record->Simplex / 6;
-    const std::array<Vec3, 4> corners = GetCorners(mesh, tetrahedron);
+    const std::array<Vec3, 4> corners = GetCorners(mesh.Points, mesh.Tetrahedra[tetrahedron]);
     if (mesh.Regions[tetrahedron] == region && IsPositive(corners))
     {
       rounding += GetRounding(corners, record->Simplex % 6);
@@ -176,7 +170,7 @@ bool HasNegativeCoupling(const TetMesh& mesh, const EdgeIds& edge,
   for (auto record = begin; record != end; ++record)
   {
     const Id tetrahedron = record->Simplex / 6;
-    const auto [a, b, c, d] = GetCorners(mesh, tetrahedron);
+    const auto [a, b, c, d] = GetCorners(mesh.Points, mesh.Tetrahedra[tetrahedron]);
     if (mesh.Regions[tetrahedron] == region && IsPositive({ a, b, c, d }))
     {
       sum.Add(GetCouplings(a, b, c, d)[record->Simplex % 6]);

@@ -287,9 +287,8 @@ Status Remeshing::Start()
   std::vector<Id> wrong;
   for (std::size_t i = 0; i < mesh.Tetrahedra.size(); ++i)
   {
-    const TetrahedronIds& ids = mesh.Tetrahedra[i];
-    if (Orientation(
-          mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]], mesh.Points[ids[3]]) <= 0)
+    const auto [a, b, c, d] = GetCorners(mesh.Points, mesh.Tetrahedra[i]);
+    if (Orientation(a, b, c, d) <= 0)
     {
       wrong.push_back(static_cast<Id>(i));
     }

@@ -1,0 +1,425 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Improvement/RefinedMesh.h"
+
+#include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Improvement/NegativeCouplings.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+/** Degrees: tetrahedra of boundary points with a smaller angle are flat but for rounding. */
+constexpr double FlatAngle = 1e-6;
+/**
+ * What is left of a point's size between it and a new one. With a tenth more slivers are left, with
+ * less, more at needles in the surface.
+ */
+constexpr double SizeRatio = 0.05;
+
+/** Places for more points after the first ones, which no tetrahedron has. */
+TetMesh ReservePoints(TetMesh mesh, std::size_t first, Id reserve)
+{
+  if (reserve > 0)
+  {
+    mesh.Points.insert(mesh.Points.begin() + static_cast<std::ptrdiff_t>(first), reserve, Vec3());
+    for (TetrahedronIds& ids : mesh.Tetrahedra)
+    {
+      for (Id& id : ids)
+      {
+        id += id >= static_cast<Id>(first) ? reserve : 0;
+      }
+    }
+  }
+  return mesh;
+}
+/** One triangle of each source cell. */
+std::vector<Id> ListSourceTriangles(const TriangleMesh& surface)
+{
+  const std::vector<Id>& sources = surface.SourceCells;
+  std::vector<Id> triangles(
+    sources.empty() ? 0 : *std::max_element(sources.begin(), sources.end()) + 1, NoId);
+  for (std::size_t t = 0; t < sources.size(); ++t)
+  {
+    triangles[sources[t]] = static_cast<Id>(t);
+  }
+  return triangles;
+}
+} // namespace
+
+RefinedMesh::RefinedMesh(TetMesh mesh, const RefinedBoundary& boundary,
+  const std::vector<InteriorPoint>& interior, SliverMemory& memory,
+  const RefinedMeshOptions& options)
+  : Mesh(ReservePoints(std::move(mesh), boundary.Surface.Points.size(), options.Reserve)),
+    Boundary(boundary), Limits(options.Limits),
+    FirstInside(static_cast<Id>(boundary.Surface.Points.size()) + options.Reserve),
+    MaximumNewPoints(options.MaximumNewPoints), Memory(memory),
+    Shape(std::make_unique<BoundaryShape>(
+      boundary.Surface, boundary.Edges, boundary.KeptEdges, options.SharpPlaneAngle)),
+    Requests(boundary.Surface, boundary.KeptEdges,
+      [this](Id point, double distance) { return distance >= this->GetClearance(point); }),
+    Facts(this->Mesh, this->Limits)
+{
+  const std::vector<Vec3>& positions = boundary.Surface.Points;
+  const std::vector<double>& sizes = options.SurfaceSizes;
+  for (std::size_t p = 0; p < positions.size(); ++p)
+  {
+    this->Points.push_back(
+      { positions[p], sizes.empty() ? 0.0 : sizes[p], false, NoId, static_cast<Id>(p) });
+  }
+  this->Points.resize(this->FirstInside);
+  this->Points.insert(this->Points.end(), interior.begin(), interior.end());
+  std::vector<Id> all(this->Mesh.GetNumberOfTetrahedra());
+  std::iota(all.begin(), all.end(), 0);
+  this->BoundSizes(all);
+}
+
+/** No size is larger than another one and the way there, along edges, beginning with some. */
+void RefinedMesh::BoundSizes(const std::vector<Id>& tetrahedra)
+{
+  std::vector<Id> changed;
+  const auto bound = [&](Id t)
+  {
+    const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
+    for (const auto& edge : TetrahedronEdges)
+    {
+      InteriorPoint* first = &this->Points[ids[edge[0]]];
+      InteriorPoint* second = &this->Points[ids[edge[1]]];
+      Id larger = ids[edge[1]];
+      if (first->Size > second->Size)
+      {
+        std::swap(first, second);
+        larger = ids[edge[0]];
+      }
+      const double size = first->Size + Distance(first->Position, second->Position);
+      if (second->Size > size)
+      {
+        second->Size = size;
+        changed.push_back(larger);
+      }
+    }
+  };
+  std::for_each(tetrahedra.begin(), tetrahedra.end(), bound);
+  std::vector<Id> star;
+  while (!changed.empty())
+  {
+    const Id point = changed.back();
+    changed.pop_back();
+    this->Mesh.FindStar(point, star);
+    std::for_each(star.begin(), star.end(), bound);
+  }
+}
+
+void RefinedMesh::NoteNewPoints(const std::vector<char>& isNew)
+{
+  for (const TetrahedronIds& ids : this->GetMesh().Tetrahedra)
+  {
+    if (std::any_of(
+          ids.begin(), ids.end(), [&](Id id) { return id < this->FirstInside && isNew[id] != 0; }))
+    {
+      this->Memory.SetChanged(this->GetNames(ids));
+    }
+  }
+}
+
+void RefinedMesh::SetSizes(const std::vector<double>& sizes)
+{
+  for (std::size_t p = 0; p < sizes.size(); ++p)
+  {
+    this->Points[p].Size = sizes[p];
+  }
+}
+
+void RefinedMesh::SetSurfaceSizes(Id first, const std::vector<double>& sizes)
+{
+  for (std::size_t p = first; p < sizes.size(); ++p)
+  {
+    this->Points[p].Size = sizes[p];
+  }
+  std::vector<Id> changed;
+  for (Id t : this->Splits->GetChanged())
+  {
+    if (!this->Mesh.IsDead(t))
+    {
+      changed.push_back(t);
+    }
+  }
+  this->BoundSizes(changed);
+}
+
+std::vector<InteriorPoint> RefinedMesh::GetInterior() const
+{
+  std::vector<InteriorPoint> interior;
+  for (Id p = this->FirstInside; p < this->Mesh.GetNumberOfPoints(); ++p)
+  {
+    if (this->Mesh.GetTetrahedronAt(p) != NoId)
+    {
+      interior.push_back(this->Points[p]);
+    }
+  }
+  return interior;
+}
+
+TetMesh RefinedMesh::MakeMesh() const
+{
+  TetMesh mesh = this->GetMesh();
+  RemoveDeadTetrahedra(mesh);
+  std::vector<Id> newIds(mesh.Points.size(), NoId);
+  Id count = 0;
+  for (Id p = 0; p < static_cast<Id>(newIds.size()); ++p)
+  {
+    const bool isOnSurface = p < static_cast<Id>(this->Boundary.Surface.Points.size());
+    if (isOnSurface || (p >= this->FirstInside && this->Mesh.GetTetrahedronAt(p) != NoId))
+    {
+      mesh.Points[count] = mesh.Points[p];
+      newIds[p] = count++;
+    }
+  }
+  mesh.Points.resize(count);
+  for (TetrahedronIds& ids : mesh.Tetrahedra)
+  {
+    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]], newIds[ids[3]] };
+  }
+  return mesh;
+}
+
+bool RefinedMesh::RequestDisturbed(const Vec3& position, bool isSizeKept)
+{
+  this->Shape->Spheres.Find(position, this->Disturbed);
+  if (this->Disturbed.IsEmpty())
+  {
+    return false;
+  }
+  this->Requests.AddDisturbed(position, this->Disturbed, isSizeKept);
+  return true;
+}
+
+std::size_t RefinedMesh::RequestNegativeCouplings()
+{
+  const std::vector<EdgeIds> edges = FindNegativeCouplings(this->GetMesh(), this->Boundary.Surface);
+  for (const EdgeIds& edge : edges)
+  {
+    this->Requests.AddEdgeOrTriangle(edge, this->Shape->PointTriangles);
+  }
+  return edges.size();
+}
+
+bool RefinedMesh::SplitBoundary(const DelaunaySurfaceRefinerOptions& options,
+  const SizingField& sizing, const ExecutionContext& context, Status& status)
+{
+  if (!this->Splits)
+  {
+    this->Splits = std::make_unique<BoundarySplits>(
+      this->Mesh, this->FirstInside, this->Boundary.Surface, this->Boundary.Edges, options, sizing);
+  }
+  const Id first = static_cast<Id>(this->Boundary.Surface.Points.size());
+  const std::vector<Id> sourceTriangles = ListSourceTriangles(this->Boundary.Surface);
+  status = this->Splits->Run(this->Requests.Triangles, this->Requests.Edges, context);
+  const Id end = static_cast<Id>(this->Boundary.Surface.Points.size());
+  for (Id p = first; p < end; ++p)
+  {
+    this->Points[p] = { this->Boundary.Surface.Points[p], 0.0, false, NoId, p };
+  }
+  this->MaximumNewPoints -= end - first;
+  for (Id t : this->Splits->GetChanged())
+  {
+    if (!this->Mesh.IsDead(t))
+    {
+      this->Memory.SetChanged(this->GetNames(this->GetMesh().Tetrahedra[t]));
+    }
+  }
+  if (!status.IsOk() || !this->Splits->IsUsable())
+  {
+    return false;
+  }
+  std::vector<Id> parents;
+  for (Id source : this->Boundary.Surface.SourceCells)
+  {
+    parents.push_back(sourceTriangles[source]);
+  }
+  this->Shape = std::make_unique<BoundaryShape>(std::move(*this->Shape), this->Boundary.Surface,
+    this->Boundary.Edges, this->Boundary.KeptEdges, parents);
+  if (this->AreFactsPreliminary)
+  {
+    this->Facts.Forget();
+    this->AreFactsPreliminary = false;
+  }
+  this->Requests.Clear();
+  return true;
+}
+
+bool RefinedMesh::IsFree(Id point) const
+{
+  return point >= this->FirstInside && this->Points[point].IsFree &&
+    this->Mesh.GetTetrahedronAt(point) != NoId;
+}
+
+double RefinedMesh::GetClearance(Id point) const
+{
+  return SizeRatio * this->Points[point].Size;
+}
+
+bool RefinedMesh::IsFlat(Id tetrahedron) const
+{
+  const TetrahedronIds& ids = this->GetMesh().Tetrahedra[tetrahedron];
+  return *std::max_element(ids.begin(), ids.end()) < this->FirstInside &&
+    this->GetAngle(tetrahedron) < FlatAngle;
+}
+
+std::vector<Id> RefinedMesh::FindFlatTetrahedra() const
+{
+  std::vector<Id> flat;
+  for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
+  {
+    if (!this->Mesh.IsDead(t) && this->IsFlat(t))
+    {
+      flat.push_back(t);
+    }
+  }
+  return flat;
+}
+
+bool RefinedMesh::BreaksLimit(Id tetrahedron) const
+{
+  double severity = 0.0;
+  const TetrahedronFault fault = this->Facts.GetFault(tetrahedron, severity);
+  return fault == TetrahedronFault::Size ||
+    (fault == TetrahedronFault::Shape && !this->IsAcrossSharp(tetrahedron));
+}
+
+bool RefinedMesh::BreaksLimit(const TetrahedronIds& ids, const std::array<Vec3, 4>& vertices) const
+{
+  Vec3 target;
+  double severity = 0.0;
+  const TetrahedronFault fault = this->Limits.Find(vertices, true, target, severity);
+  return fault == TetrahedronFault::Size ||
+    (fault == TetrahedronFault::Shape && !this->Shape->Sharp.IsAcross(ids));
+}
+
+void RefinedMesh::NoteChanges()
+{
+  for (Id t : this->Mesh.GetChanged())
+  {
+    this->Memory.SetChanged(this->GetNames(this->GetMesh().Tetrahedra[t]));
+  }
+}
+
+void RefinedMesh::NoteSurfaceMove()
+{
+  this->NoteChanges();
+  this->AreFactsPreliminary = true;
+}
+
+TetrahedronIds RefinedMesh::GetNames(const TetrahedronIds& ids) const
+{
+  TetrahedronIds names{ this->Points[ids[0]].Name, this->Points[ids[1]].Name,
+    this->Points[ids[2]].Name, this->Points[ids[3]].Name };
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+bool RefinedMesh::FindHole(const Vec3& position, Id first, Id number)
+{
+  return this->Mesh.FindHole(
+    position, number == NoId ? this->Mesh.GetNumberOfPoints() : number, first, this->Hole);
+}
+
+Id RefinedMesh::CountBroken(const Vec3& position) const
+{
+  constexpr Id inside = std::numeric_limits<Id>::max();
+  return static_cast<Id>(std::count_if(this->Hole.Facets.begin(), this->Hole.Facets.end(),
+    [&](const TriangleIds& facet)
+    {
+      return this->BreaksLimit({ facet[0], facet[1], facet[2], inside },
+        { this->Mesh.GetPoint(facet[0]), this->Mesh.GetPoint(facet[1]),
+          this->Mesh.GetPoint(facet[2]), position });
+    }));
+}
+
+bool RefinedMesh::IsClear(const Vec3& position) const
+{
+  for (const TriangleIds& facet : this->Hole.Facets)
+  {
+    for (Id id : facet)
+    {
+      if (Distance(position, this->Mesh.GetPoint(id)) < this->GetClearance(id))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool RefinedMesh::DisturbsBoundary(const Vec3& position)
+{
+  // What would be disturbed is part of the hole.
+  const bool isNear = std::any_of(this->Hole.Facets.begin(), this->Hole.Facets.end(),
+    [&](const TriangleIds& facet)
+    { return *std::min_element(facet.begin(), facet.end()) < this->FirstInside; });
+  if (!isNear)
+  {
+    return false;
+  }
+  this->Shape->Spheres.Find(position, this->Disturbed);
+  return !this->Disturbed.IsEmpty() || this->TouchesOpenFacet();
+}
+
+/**
+ * Whether the hole ends at an outer facet that is no triangle of the surface: its smallest sphere
+ * is not known to be empty, so a point on this side may be in conflict with what lies beyond, which
+ * the mesh does not have.
+ */
+bool RefinedMesh::TouchesOpenFacet() const
+{
+  for (std::size_t i = 0; i < this->Hole.Facets.size(); ++i)
+  {
+    if (this->Hole.Outer[i] != NoId)
+    {
+      continue;
+    }
+    if (!IsTriangle(
+          this->Boundary.Surface.Triangles, this->Shape->PointTriangles, this->Hole.Facets[i]))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+void RefinedMesh::Insert(const Vec3& position)
+{
+  double size = std::numeric_limits<double>::infinity();
+  for (const TriangleIds& facet : this->Hole.Facets)
+  {
+    for (Id id : facet)
+    {
+      size = std::min(size, this->Points[id].Size + Distance(position, this->Mesh.GetPoint(id)));
+    }
+  }
+  this->Mesh.Insert(position, this->Hole);
+  this->Points.push_back({ position, size, true, NoId, this->Memory.MakeName() });
+  this->NoteChanges();
+  ++this->Report.InsertedPoints;
+}
+
+void RefinedMesh::Restore(Id point, const Vec3& position)
+{
+  this->Mesh.Restore(point, position, this->Hole);
+  this->Points[point].Position = position;
+  this->Points[point].Source = NoId;
+  ++this->Report.MovedPoints;
+  this->NoteChanges();
+}
+
+void RefinedMesh::NoteRemoval()
+{
+  ++this->Report.RemovedPoints;
+  this->NoteChanges();
+}
+} // namespace cdm

@@ -1,0 +1,445 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Improvement/SliverPerturbation.h"
+
+#include "Core/Geometry/Measures.h"
+#include "Core/Improvement/SurfacePointMoves.h"
+#include "Core/Search/PlaceSearch.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+namespace cdm
+{
+namespace
+{
+constexpr std::size_t ReportInterval = 16;
+/** Points are moved where angles are below this multiple of the target: it leaves some room. */
+constexpr double MoveRatio = 1.1;
+/** First step of the search for a new point's place, in radii of the sphere that it destroys. */
+constexpr double FirstInsertion = 0.3;
+/** Passes over the slivers that are left. */
+constexpr int MaximumPasses = 20;
+
+/** What changes are for, and what they may be. */
+struct Aim
+{
+  /** Degrees; larger angles are as good. */
+  double Target;
+  /** Whether tetrahedra across sharp angles are to get better ones, or all others. */
+  bool IsSharp = false;
+  SliverMeans Means = SliverMeans::Moves;
+};
+
+struct Sliver
+{
+  double Angle;
+  Id Tetrahedron;
+  std::int64_t Stamp;
+};
+
+bool IsSliver(const Aim& aim, Id tetrahedron, const RefinedMesh& mesh)
+{
+  return !mesh.GetTetrahedra().IsDead(tetrahedron) && mesh.GetAngle(tetrahedron) < aim.Target &&
+    mesh.IsAcrossSharp(tetrahedron) == aim.IsSharp && !mesh.IsInLayer(tetrahedron);
+}
+
+/** Worst first. */
+std::vector<Sliver> FindSlivers(const Aim& aim, const RefinedMesh& mesh)
+{
+  const DynamicTetrahedralization& tetrahedra = mesh.GetTetrahedra();
+  std::vector<Sliver> slivers;
+  for (Id t = 0; t < tetrahedra.GetNumberOfTetrahedra(); ++t)
+  {
+    if (IsSliver(aim, t, mesh))
+    {
+      slivers.push_back({ mesh.GetAngle(t), t, tetrahedra.GetStamp(t) });
+    }
+  }
+  std::sort(slivers.begin(), slivers.end(),
+    [](const Sliver& a, const Sliver& b)
+    { return a.Angle != b.Angle ? a.Angle < b.Angle : a.Tetrahedron < b.Tetrahedron; });
+  return slivers;
+}
+
+/** Changes points inside, one sliver after the other. */
+class Perturbation
+{
+public:
+  Perturbation(const Aim& aim, RefinedMesh& mesh)
+    : Goal(aim), Mesh(mesh), Tetrahedra(mesh.GetTetrahedra())
+  {
+  }
+
+  std::vector<Sliver> FindSlivers() const { return cdm::FindSlivers(this->Goal, this->Mesh); }
+  /** Whether it has been changed since it was found. */
+  bool IsGone(const Sliver& sliver) const
+  {
+    return this->Tetrahedra.GetStamp(sliver.Tetrahedron) != sliver.Stamp;
+  }
+  /** False if nothing helps, or is known not to; then nothing has changed. */
+  bool Mend(const Sliver& sliver, SliverAttempt last);
+
+private:
+  /** The smallest angles of tetrahedra that a change replaces, or makes. */
+  struct SmallestAngles
+  {
+    /** Of those that it is for. */
+    double Aimed = 180.0;
+    double Other = 180.0;
+  };
+  void Include(Id tetrahedron, SmallestAngles& smallest) const;
+  double GetFloor(const SmallestAngles& before) const;
+  double RateHole(const Vec3& position, double floor, double required) const;
+  bool Move(Id point);
+  bool InsertBest(Id tetrahedron);
+
+  const Aim Goal;
+  RefinedMesh& Mesh;
+  DynamicTetrahedralization& Tetrahedra;
+};
+
+/** Angles over the target always count. */
+void Perturbation::Include(Id tetrahedron, SmallestAngles& smallest) const
+{
+  const double angle = this->Mesh.GetAngle(tetrahedron);
+  const bool isAimed =
+    angle >= this->Goal.Target || this->Mesh.IsAcrossSharp(tetrahedron) == this->Goal.IsSharp;
+  double& one = isAimed ? smallest.Aimed : smallest.Other;
+  one = std::min(one, angle);
+}
+
+/** What tetrahedra that a change is not for have to keep. */
+double Perturbation::GetFloor(const SmallestAngles& before) const
+{
+  return this->Goal.IsSharp ? std::min(before.Other, this->Goal.Target)
+                            : std::min(before.Aimed, before.Other);
+}
+
+/**
+ * Smallest angle that the hole's cone would have among those aimed at; 0 if another one falls below
+ * the floor, or as soon as it is not larger than required.
+ */
+double Perturbation::RateHole(const Vec3& position, double floor, double required) const
+{
+  constexpr Id inside = std::numeric_limits<Id>::max();
+  const SharpAngles& sharp = this->Mesh.GetShape().Sharp;
+  double smallest = 180.0;
+  for (const TriangleIds& facet : this->Mesh.GetHole().Facets)
+  {
+    const double angle = GetSmallestDihedralAngle(this->Tetrahedra.GetPoint(facet[0]),
+      this->Tetrahedra.GetPoint(facet[1]), this->Tetrahedra.GetPoint(facet[2]), position);
+    const bool isAimed = angle >= this->Goal.Target ||
+      sharp.IsAcross({ facet[0], facet[1], facet[2], inside }) == this->Goal.IsSharp;
+    if (isAimed ? angle <= required : angle < floor)
+    {
+      return 0.0;
+    }
+    smallest = isAimed ? std::min(smallest, angle) : smallest;
+  }
+  return smallest;
+}
+
+bool Perturbation::Move(Id point)
+{
+  std::vector<Id> star;
+  if (!this->Tetrahedra.FindStar(point, star))
+  {
+    return false;
+  }
+  const Vec3 old = this->Tetrahedra.GetPoint(point);
+  Id broken = 0;
+  SmallestAngles before;
+  double nearest = std::numeric_limits<double>::infinity();
+  Vec3 sum;
+  double count = 0.0;
+  for (Id t : star)
+  {
+    broken += this->Mesh.BreaksLimit(t);
+    this->Include(t, before);
+    for (Id id : this->Mesh.GetMesh().Tetrahedra[t])
+    {
+      if (id != point)
+      {
+        const Vec3& neighbor = this->Tetrahedra.GetPoint(id);
+        nearest = std::min(nearest, Distance(old, neighbor));
+        sum = sum + neighbor;
+        count += 1.0;
+      }
+    }
+  }
+  if (!this->Tetrahedra.Remove(point))
+  {
+    return false;
+  }
+  const std::vector<Id> filled = this->Tetrahedra.GetChanged();
+  const double floor = this->GetFloor(before);
+  // Of those aimed at; the others are either fine or bad.
+  std::vector<double> angles;
+  std::vector<char> isBroken;
+  for (Id t : filled)
+  {
+    SmallestAngles after;
+    this->Include(t, after);
+    angles.push_back(after.Other < floor ? 0.0 : after.Aimed);
+    isBroken.push_back(this->Mesh.BreaksLimit(t));
+  }
+  const auto findHole = [&](const Vec3& position)
+  {
+    const Id first = this->Tetrahedra.Locate(position, filled.front());
+    return first != NoId && this->Mesh.FindHole(position, first, point);
+  };
+  const auto rate = [&](const Vec3& position, double required)
+  {
+    if (!findHole(position))
+    {
+      return 0.0;
+    }
+    // What stays of the tetrahedra that fill the place of the point counts as well.
+    const std::vector<Id>& replaced = this->Mesh.GetHole().Tetrahedra;
+    Id brokenThere = 0;
+    for (std::size_t i = 0; i < filled.size(); ++i)
+    {
+      if ((angles[i] <= required || isBroken[i]) &&
+        std::find(replaced.begin(), replaced.end(), filled[i]) == replaced.end())
+      {
+        if (angles[i] <= required)
+        {
+          return 0.0;
+        }
+        ++brokenThere;
+      }
+    }
+    const double angle = this->RateHole(position, floor, required);
+    return angle > required && this->Mesh.IsClear(position) &&
+        (broken > 0 || brokenThere + this->Mesh.CountBroken(position) == 0) &&
+        !this->Mesh.DisturbsBoundary(position)
+      ? angle
+      : 0.0;
+  };
+  Place best{ old, before.Aimed + SmallestGain, false };
+  SearchMove(old, (1.0 / count) * sum, nearest, this->Goal.Target, rate, best);
+
+  if (this->Goal.Means != SliverMeans::Moves &&
+    std::count(isBroken.begin(), isBroken.end(), 1) <= broken &&
+    *std::min_element(angles.begin(), angles.end()) > best.Angle)
+  {
+    this->Mesh.NoteRemoval();
+    return true;
+  }
+  if (!best.IsFound)
+  {
+    this->Tetrahedra.UndoRemove();
+    return false;
+  }
+  findHole(best.Position);
+  this->Mesh.Restore(point, best.Position);
+  return true;
+}
+
+bool Perturbation::InsertBest(Id tetrahedron)
+{
+  const auto [a, b, c, d] = this->Tetrahedra.GetCorners(tetrahedron);
+  const Vec3 center = GetCircumcenter(a, b, c, d);
+  if (!IsFinite(center) || this->Mesh.IsFull())
+  {
+    return false;
+  }
+  const auto rate = [&](const Vec3& position, double required)
+  {
+    if (!this->Mesh.FindHole(position, tetrahedron))
+    {
+      return 0.0;
+    }
+    SmallestAngles before;
+    for (Id t : this->Mesh.GetHole().Tetrahedra)
+    {
+      this->Include(t, before);
+    }
+    const double angle = this->RateHole(position, this->GetFloor(before), required);
+    return angle > required && this->Mesh.IsClear(position) &&
+        this->Mesh.CountBroken(position) == 0 && !this->Mesh.DisturbsBoundary(position)
+      ? angle
+      : 0.0;
+  };
+  Place best{ center, this->Mesh.GetAngle(tetrahedron) + SmallestGain, false };
+  TryPlace(center, rate, best);
+  SearchPlace(center, FirstInsertion * Distance(center, a), MakeCubeDirections(), this->Goal.Target,
+    rate, best);
+  if (!best.IsFound || !this->Mesh.FindHole(best.Position, tetrahedron))
+  {
+    return false;
+  }
+  this->Mesh.Insert(best.Position);
+  return true;
+}
+
+bool Perturbation::Mend(const Sliver& sliver, SliverAttempt last)
+{
+  const TetrahedronIds ids = this->Mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
+  const TetrahedronIds names = this->Mesh.GetNames(ids);
+  if (this->Mesh.GetMemory().IsHopeless(names, last))
+  {
+    return false;
+  }
+  if (std::any_of(
+        ids.begin(), ids.end(), [&](Id id) { return this->Mesh.IsFree(id) && this->Move(id); }) ||
+    (last == SliverAttempt::Insertion && this->InsertBest(sliver.Tetrahedron)))
+  {
+    return true;
+  }
+  this->Mesh.GetMemory().SetHopeless(names, last);
+  return false;
+}
+} // namespace
+
+std::size_t CountSlivers(double target, const RefinedMesh& mesh)
+{
+  std::size_t count = 0;
+  for (Id t = 0; t < mesh.GetTetrahedra().GetNumberOfTetrahedra(); ++t)
+  {
+    count += IsSliver({ target }, t, mesh);
+  }
+  return count;
+}
+
+Status PerturbSlivers(
+  double target, SliverMeans means, const ExecutionContext& context, RefinedMesh& mesh)
+{
+  Perturbation perturbation({ MoveRatio * target, false, means }, mesh);
+  const IdLists& pointTriangles = mesh.GetShape().PointTriangles;
+  BoundaryRequests& requests = mesh.GetRequests();
+  // First moves, then new points as well; when neither helps any more, requests.
+  bool mayInsert = false;
+  bool isLast = false;
+  std::vector<TetrahedronIds> unmet;
+  for (int pass = 0; pass < MaximumPasses; ++pass)
+  {
+    const std::vector<Sliver> slivers = perturbation.FindSlivers();
+    bool isMended = false;
+    for (std::size_t i = 0; i < slivers.size(); ++i)
+    {
+      if (i % ReportInterval == 0 &&
+        !context.Continue((pass + static_cast<double>(i) / slivers.size()) / MaximumPasses,
+          "Moving points of slivers"))
+      {
+        return Status::Aborted();
+      }
+      const Sliver& sliver = slivers[i];
+      if (perturbation.IsGone(sliver))
+      {
+        continue;
+      }
+      const TetrahedronIds ids = mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
+      const bool isBad = sliver.Angle < target;
+      if (perturbation.Mend(
+            sliver, isBad && mayInsert ? SliverAttempt::Insertion : SliverAttempt::Move))
+      {
+        isMended = isMended || isBad;
+        continue;
+      }
+      if (isBad && isLast && means == SliverMeans::Requests)
+      {
+        unmet.push_back(ids);
+        const auto [a, b, c, d] = mesh.GetTetrahedra().GetCorners(sliver.Tetrahedron);
+        const Vec3 center = GetCircumcenter(a, b, c, d);
+        if (!requests.AddEdgeOfTwoTriangles(ids, pointTriangles) && IsFinite(center))
+        {
+          mesh.RequestDisturbed(center, true);
+        }
+      }
+    }
+    const bool isMoving = means == SliverMeans::Moves;
+    if (isLast || slivers.empty() || (isMoving && !isMended))
+    {
+      break;
+    }
+    isLast = mayInsert && !isMended;
+    mayInsert = !isMoving;
+  }
+  // No edge or triangle of the boundary is at fault: another point at one of them gives a
+  // sliver beside it another chance; one for those that have a point in common.
+  if (requests.GetNumber() == 0)
+  {
+    std::vector<Id> near;
+    for (const TetrahedronIds& ids : unmet)
+    {
+      if (std::none_of(ids.begin(), ids.end(),
+            [&near](Id id) { return std::find(near.begin(), near.end(), id) != near.end(); }))
+      {
+        requests.AddLargestTriangle(ids, pointTriangles);
+        near.insert(near.end(), ids.begin(), ids.end());
+      }
+    }
+  }
+  return Status();
+}
+
+Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh& mesh)
+{
+  Perturbation perturbation({ MoveRatio * target, true }, mesh);
+  const std::vector<Sliver> slivers = perturbation.FindSlivers();
+  for (std::size_t i = 0; i < slivers.size(); ++i)
+  {
+    if (i % ReportInterval == 0 &&
+      !context.Continue(static_cast<double>(i) / slivers.size(), "Moving points at sharp angles"))
+    {
+      return Status::Aborted();
+    }
+    if (!perturbation.IsGone(slivers[i]))
+    {
+      perturbation.Mend(slivers[i], SliverAttempt::Move);
+    }
+  }
+  return Status();
+}
+
+std::vector<Vec3> MoveSurfacePoints(
+  double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh)
+{
+  const BoundaryShape& shape = mesh.GetShape();
+  SurfacePointMoves::Rules rules;
+  rules.HasAngle = [&shape](const TetrahedronIds& ids, Id region)
+  { return !shape.Layers.IsAcross(ids, region) && !shape.Sharp.IsAcross(ids); };
+  rules.BreaksLimit = [&mesh](const TetrahedronIds& ids, const std::array<Vec3, 4>& corners)
+  { return mesh.BreaksLimit(ids, corners); };
+  rules.GetClearance = [&mesh](Id point) { return mesh.GetClearance(point); };
+  const std::vector<StructuralEdge> none;
+  const RefinedBoundary& boundary = mesh.GetBoundary();
+  SurfacePointMoves moves(mesh.GetTetrahedra(), boundary.Surface, shape.PointTriangles,
+    boundary.Edges, areEdgesKept ? boundary.KeptEdges : none, rules);
+
+  bool isMended = true;
+  for (int pass = 0; pass < MaximumPasses && isMended; ++pass)
+  {
+    isMended = false;
+    for (const Sliver& sliver : FindSlivers({ target }, mesh))
+    {
+      if (mesh.GetTetrahedra().GetStamp(sliver.Tetrahedron) != sliver.Stamp)
+      {
+        continue;
+      }
+      const TetrahedronIds ids = mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
+      const TetrahedronIds names = mesh.GetNames(ids);
+      if (mesh.GetMemory().IsHopeless(names, SliverAttempt::SurfaceMove))
+      {
+        continue;
+      }
+      const bool isMoved = std::any_of(ids.begin(), ids.end(),
+        [&](Id id) {
+          return !mesh.IsInside(id) && isFree[id] != 0 && moves.Move(id, ids, MoveRatio * target);
+        });
+      if (isMoved)
+      {
+        mesh.NoteSurfaceMove();
+        isMended = true;
+      }
+      else
+      {
+        mesh.GetMemory().SetHopeless(names, SliverAttempt::SurfaceMove);
+      }
+    }
+  }
+  return moves.GetPoints();
+}
+} // namespace cdm
