@@ -55,9 +55,17 @@ struct FacetRecord
   /** Whether the normal of the sorted points is the source's. */
   bool IsEven;
 
+  /** Number by number: comparing arrays by their own operators took half of the sort's time. */
   friend bool operator<(const FacetRecord& a, const FacetRecord& b)
   {
-    return a.Points != b.Points ? a.Points < b.Points : a.Source < b.Source;
+    for (int i = 0; i < 3; ++i)
+    {
+      if (a.Points[i] != b.Points[i])
+      {
+        return a.Points[i] < b.Points[i];
+      }
+    }
+    return a.Source < b.Source;
   }
 };
 

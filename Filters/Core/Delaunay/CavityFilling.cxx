@@ -11,13 +11,26 @@
 
 namespace cdm
 {
+namespace
+{
+/** Points of a cavity are packed into a key in so many bits. */
+constexpr int BitsOfPoint = 21;
+
+std::uint64_t MakeKey(const TriangleIds& facet)
+{
+  const TriangleIds ids = Sorted(facet);
+  return (static_cast<std::uint64_t>(ids[0]) << BitsOfPoint | ids[1]) << BitsOfPoint | ids[2];
+}
+} // namespace
+
 bool CavityFilling::Run(const Cavity& cavity)
 {
   this->Cells.clear();
   DelaunayTetrahedralization local;
-  if (!BuildDelaunayTetrahedralization(
-        cavity.Points, cavity.Numbers, GridBlock(), 1, ExecutionContext(), local)
-         .IsOk())
+  if (cavity.Numbers.size() >> BitsOfPoint > 0 ||
+    !BuildDelaunayTetrahedralization(
+      cavity.Points, cavity.Numbers, GridBlock(), 1, ExecutionContext(), local)
+       .IsOk())
   {
     return false;
   }
@@ -36,10 +49,7 @@ bool CavityFilling::Run(const Cavity& cavity)
     }
     for (int i = 0; i < 4; ++i)
     {
-      const TriangleIds facet = GetFacet(local.Tetrahedra[t], i);
-      this->Facets.push_back({ Sorted(TriangleIds{ cavity.Numbers[facet[0]],
-                                 cavity.Numbers[facet[1]], cavity.Numbers[facet[2]] }),
-        4 * t + i });
+      this->Facets.emplace_back(MakeKey(GetFacet(local.Tetrahedra[t], i)), 4 * t + i);
     }
   }
   std::sort(this->Facets.begin(), this->Facets.end());
@@ -48,11 +58,20 @@ bool CavityFilling::Run(const Cavity& cavity)
   constexpr Id open = -1;
   constexpr Id wall = -2;
   std::vector<Id> behind(4 * local.Tetrahedra.size(), open);
+  const auto findCorners = [&cavity](TriangleIds facet)
+  {
+    for (Id& id : facet)
+    {
+      const auto place = std::lower_bound(cavity.Numbers.begin(), cavity.Numbers.end(), id);
+      id = static_cast<Id>(place - cavity.Numbers.begin());
+    }
+    return facet;
+  };
   const auto forEachSide = [&](const TriangleIds& facet, auto&& apply)
   {
-    const TriangleIds key = Sorted(facet);
+    const std::uint64_t key = MakeKey(facet);
     auto found = std::lower_bound(
-      this->Facets.begin(), this->Facets.end(), std::pair<TriangleIds, Id>(key, 0));
+      this->Facets.begin(), this->Facets.end(), std::pair<std::uint64_t, Id>(key, 0));
     bool isThere = false;
     for (; found != this->Facets.end() && found->first == key; ++found)
     {
@@ -63,16 +82,11 @@ bool CavityFilling::Run(const Cavity& cavity)
   };
   for (const TriangleIds& facet : cavity.Walls)
   {
-    if (!forEachSide(facet, [&](Id side) { behind[side] = wall; }))
+    if (!forEachSide(findCorners(facet), [&](Id side) { behind[side] = wall; }))
     {
       return false;
     }
   }
-  const auto getPoint = [&](Id number)
-  {
-    return cavity.Points[std::lower_bound(cavity.Numbers.begin(), cavity.Numbers.end(), number) -
-      cavity.Numbers.begin()];
-  };
   std::vector<Id> cells(local.Tetrahedra.size(), NoId);
   std::vector<Id> filled;
   const auto add = [&](Id t, Id region)
@@ -91,14 +105,14 @@ bool CavityFilling::Run(const Cavity& cavity)
   };
   for (Id k = 0; k < static_cast<Id>(cavity.Border.size()); ++k)
   {
-    const TriangleIds& facet = cavity.Border[k];
-    const std::array<Vec3, 3> corners{ getPoint(facet[0]), getPoint(facet[1]), getPoint(facet[2]) };
+    const TriangleIds facet = findCorners(cavity.Border[k]);
     Id inner = NoId;
     forEachSide(facet,
       [&](Id side)
       {
         const Vec3& apex = cavity.Points[local.Tetrahedra[side / 4][side % 4]];
-        if (Orientation(corners[0], corners[1], corners[2], apex) > 0)
+        if (Orientation(
+              cavity.Points[facet[0]], cavity.Points[facet[1]], cavity.Points[facet[2]], apex) > 0)
         {
           inner = side;
         }

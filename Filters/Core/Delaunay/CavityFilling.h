@@ -21,6 +21,7 @@
 #include "Core/Basics/Vec3.h"
 
 #include <array>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -59,15 +60,16 @@ public:
 
   /**
    * False if the tetrahedra of the points do not have all facets of the border and all walls, or
-   * if these do not separate the regions from each other and from the outside.
+   * if these do not separate the regions from each other and from the outside; or for more than two
+   * million points.
    */
   bool Run(const Cavity& cavity);
   const std::vector<Cell>& GetCells() const { return this->Cells; }
 
 private:
   std::vector<Cell> Cells;
-  /** Work space: facets of local tetrahedra, by their sorted numbers. */
-  std::vector<std::pair<TriangleIds, Id>> Facets;
+  /** Work space: facets of local tetrahedra, by their points' places in the cavity. */
+  std::vector<std::pair<std::uint64_t, Id>> Facets;
 };
 } // namespace cdm
 

@@ -227,9 +227,8 @@ void DynamicTetrahedralization::Fill(Id point, const Hole& hole)
     }
     for (int k = 0; k < 3; ++k)
     {
-      const Id a = facet[(k + 1) % 3];
-      const Id b = facet[(k + 2) % 3];
-      this->Facets.push_back({ { std::min(a, b), std::max(a, b), 0 }, 4 * t + k });
+      const auto [a, b] = std::minmax(facet[(k + 1) % 3], facet[(k + 2) % 3]);
+      this->Facets.emplace_back(static_cast<std::uint64_t>(a) << 32 | b, 4 * t + k);
     }
   }
   std::sort(this->Facets.begin(), this->Facets.end());

@@ -150,7 +150,8 @@ private:
   Id RemovedRegion = NoId;
   /** How many free places there were before. */
   std::size_t FormerlyFree = 0;
-  std::vector<std::pair<TriangleIds, Id>> Facets;
+  /** Facets at a new point, by their edges in the hole: smaller id * 2^32 + larger one. */
+  std::vector<std::pair<std::uint64_t, Id>> Facets;
   CavityFilling Filling;
 };
 } // namespace cdm

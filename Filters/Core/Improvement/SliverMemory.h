@@ -11,7 +11,7 @@
 
 #include <cstdint>
 #include <map>
-#include <unordered_map>
+#include <vector>
 
 namespace cdm
 {
@@ -46,9 +46,13 @@ private:
     std::int64_t Time = 0;
     SliverAttempt Last = SliverAttempt::Move;
   };
+  std::int64_t GetChange(Id name) const;
+
   Id NextName = FirstName;
   std::int64_t Time = 0;
-  std::unordered_map<Id, std::int64_t> Changes;
+  /** Of points of the surface, and of points inside. */
+  std::vector<std::int64_t> SurfaceChanges;
+  std::vector<std::int64_t> InsideChanges;
   std::map<TetrahedronIds, Failure> Failures;
 };
 } // namespace cdm
