@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geometry/Measures.h"
 #include "Core/Improvement/FeatureSizes.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <limits>
+#include <numeric>
 #include <random>
+#include <set>
+#include <utility>
 
 using namespace cdm;
 
@@ -37,7 +42,7 @@ TEST(FeatureSizes, OfParallelEdges)
 {
   const std::vector<Vec3> points{ { 0.0, 0.0, 0.0 }, { 10.0, 0.0, 0.0 }, { 0.0, 0.5, 0.0 },
     { 10.0, 0.5, 0.0 } };
-  const FeatureSizes sizes(points, { MakeEdge(0, 1), MakeEdge(2, 3) });
+  const FeatureSizes sizes(points, {}, {}, { MakeEdge(0, 1), MakeEdge(2, 3) });
   EXPECT_DOUBLE_EQ(sizes.Find({ 5.0, 0.0, 0.0 }, 10.0), 0.5);
   EXPECT_DOUBLE_EQ(sizes.Find({ 5.0, 0.25, 0.0 }, 10.0), 0.25);
   EXPECT_DOUBLE_EQ(sizes.Find({ 13.0, -3.5, 0.0 }, 10.0), 5.0);
@@ -49,12 +54,53 @@ TEST(FeatureSizes, EdgesWithACommonEndDoNotCount)
 {
   const std::vector<Vec3> points{ { 0.0, 0.0, 0.0 }, { 10.0, 0.0, 0.0 }, { 10.0, 0.1, 0.0 },
     { 20.0, 0.0, 0.0 } };
-  const FeatureSizes fan(points, { MakeEdge(0, 1), MakeEdge(0, 2) });
+  const FeatureSizes fan(points, {}, {}, { MakeEdge(0, 1), MakeEdge(0, 2) });
   EXPECT_DOUBLE_EQ(fan.Find({ 5.0, 0.0, 0.0 }, 100.0), 100.0);
   // The chain goes on from 1 to 3, which does not touch the edge from 0 to 2.
-  const FeatureSizes chain(points, { MakeEdge(0, 1), MakeEdge(0, 2), MakeEdge(1, 3) });
+  const FeatureSizes chain(points, {}, {}, { MakeEdge(0, 1), MakeEdge(0, 2), MakeEdge(1, 3) });
   EXPECT_DOUBLE_EQ(chain.Find({ 5.0, 0.0, 0.0 }, 100.0), 5.0);
-  EXPECT_DOUBLE_EQ(FeatureSizes({}, {}).Find({ 0.0, 0.0, 0.0 }, 2.0), 2.0);
+  EXPECT_DOUBLE_EQ(FeatureSizes({}, {}, {}, {}).Find({ 0.0, 0.0, 0.0 }, 2.0), 2.0);
+}
+
+TEST(FeatureSizes, OfALayerItsThickness)
+{
+  // A plate, 10 by 10 by 0.5: two triangles on each of its six sides.
+  std::vector<Vec3> points;
+  for (int i = 0; i < 8; ++i)
+  {
+    points.push_back({ i % 2 * 10.0, i / 2 % 2 * 10.0, i / 4 * 0.5 });
+  }
+  const int sides[6][4] = { { 0, 1, 3, 2 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 }, { 2, 3, 7, 6 },
+    { 0, 2, 6, 4 }, { 1, 3, 7, 5 } };
+  std::vector<TriangleIds> triangles;
+  std::vector<Id> facets;
+  std::vector<StructuralEdge> edges;
+  for (int side = 0; side < 6; ++side)
+  {
+    const int(&ids)[4] = sides[side];
+    triangles.push_back({ ids[0], ids[1], ids[2] });
+    triangles.push_back({ ids[0], ids[2], ids[3] });
+    facets.insert(facets.end(), { side, side });
+  }
+  for (Id a = 0; a < 8; ++a)
+  {
+    for (Id axis : { 1, 2, 4 })
+    {
+      if ((a & axis) == 0)
+      {
+        edges.push_back(MakeEdge(a, a + axis));
+      }
+    }
+  }
+  const FeatureSizes sizes(points, triangles, facets, edges);
+  EXPECT_DOUBLE_EQ(sizes.Find({ 5.0, 5.0, 0.0 }, 4.0), 0.5);
+  EXPECT_DOUBLE_EQ(sizes.Find({ 5.0, 5.0, 0.25 }, 4.0), 0.25);
+  EXPECT_DOUBLE_EQ(sizes.Find({ 5.0, 5.0, 1.5 }, 4.0), 1.5);
+  // A side and the two that it touches are not far from each other: that is no size.
+  EXPECT_DOUBLE_EQ(sizes.Find({ 5.0, 0.1, 0.0 }, 4.0), 0.5);
+  EXPECT_DOUBLE_EQ(sizes.Find({ 5.0, 0.1, 0.0 }, 0.4), 0.4);
+  // What is closer than a hundredth of the limit is not to be filled with well shaped elements.
+  EXPECT_DOUBLE_EQ(sizes.Find({ 5.0, 5.0, 0.0 }, 60.0), 5.0);
 }
 
 TEST(FeatureSizes, LikeAllPairs)
@@ -81,21 +127,45 @@ TEST(FeatureSizes, LikeAllPairs)
         }
       }
     }
-    const FeatureSizes sizes(points, edges);
-    const Vec3 position = makePoint();
-    double smallest = 3.0;
-    for (const StructuralEdge& first : edges)
+    // Triangles of four facets, which may be in pieces.
+    std::vector<TriangleIds> triangles;
+    std::vector<Id> facets;
+    for (Id t = 0; t < 6; ++t)
     {
-      for (const StructuralEdge& second : edges)
+      std::array<Id, 12> order;
+      std::iota(order.begin(), order.end(), 0);
+      std::shuffle(order.begin(), order.end(), generator);
+      triangles.push_back({ order[0], order[1], order[2] });
+      facets.push_back(t % 4);
+    }
+    const FeatureSizes sizes(points, triangles, facets, edges);
+    const Vec3 position = makePoint();
+    // Of edges and facets: their points, and how far away they are.
+    std::vector<std::pair<std::set<Id>, double>> features(4, { {}, 9.0 });
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+    {
+      auto& [ids, distance] = features[facets[t]];
+      const TriangleIds& corners = triangles[t];
+      ids.insert(corners.begin(), corners.end());
+      distance = std::min(distance,
+        GetDistanceToTriangle(
+          position, points[corners[0]], points[corners[1]], points[corners[2]]));
+    }
+    for (const StructuralEdge& edge : edges)
+    {
+      const EdgeIds& ends = edge.Points;
+      features.push_back(
+        { { ends[0], ends[1] }, SampleDistance(position, points[ends[0]], points[ends[1]]) });
+    }
+    double smallest = 3.0;
+    for (const auto& [first, firstDistance] : features)
+    {
+      for (const auto& [second, secondDistance] : features)
       {
-        const bool areDisjoint = first.Points[0] != second.Points[0] &&
-          first.Points[0] != second.Points[1] && first.Points[1] != second.Points[0] &&
-          first.Points[1] != second.Points[1];
-        if (areDisjoint)
+        if (std::none_of(
+              first.begin(), first.end(), [&ids = second](Id id) { return ids.count(id) > 0; }))
         {
-          smallest = std::min(smallest,
-            std::max(SampleDistance(position, points[first.Points[0]], points[first.Points[1]]),
-              SampleDistance(position, points[second.Points[0]], points[second.Points[1]])));
+          smallest = std::min(smallest, std::max(firstDistance, secondDistance));
         }
       }
     }

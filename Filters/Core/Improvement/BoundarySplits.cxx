@@ -131,6 +131,10 @@ Status BoundarySplits::Run(
     {
       status = this->Refinement.SplitSegment(segment, context);
       this->CanGoOn = this->Update();
+      if (!this->CanGoOn)
+      {
+        break;
+      }
     }
   }
   edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(done));
@@ -142,6 +146,10 @@ Status BoundarySplits::Run(
     {
       status = this->Refinement.SplitTriangle(triangles[done], context);
       this->CanGoOn = this->Update();
+      if (!this->CanGoOn)
+      {
+        break;
+      }
     }
   }
   triangles.erase(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(done));

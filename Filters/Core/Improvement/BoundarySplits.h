@@ -47,9 +47,8 @@ public:
    * Splits what it is given. Before that, points inside may have come and gone, and points of the
    * surface may have been moved, in the surface or in both: the mesh follows. Triangles that have a
    * new point at them by then, and edges that are split, are left out. The lists keep what is left,
-   * without the one that failed, if the mesh has to be made anew: there is no place for more
-   * points, or rounding has made something that does not fit; then the object is good for nothing
-   * more.
+   * with the one that failed, if the mesh has to be made anew: there is no place for more points,
+   * or rounding has made something that does not fit; then the object is good for nothing more.
    */
   Status Run(
     std::vector<Id>& triangles, std::vector<EdgeIds>& edges, const ExecutionContext& context);

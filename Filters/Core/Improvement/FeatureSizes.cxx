@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/FeatureSizes.h"
 
+#include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/Measures.h"
+
 #include <algorithm>
 
 namespace cdm
@@ -10,78 +13,156 @@ namespace
 /** The first radius of a search, in limits; the next ones are four times as large. */
 constexpr double FirstRadius = 1.0 / 64.0;
 /**
- * In limits: edges closer to each other are a strip that nobody fills with well shaped elements.
+ * In limits: features closer to each other are a strip or a layer that nobody fills with well
+ * shaped elements.
  */
 constexpr double SmallestSize = 0.01;
 
-double GetDistance(const Vec3& position, const std::array<Vec3, 2>& ends)
+double GetDistance(const Vec3& position, const Vec3& a, const Vec3& b)
 {
-  const Vec3 way = ends[1] - ends[0];
-  const double share = Dot(position - ends[0], way) / SquaredNorm(way);
-  return Distance(position, ends[0] + std::min(std::max(share, 0.0), 1.0) * way);
+  const Vec3 way = b - a;
+  const double share = Dot(position - a, way) / SquaredNorm(way);
+  return Distance(position, a + std::min(std::max(share, 0.0), 1.0) * way);
 }
 
-bool AreDisjoint(const EdgeIds& a, const EdgeIds& b)
+std::vector<EdgeIds> ListPoints(const std::vector<StructuralEdge>& edges)
 {
-  return a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1];
+  std::vector<EdgeIds> points;
+  for (const StructuralEdge& edge : edges)
+  {
+    points.push_back(edge.Points);
+  }
+  return points;
+}
+
+template <typename Ids>
+bool Contains(const Ids& ids, Id id)
+{
+  return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 } // namespace
 
-FeatureSizes::FeatureSizes(
-  const std::vector<Vec3>& points, const std::vector<StructuralEdge>& edges)
-  : Segments(MakeSegments(points, edges)), Tree(MakeBoxes(this->Segments))
+FeatureSizes::FeatureSizes(const std::vector<Vec3>& points,
+  const std::vector<TriangleIds>& triangles, const std::vector<Id>& facets,
+  const std::vector<StructuralEdge>& edges)
+  : Points(points), Edges(ListPoints(edges)), Triangles(triangles), Facets(facets),
+    Tree(this->MakeBoxes())
 {
+  this->CollectTouching();
 }
 
-std::vector<FeatureSizes::Segment> FeatureSizes::MakeSegments(
-  const std::vector<Vec3>& points, const std::vector<StructuralEdge>& edges)
+std::vector<Box> FeatureSizes::MakeBoxes() const
 {
-  std::vector<Segment> segments;
-  for (const StructuralEdge& edge : edges)
+  std::vector<Box> boxes;
+  const auto add = [&](const auto& ids)
   {
-    segments.push_back({ edge.Points, { points[edge.Points[0]], points[edge.Points[1]] } });
-  }
-  return segments;
-}
-
-std::vector<Box> FeatureSizes::MakeBoxes(const std::vector<Segment>& segments)
-{
-  std::vector<Box> boxes(segments.size());
-  for (std::size_t i = 0; i < segments.size(); ++i)
-  {
-    boxes[i].Add(segments[i].Ends[0]);
-    boxes[i].Add(segments[i].Ends[1]);
-  }
+    boxes.emplace_back();
+    for (Id id : ids)
+    {
+      boxes.back().Add(this->Points[id]);
+    }
+  };
+  std::for_each(this->Edges.begin(), this->Edges.end(), add);
+  std::for_each(this->Triangles.begin(), this->Triangles.end(), add);
   return boxes;
+}
+
+void FeatureSizes::CollectTouching()
+{
+  std::vector<std::pair<Id, Id>> pairs;
+  for (std::size_t t = 0; t < this->Triangles.size(); ++t)
+  {
+    for (Id id : this->Triangles[t])
+    {
+      pairs.emplace_back(id, this->Facets[t]);
+    }
+  }
+  SortUnique(pairs);
+  this->PointFacets.Build(static_cast<Id>(this->Points.size()), pairs);
+  for (Id p = 0; p < this->PointFacets.GetNumberOfOwners(); ++p)
+  {
+    const IdLists::Range facets = this->PointFacets[p];
+    for (const Id* first = facets.begin(); first != facets.end(); ++first)
+    {
+      for (const Id* second = first + 1; second != facets.end(); ++second)
+      {
+        this->Touching.emplace_back(*first, *second);
+      }
+    }
+  }
+  SortUnique(this->Touching);
+}
+
+Id FeatureSizes::GetFeature(Id part) const
+{
+  const Id first = static_cast<Id>(this->Edges.size());
+  return part < first ? part : first + this->Facets[part - first];
+}
+
+double FeatureSizes::GetDistanceTo(Id part, const Vec3& position) const
+{
+  const Id first = static_cast<Id>(this->Edges.size());
+  if (part < first)
+  {
+    const EdgeIds& ids = this->Edges[part];
+    return GetDistance(position, this->Points[ids[0]], this->Points[ids[1]]);
+  }
+  const TriangleIds& ids = this->Triangles[part - first];
+  return GetDistanceToTriangle(
+    position, this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]);
+}
+
+/** Of two features. */
+bool FeatureSizes::AreDisjoint(Id a, Id b) const
+{
+  const Id first = static_cast<Id>(this->Edges.size());
+  const auto [low, high] = std::minmax(a, b);
+  if (low >= first)
+  {
+    return !std::binary_search(
+      this->Touching.begin(), this->Touching.end(), std::pair<Id, Id>(low - first, high - first));
+  }
+  const EdgeIds& ids = this->Edges[low];
+  return std::none_of(ids.begin(), ids.end(),
+    [&](Id id)
+    {
+      return high < first ? Contains(this->Edges[high], id)
+                          : Contains(this->PointFacets[id], high - first);
+    });
 }
 
 double FeatureSizes::Find(const Vec3& position, double limit) const
 {
   std::vector<std::pair<double, Id>> near;
+  std::vector<Id> nearer;
   for (double radius = FirstRadius * limit;; radius = std::min(4.0 * radius, limit))
   {
     near.clear();
     this->Tree.VisitOverlaps(Box::MakeAround(position, radius),
-      [&](Id id)
+      [&](Id part)
       {
-        const double distance = GetDistance(position, this->Segments[id].Ends);
+        const double distance = this->GetDistanceTo(part, position);
         if (distance < radius)
         {
-          near.emplace_back(distance, id);
+          near.emplace_back(distance, this->GetFeature(part));
         }
       });
     std::sort(near.begin(), near.end());
-    for (auto second = near.begin(); second != near.end(); ++second)
+    nearer.clear();
+    for (const auto& [distance, feature] : near)
     {
-      if (second->first >= SmallestSize * limit &&
-        std::any_of(near.begin(), second,
-          [&](const std::pair<double, Id>& first) {
-            return AreDisjoint(
-              this->Segments[first.second].Ids, this->Segments[second->second].Ids);
-          }))
+      // A facet is as close as the closest one of its triangles.
+      if (Contains(nearer, feature))
       {
-        return second->first;
+        continue;
       }
+      if (distance >= SmallestSize * limit &&
+        std::any_of(nearer.begin(), nearer.end(),
+          [this, feature = feature](Id other) { return this->AreDisjoint(feature, other); }))
+      {
+        return distance;
+      }
+      nearer.push_back(feature);
     }
     if (radius >= limit)
     {

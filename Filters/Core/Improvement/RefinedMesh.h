@@ -9,10 +9,10 @@
  * near. The boundary itself changes in SplitBoundary() only.
  *
  * Each point has a size, the shortest edge at it before any shape was refined, or how close edges
- * of the boundary come to each other there (FeatureSizes.h), and at most the size of another point
- * and the way from there; no point comes closer to it than a twentieth of that, but for size
- * limits. Sharp input angles would be refined for ever: a tetrahedron across one (SharpAngles.h)
- * is refined for its size only, as is one across a thin layer (ThinLayers.h).
+ * and facets of the boundary come to each other there (FeatureSizes.h), and at most the size of
+ * another point and the way from there; no point comes closer to it than a twentieth of that, but
+ * for size limits. Sharp input angles would be refined for ever: a tetrahedron across one
+ * (SharpAngles.h) is refined for its size only, as is one across a thin layer (ThinLayers.h).
  *
  * What is done with it: VolumeRefinement.h, SliverPerturbation.h.
  */

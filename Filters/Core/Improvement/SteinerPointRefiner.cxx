@@ -91,6 +91,7 @@ private:
     const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options);
   void ExtractSurface();
   Status FindFacets();
+  std::vector<Id> GetFacets() const;
   ExecutionContext GetRoundContext() const;
   Status Translate(Status status, const std::vector<Id>& sources) const;
   DelaunaySurfaceRefinerOptions GetSurfaceOptions() const;
@@ -239,6 +240,17 @@ Status Refiner::FindFacets()
   return this->Translate(status, {});
 }
 
+/** Of each triangle of the surface as it is. */
+std::vector<Id> Refiner::GetFacets() const
+{
+  std::vector<Id> facets;
+  for (Id first : this->Surface.SourceCells)
+  {
+    facets.push_back(this->Facets[first]);
+  }
+  return facets;
+}
+
 /** Rounds get smaller: each takes a part of what is left. */
 ExecutionContext Refiner::GetRoundContext() const
 {
@@ -308,10 +320,7 @@ Status Refiner::StartRound()
   input.Surface = &this->Surface;
   input.Sizing = this->Input.Sizing;
   DelaunaySurfaceRefinerOptions options = this->GetSurfaceOptions();
-  for (Id first : this->Surface.SourceCells)
-  {
-    options.StructuralEdges.Facets.push_back(this->Facets[first]);
-  }
+  options.StructuralEdges.Facets = this->GetFacets();
   if (this->Round)
   {
     this->Interior = this->Round->GetInterior();
@@ -427,7 +436,7 @@ Status Refiner::SplitBoundary()
 
 /**
  * Sizes of those points of the surface that have none yet: from those around them, and from edges
- * that come close to each other. Returns the first of them.
+ * and facets that come close to each other. Returns the first of them.
  */
 std::size_t Refiner::CollectSurfaceSizes()
 {
@@ -469,10 +478,11 @@ std::size_t Refiner::CollectSurfaceSizes()
   return first;
 }
 
-/** The shortest edge at each point of the mesh, and how close edges of the surface are. */
+/** The shortest edge at each point of the mesh, and how close parts of the surface are. */
 void Refiner::MeasureSizes()
 {
-  this->Features = std::make_unique<FeatureSizes>(this->Surface.Points, this->Edges);
+  this->Features = std::make_unique<FeatureSizes>(
+    this->Surface.Points, this->Surface.Triangles, this->GetFacets(), this->Edges);
   const std::vector<double> sizes = FindShortestEdges(this->Round->GetMesh());
   this->SurfaceSizes.assign(
     sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(this->Surface.Points.size()));
