@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iostream>
 #include <limits>
 #include <numeric>
@@ -101,6 +102,25 @@ TEST(FeatureSizes, OfALayerItsThickness)
   EXPECT_DOUBLE_EQ(sizes.Find({ 5.0, 0.1, 0.0 }, 0.4), 0.4);
   // What is closer than a hundredth of the limit is not to be filled with well shaped elements.
   EXPECT_DOUBLE_EQ(sizes.Find({ 5.0, 5.0, 0.0 }, 60.0), 5.0);
+}
+
+/** Time and memory do not grow with the square of the facets at a point. */
+TEST(FeatureSizes, ManyFacetsAtOnePoint)
+{
+  constexpr Id count = 100000;
+  std::vector<Vec3> points{ { 0.0, 0.0, 1.0 } };
+  std::vector<TriangleIds> triangles;
+  std::vector<Id> facets;
+  for (Id i = 0; i < count; ++i)
+  {
+    const double angle = 6.283185307179586 * i / count;
+    points.push_back({ std::cos(angle), std::sin(angle), 0.0 });
+    triangles.push_back({ 0, i + 1, (i + 1) % count + 1 });
+    facets.push_back(i);
+  }
+  const FeatureSizes sizes(points, triangles, facets, {});
+  EXPECT_DOUBLE_EQ(sizes.Find({ 0.0, 0.0, 1.0 }, 0.5), 0.5);
+  EXPECT_DOUBLE_EQ(sizes.Find({ 0.01, 0.0, 1.0 }, 0.5), 0.5);
 }
 
 TEST(FeatureSizes, LikeAllPairs)

@@ -5,6 +5,7 @@
 #include "Core/Geometry/Measures.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace cdm
 {
@@ -17,6 +18,9 @@ constexpr double FirstRadius = 1.0 / 64.0;
  * shaped elements.
  */
 constexpr double SmallestSize = 0.01;
+
+/** Where so many features touch each other, as at the tip of a cone, others do not matter. */
+constexpr std::size_t MostTouching = 256;
 
 double GetDistance(const Vec3& position, const Vec3& a, const Vec3& b)
 {
@@ -48,7 +52,7 @@ FeatureSizes::FeatureSizes(const std::vector<Vec3>& points,
   : Points(points), Edges(ListPoints(edges)), Triangles(triangles), Facets(facets),
     Tree(this->MakeBoxes())
 {
-  this->CollectTouching();
+  this->ListFacetPoints();
 }
 
 std::vector<Box> FeatureSizes::MakeBoxes() const
@@ -67,7 +71,7 @@ std::vector<Box> FeatureSizes::MakeBoxes() const
   return boxes;
 }
 
-void FeatureSizes::CollectTouching()
+void FeatureSizes::ListFacetPoints()
 {
   std::vector<std::pair<Id, Id>> pairs;
   for (std::size_t t = 0; t < this->Triangles.size(); ++t)
@@ -79,18 +83,17 @@ void FeatureSizes::CollectTouching()
   }
   SortUnique(pairs);
   this->PointFacets.Build(static_cast<Id>(this->Points.size()), pairs);
-  for (Id p = 0; p < this->PointFacets.GetNumberOfOwners(); ++p)
+  Id numberOfFacets = 0;
+  std::vector<std::pair<Id, Id>> shared;
+  for (const auto& [point, facet] : pairs)
   {
-    const IdLists::Range facets = this->PointFacets[p];
-    for (const Id* first = facets.begin(); first != facets.end(); ++first)
+    numberOfFacets = std::max(numberOfFacets, facet + 1);
+    if (this->PointFacets[point].size() > 1)
     {
-      for (const Id* second = first + 1; second != facets.end(); ++second)
-      {
-        this->Touching.emplace_back(*first, *second);
-      }
+      shared.emplace_back(facet, point);
     }
   }
-  SortUnique(this->Touching);
+  this->SharedPoints.Build(numberOfFacets, shared);
 }
 
 Id FeatureSizes::GetFeature(Id part) const
@@ -119,15 +122,22 @@ bool FeatureSizes::AreDisjoint(Id a, Id b) const
   const auto [low, high] = std::minmax(a, b);
   if (low >= first)
   {
-    return !std::binary_search(
-      this->Touching.begin(), this->Touching.end(), std::pair<Id, Id>(low - first, high - first));
+    IdLists::Range few = this->SharedPoints[low - first];
+    IdLists::Range many = this->SharedPoints[high - first];
+    if (few.size() > many.size())
+    {
+      std::swap(few, many);
+    }
+    return std::none_of(few.begin(), few.end(),
+      [&many](Id id) { return std::binary_search(many.begin(), many.end(), id); });
   }
   const EdgeIds& ids = this->Edges[low];
   return std::none_of(ids.begin(), ids.end(),
-    [&](Id id)
+    [&, last = high](Id id)
     {
-      return high < first ? Contains(this->Edges[high], id)
-                          : Contains(this->PointFacets[id], high - first);
+      const IdLists::Range facets = this->PointFacets[id];
+      return last < first ? Contains(this->Edges[last], id)
+                          : std::binary_search(facets.begin(), facets.end(), last - first);
     });
 }
 
@@ -155,6 +165,10 @@ double FeatureSizes::Find(const Vec3& position, double limit) const
       if (Contains(nearer, feature))
       {
         continue;
+      }
+      if (nearer.size() == MostTouching)
+      {
+        return limit;
       }
       if (distance >= SmallestSize * limit &&
         std::any_of(nearer.begin(), nearer.end(),

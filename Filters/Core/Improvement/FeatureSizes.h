@@ -8,8 +8,8 @@
  * Delaunay refinement; it tells how small the elements have to be there, however far away all
  * corners are: in the middle of a layer as small as it is thick.
  *
- * Cost: O(n log n) to build, 100 bytes per edge and triangle, 16 for two facets with a common
- * point; a query visits what lies within four times its result.
+ * Cost: O(n log n) to build, 100 bytes per edge and triangle; a query visits what lies
+ * within four times its result, and compares 256 features at most.
  *
  * Reference: J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh
  * generation", 1995, doi:10.1006/jagm.1995.1021.
@@ -21,7 +21,6 @@
 #include "Core/Search/BoxTree.h"
 #include "Core/Surface/StructuralEdges.h"
 
-#include <utility>
 #include <vector>
 
 namespace cdm
@@ -33,12 +32,15 @@ public:
   FeatureSizes(const std::vector<Vec3>& points, const std::vector<TriangleIds>& triangles,
     const std::vector<Id>& facets, const std::vector<StructuralEdge>& edges);
 
-  /** At most the limit; features closer than a hundredth of it are left out. */
+  /**
+   * At most the limit; features closer than a hundredth of it are left out. The limit, too, where
+   * 256 features touch each other.
+   */
   double Find(const Vec3& position, double limit) const;
 
 private:
   std::vector<Box> MakeBoxes() const;
-  void CollectTouching();
+  void ListFacetPoints();
   Id GetFeature(Id part) const;
   double GetDistanceTo(Id part, const Vec3& position) const;
   bool AreDisjoint(Id a, Id b) const;
@@ -48,9 +50,9 @@ private:
   const std::vector<EdgeIds> Edges;
   const std::vector<TriangleIds> Triangles;
   const std::vector<Id> Facets;
+  /** Facets at each point; points of each facet that it shares with others. */
   IdLists PointFacets;
-  /** Pairs of facets with a common point, the smaller one first, sorted. */
-  std::vector<std::pair<Id, Id>> Touching;
+  IdLists SharedPoints;
   const BoxTree Tree;
 };
 } // namespace cdm
