@@ -195,3 +195,33 @@ TEST(CavityFilling, RefusesWhatHasNoBorderAllAround)
     }
   }
 }
+
+TEST(CavityFilling, RefusesPointsThatTheCavityDoesNotHave)
+{
+  Cavity cavity;
+  cavity.Numbers = { 2, 4, 6, 8 };
+  for (const Vec3& point :
+    { Vec3{ 0.0, 0.0, 0.0 }, Vec3{ 1.0, 0.0, 0.0 }, Vec3{ 0.0, 1.0, 0.0 }, Vec3{ 0.0, 0.0, 1.0 } })
+  {
+    cavity.Points.push_back(point);
+  }
+  for (int i = 0; i < 4; ++i)
+  {
+    const TriangleIds facet = GetFacet({ 2, 4, 6, 8 }, i);
+    cavity.Border.push_back({ facet[0], facet[2], facet[1] });
+    cavity.Regions.push_back(0);
+  }
+  CavityFilling filling;
+  ASSERT_TRUE(filling.Run(cavity));
+  EXPECT_EQ(filling.GetCells().size(), 1u);
+  // Numbers between those of two points, before all and behind all.
+  for (const Id other : { 5, 1, 9 })
+  {
+    Cavity wrong = cavity;
+    std::replace(wrong.Border[0].begin(), wrong.Border[0].end(), 6, other);
+    EXPECT_FALSE(filling.Run(wrong)) << other;
+    wrong = cavity;
+    wrong.Walls.push_back({ 2, 4, other });
+    EXPECT_FALSE(filling.Run(wrong)) << other;
+  }
+}

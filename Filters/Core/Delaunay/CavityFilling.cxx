@@ -58,12 +58,14 @@ bool CavityFilling::Run(const Cavity& cavity)
   constexpr Id open = -1;
   constexpr Id wall = -2;
   std::vector<Id> behind(4 * local.Tetrahedra.size(), open);
-  const auto findCorners = [&cavity](TriangleIds facet)
+  // A point that the cavity does not have is told by its place: no facet is found at it.
+  const auto findCorners = [&](TriangleIds facet)
   {
     for (Id& id : facet)
     {
       const auto place = std::lower_bound(cavity.Numbers.begin(), cavity.Numbers.end(), id);
-      id = static_cast<Id>(place - cavity.Numbers.begin());
+      const bool isThere = place != cavity.Numbers.end() && *place == id;
+      id = isThere ? static_cast<Id>(place - cavity.Numbers.begin()) : infinite;
     }
     return facet;
   };
