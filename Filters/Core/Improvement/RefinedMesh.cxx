@@ -38,6 +38,7 @@ TetMesh ReservePoints(TetMesh mesh, std::size_t first, Id reserve)
   }
   return mesh;
 }
+
 /** One triangle of each source cell. */
 std::vector<Id> ListSourceTriangles(const TriangleMesh& surface)
 {
@@ -292,11 +293,11 @@ bool RefinedMesh::BreaksLimit(Id tetrahedron) const
     (fault == TetrahedronFault::Shape && !this->IsAcrossSharp(tetrahedron));
 }
 
-bool RefinedMesh::BreaksLimit(const TetrahedronIds& ids, const std::array<Vec3, 4>& vertices) const
+bool RefinedMesh::BreaksLimit(const TetrahedronIds& ids, const std::array<Vec3, 4>& corners) const
 {
   Vec3 target;
   double severity = 0.0;
-  const TetrahedronFault fault = this->Limits.Find(vertices, true, target, severity);
+  const TetrahedronFault fault = this->Limits.Find(corners, true, target, severity);
   return fault == TetrahedronFault::Size ||
     (fault == TetrahedronFault::Shape && !this->Shape->Sharp.IsAcross(ids));
 }
