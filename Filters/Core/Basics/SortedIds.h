@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SortedIds.h
- * @brief Ids in ascending order: of a list, of a triangle, and of the two ends of an edge.
+ * @brief Ids in ascending order: of a list, of a triangle, and of the two ends of an edge; whether
+ * one is among others.
  */
 #ifndef cdmSortedIds_h
 #define cdmSortedIds_h
@@ -27,6 +28,13 @@ Ids Sorted(Ids ids)
 {
   std::sort(ids.begin(), ids.end());
   return ids;
+}
+
+/** Whether an id is in a list, or one of a few, in any order. */
+template <typename Ids>
+bool Contains(const Ids& ids, Id id)
+{
+  return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
 /** The same for both directions. */

@@ -38,12 +38,6 @@ std::vector<EdgeIds> ListPoints(const std::vector<StructuralEdge>& edges)
   }
   return points;
 }
-
-template <typename Ids>
-bool Contains(const Ids& ids, Id id)
-{
-  return std::find(ids.begin(), ids.end(), id) != ids.end();
-}
 } // namespace
 
 FeatureSizes::FeatureSizes(const std::vector<Vec3>& points,

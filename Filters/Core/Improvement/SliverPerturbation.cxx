@@ -62,6 +62,12 @@ std::vector<Sliver> FindSlivers(const Aim& aim, const RefinedMesh& mesh)
   return slivers;
 }
 
+/** Whether it has been changed since it was found. */
+bool IsGone(const Sliver& sliver, const RefinedMesh& mesh)
+{
+  return mesh.GetTetrahedra().GetStamp(sliver.Tetrahedron) != sliver.Stamp;
+}
+
 /** Changes points inside, one sliver after the other. */
 class Perturbation
 {
@@ -71,12 +77,6 @@ public:
   {
   }
 
-  std::vector<Sliver> FindSlivers() const { return cdm::FindSlivers(this->Goal, this->Mesh); }
-  /** Whether it has been changed since it was found. */
-  bool IsGone(const Sliver& sliver) const
-  {
-    return this->Tetrahedra.GetStamp(sliver.Tetrahedron) != sliver.Stamp;
-  }
   /** False if nothing helps, or is known not to; then nothing has changed. */
   bool Mend(const Sliver& sliver, SliverAttempt last);
 
@@ -306,7 +306,8 @@ std::size_t CountSlivers(double target, const RefinedMesh& mesh)
 Status PerturbSlivers(
   double target, SliverMeans means, const ExecutionContext& context, RefinedMesh& mesh)
 {
-  Perturbation perturbation({ MoveRatio * target, false, means }, mesh);
+  const Aim aim{ MoveRatio * target, false, means };
+  Perturbation perturbation(aim, mesh);
   const IdLists& pointTriangles = mesh.GetShape().PointTriangles;
   BoundaryRequests& requests = mesh.GetRequests();
   // First moves, then new points as well; when neither helps any more, requests.
@@ -315,7 +316,7 @@ Status PerturbSlivers(
   std::vector<TetrahedronIds> unmet;
   for (int pass = 0; pass < MaximumPasses; ++pass)
   {
-    const std::vector<Sliver> slivers = perturbation.FindSlivers();
+    const std::vector<Sliver> slivers = FindSlivers(aim, mesh);
     bool isMended = false;
     for (std::size_t i = 0; i < slivers.size(); ++i)
     {
@@ -326,7 +327,7 @@ Status PerturbSlivers(
         return Status::Aborted();
       }
       const Sliver& sliver = slivers[i];
-      if (perturbation.IsGone(sliver))
+      if (IsGone(sliver, mesh))
       {
         continue;
       }
@@ -377,8 +378,9 @@ Status PerturbSlivers(
 
 Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh& mesh)
 {
-  Perturbation perturbation({ MoveRatio * target, true }, mesh);
-  const std::vector<Sliver> slivers = perturbation.FindSlivers();
+  const Aim aim{ MoveRatio * target, true };
+  Perturbation perturbation(aim, mesh);
+  const std::vector<Sliver> slivers = FindSlivers(aim, mesh);
   for (std::size_t i = 0; i < slivers.size(); ++i)
   {
     if (i % ReportInterval == 0 &&
@@ -386,7 +388,7 @@ Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh&
     {
       return Status::Aborted();
     }
-    if (!perturbation.IsGone(slivers[i]))
+    if (!IsGone(slivers[i], mesh))
     {
       perturbation.Mend(slivers[i], SliverAttempt::Move);
     }
@@ -415,7 +417,7 @@ std::vector<Vec3> MoveSurfacePoints(
     isMended = false;
     for (const Sliver& sliver : FindSlivers({ target }, mesh))
     {
-      if (mesh.GetTetrahedra().GetStamp(sliver.Tetrahedron) != sliver.Stamp)
+      if (IsGone(sliver, mesh))
       {
         continue;
       }

@@ -36,11 +36,6 @@ double GetQuality(const Vec3& a, const Vec3& b, const Vec3& c)
   return 2.0 * std::sqrt(3.0) * Norm(Cross(b - a, c - a)) / squares;
 }
 
-bool Contains(const std::vector<Id>& ids, Id id)
-{
-  return std::find(ids.begin(), ids.end(), id) != ids.end();
-}
-
 /** Whether p lies in the closed tetrahedron; false for a flat one. */
 bool IsInTetrahedron(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {

@@ -13,11 +13,6 @@ namespace cdm
 {
 namespace
 {
-bool Contains(const std::vector<Id>& ids, Id id)
-{
-  return std::find(ids.begin(), ids.end(), id) != ids.end();
-}
-
 bool HasVertex(const TriangleIds& t, Id id)
 {
   return t[0] == id || t[1] == id || t[2] == id;
