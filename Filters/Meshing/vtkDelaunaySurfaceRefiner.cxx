@@ -178,14 +178,17 @@ int vtkDelaunaySurfaceRefiner::RequestData(
   if (this->NumberOfUnresolvedTriangles > 0)
   {
     AddUnresolvedArray(result.UnresolvedTriangles, output);
-    vtkWarningMacro(
-      << this->NumberOfUnresolvedTriangles
-      << " triangles do not fulfil the criterion within the limits "
-         "(MinimumEdgeRatio, MaximumNewPoints): see the cell array Unresolved. They come from the "
-         "input cells "
-      << ListCells(result.Surface, result.UnresolvedTriangles)
-      << ". Sheets that lie a hair apart can be united with a MergeTolerance of "
-         "vtkBoundaryTriangulator.");
+    vtkWarningMacro(<< this->NumberOfUnresolvedTriangles
+                    << " triangles do not fulfil the criterion within the limits "
+                       "(MinimumEdgeRatio, MaximumNewPoints): see the cell array Unresolved. "
+                    << (result.NonDelaunayTriangles.empty()
+                           ? "They are strongly Delaunay all the same, and can be meshed. "
+                           : std::to_string(result.NonDelaunayTriangles.size()) +
+                             " of them are not even Delaunay: no mesh can be made with them. ")
+                    << "They come from the input cells "
+                    << ListCells(result.Surface, result.UnresolvedTriangles)
+                    << ". Sheets that lie a hair apart can be united with a MergeTolerance of "
+                       "vtkBoundaryTriangulator.");
   }
   if (this->NumberOfDroppedMeshPoints > 0)
   {

@@ -204,7 +204,15 @@ int vtkSteinerPointRefiner::RequestData(
                     << " than asked for: see the cell array " << FaultName
                     << ". Ask for less, or allow more points.");
   }
-  if (report.UnresolvedTriangles > 0)
+  if (report.WeakTriangles > 0)
+  {
+    vtkWarningMacro(
+      << report.WeakTriangles
+      << " triangles of the boundary cannot have empty smallest spheres: sheets lie too "
+         "close to each other there. The mesh is Delaunay, but no Steiner points are "
+         "made. Unite the sheets with a MergeTolerance of vtkBoundaryTriangulator.");
+  }
+  else if (report.UnresolvedTriangles > 0)
   {
     vtkWarningMacro(<< report.UnresolvedTriangles
                     << " triangles of the boundary do not fulfil the criterion.");

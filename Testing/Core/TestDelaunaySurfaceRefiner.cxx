@@ -347,6 +347,31 @@ TEST(DelaunaySurfaceRefiner, EndsOnRandomComplexes)
   }
 }
 
+/**
+ * Two tetrahedra that share an edge. Points in facets that were answered by their feet on edges,
+ * and these by points as far from the corner, went around the corner (4, 3, 3) for ever.
+ */
+TEST(DelaunaySurfaceRefiner, EndsWhereTetrahedraShareAnEdge)
+{
+  TriangleMesh surface;
+  surface.Points = { { 0, 0, 3 }, { 3, 0, 2 }, { 3, 3, 2 }, { 4, 3, 3 }, { 5, 2, 1 }, { 5, 2, 3 } };
+  surface.Triangles = { { 2, 4, 3 }, { 3, 0, 1 }, { 5, 3, 4 }, { 2, 5, 4 }, { 5, 3, 2 },
+    { 5, 3, 1 }, { 5, 0, 1 }, { 5, 3, 0 } };
+  const RegionPair outward{ OutsideRegion, 0 };
+  const RegionPair inward{ 0, OutsideRegion };
+  surface.Labels = { inward, inward, inward, inward, outward, inward, outward, outward };
+  for (SurfaceCriterion criterion : { SurfaceCriterion::Delaunay, SurfaceCriterion::SmallestSphere,
+         SurfaceCriterion::SmallestSphereAndEdges })
+  {
+    SCOPED_TRACE(static_cast<int>(criterion));
+    DelaunaySurfaceRefinerOptions options;
+    options.Criterion = criterion;
+    const DelaunaySurfaceRefinerOutput refined = Refine(surface, options);
+    MeshAndCheck(refined);
+    EXPECT_LT(refined.NewPoints.size(), 100u);
+  }
+}
+
 TEST(DelaunaySurfaceRefiner, IsDeterministic)
 {
   DelaunaySurfaceRefinerOptions options;
@@ -394,8 +419,13 @@ TEST(DelaunaySurfaceRefiner, StopsAtItsLimitAndSaysSo)
   input.Surface = &surface;
   DelaunaySurfaceRefinerOutput output;
   ASSERT_TRUE(RefineDelaunaySurface(input, options, {}, output).IsOk());
-  EXPECT_EQ(output.NewPoints.size(), 3u);
   EXPECT_FALSE(output.UnresolvedTriangles.empty());
+  // By the criterion Delaunay it can be meshed all the same.
+  EXPECT_TRUE(output.NonDelaunayTriangles.empty());
+  EXPECT_FALSE(output.WeakTriangles.empty());
+  MeshAndCheck(output);
+  DelaunaySurfaceRefinerOptions weaker;
+  EXPECT_EQ(output.NewPoints.size(), Refine(surface, weaker).NewPoints.size());
 }
 
 TEST(DelaunaySurfaceRefiner, ReportsProgressAndAborts)

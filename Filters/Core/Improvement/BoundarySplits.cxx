@@ -180,7 +180,7 @@ bool BoundarySplits::Update()
   std::vector<Id> touched = this->Refinement.TakeTouched();
   const bool isResolved = std::none_of(
     touched.begin(), touched.end(), [this](Id t) { return this->Refinement.IsUnresolved(t); });
-  if (!isResolved || next > this->FirstInside)
+  if (!isResolved || this->Refinement.IsRelaxed() || next > this->FirstInside)
   {
     return false;
   }

@@ -339,6 +339,13 @@ Status Refiner::StartRound()
   {
     return this->Translate(std::move(status), {});
   }
+  if (this->Round && !refined.WeakTriangles.empty())
+  {
+    // Points inside would make the boundary vanish there: what was requested cannot be had.
+    ++this->Output.Report.Rounds;
+    this->IsStuck = true;
+    return Status();
+  }
   std::vector<InteriorPoint> kept;
   for (Id p : refined.KeptMeshPoints)
   {
@@ -368,6 +375,7 @@ Status Refiner::StartRound()
   this->IsStuck = refined.NewPoints.empty();
   this->Output.Report.BoundaryPoints += static_cast<Id>(refined.NewPoints.size());
   this->Output.Report.UnresolvedTriangles = static_cast<Id>(refined.UnresolvedTriangles.size());
+  this->Output.Report.WeakTriangles = static_cast<Id>(refined.WeakTriangles.size());
   this->Interior.clear();
   for (Id p : made.MeshPointSources)
   {
@@ -831,12 +839,12 @@ Status Refiner::Run()
     status = this->FindFacets();
   }
   status = status.IsOk() ? this->StartRound() : status;
-  if (status.IsOk())
+  if (status.IsOk() && this->Output.Report.WeakTriangles == 0)
   {
     RemoveClosePoints(this->Options.MinimumEdgeLength, this->Input.Sizing, *this->Round);
     status = this->RefineSizes();
+    status = status.IsOk() ? this->RefineShapes() : status;
   }
-  status = status.IsOk() ? this->RefineShapes() : status;
   if (status.IsOk())
   {
     this->CollectReport();

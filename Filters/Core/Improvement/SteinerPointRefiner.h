@@ -28,7 +28,9 @@
  * slivers in a row have not made these fewer.
  *
  * Guarantees: the mesh is Delaunay by the pulling rule and conforms to the same surface; facets on
- * it fulfil criterion 3.1 at least. No coupling of the box method is negative but for those that
+ * it fulfil criterion 3.1 at least. (Where the surface refiner does not come to an end with that
+ * criterion no points are put inside: the mesh is that of stage 3, and the report counts the
+ * WeakTriangles.) No coupling of the box method is negative but for those that
  * the report counts. Points of the mesh that are not free keep their coordinates; those of the
  * surface that are stay in their facets and on their edges. Deterministic, whatever the number of
  * threads. Tetrahedra across thin layers (ThinLayers.h) and across sharp angles (SharpAngles.h),
@@ -129,6 +131,8 @@ struct SteinerPointRefinerReport
   Id Inevitable = 0;
   /** Triangles of the boundary that break the criterion; see DelaunaySurfaceRefiner.h. */
   Id UnresolvedTriangles = 0;
+  /** Those of them whose smallest spheres are not empty. If there are any, nothing else is done. */
+  Id WeakTriangles = 0;
   /** Edges of the boundary with a negative coupling. */
   Id NegativeCouplings = 0;
 };

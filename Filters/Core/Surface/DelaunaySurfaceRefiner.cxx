@@ -25,9 +25,9 @@ class SurfaceRefiner
 {
 public:
   SurfaceRefiner(const DelaunaySurfaceRefinerInput& input,
-    const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
-    DelaunaySurfaceRefinerOutput& output)
-    : Input(input), Options(options), Context(context), Output(output)
+    const DelaunaySurfaceRefinerOptions& options, const SurfaceRefinementPlan& plan,
+    const ExecutionContext& context, DelaunaySurfaceRefinerOutput& output)
+    : Input(input), Options(options), Plan(plan), Context(context), Output(output)
   {
   }
 
@@ -39,6 +39,12 @@ public:
    */
   bool FindCrumpled(std::vector<char>& isExact) const;
 
+  /** Whether no limit was reached: all triangles are as the plan wants them. */
+  bool IsSettled() const
+  {
+    return !this->Refinement->IsFull() && this->Refinement->GetNumberOfFailures() == 0;
+  }
+
 private:
   Status Prepare();
   std::vector<Vec3> CollectMeshPoints();
@@ -47,6 +53,7 @@ private:
 
   const DelaunaySurfaceRefinerInput& Input;
   const DelaunaySurfaceRefinerOptions& Options;
+  const SurfaceRefinementPlan& Plan;
   const ExecutionContext& Context;
   DelaunaySurfaceRefinerOutput& Output;
   /** None if the input is not valid. */
@@ -99,7 +106,7 @@ Status SurfaceRefiner::Prepare()
   this->NumberOfSurfacePoints = static_cast<Id>(surface.Points.size());
   this->NumberOfGivenPoints = this->NumberOfSurfacePoints + static_cast<Id>(meshPoints.size());
   this->Refinement = std::make_unique<SurfaceRefinement>(
-    surface, edges.Edges, meshPoints, this->Options, this->Input.Sizing, false);
+    surface, edges.Edges, meshPoints, this->Options, this->Input.Sizing, false, this->Plan);
   return Status();
 }
 
@@ -246,11 +253,22 @@ Status SurfaceRefiner::Finish()
   std::sort(this->Output.StructuralEdges.begin(), this->Output.StructuralEdges.end(),
     [](const StructuralEdge& x, const StructuralEdge& y)
     { return x.Points[0] != y.Points[0] ? x.Points[0] < y.Points[0] : x.Points[1] < y.Points[1]; });
+  this->Refinement->JudgeRelaxed();
+  const bool isStrong = this->Options.Criterion != SurfaceCriterion::Delaunay;
   for (Id t = 0; t < refined.GetNumberOfTriangles(); ++t)
   {
     if (this->Refinement->IsUnresolved(t))
     {
       this->Output.UnresolvedTriangles.push_back(t);
+    }
+    const bool isBad = this->Refinement->IsBadTriangle(t);
+    if (isBad && (this->Plan.GivesUp || !this->Refinement->IsDelaunay(t)))
+    {
+      this->Output.NonDelaunayTriangles.push_back(t);
+    }
+    if (this->Refinement->IsWeak(t) || (isBad && isStrong))
+    {
+      this->Output.WeakTriangles.push_back(t);
     }
   }
   return Status();
@@ -263,38 +281,136 @@ Status SurfaceRefiner::Run()
   status = status.IsOk() ? this->SplitRequested() : status;
   return status.IsOk() ? this->Finish() : status;
 }
+
+/**
+ * The attempts at one surface: with the usual rules, with those for corners and thin layers,
+ * and by the criterion Delaunay alone, until one comes to its end.
+ */
+class SurfaceAttempts
+{
+public:
+  SurfaceAttempts(const DelaunaySurfaceRefinerInput& input,
+    const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
+    DelaunaySurfaceRefinerOutput& output)
+    : Input(input), Options(options), Context(context), Best(output)
+  {
+  }
+
+  Status Run();
+
+private:
+  Status RunPlan(const SurfaceRefinementPlan& plan);
+  void Keep(DelaunaySurfaceRefinerOutput&& output);
+  bool IsStoppedByUser(const DelaunaySurfaceRefinerOutput& output) const
+  {
+    return this->Options.MaximumNewPoints > 0 &&
+      static_cast<Id>(output.NewPoints.size()) >= this->Options.MaximumNewPoints;
+  }
+  ExecutionContext GetNextPart();
+
+  const DelaunaySurfaceRefinerInput& Input;
+  /** Structural edges become more. */
+  DelaunaySurfaceRefinerOptions Options;
+  const ExecutionContext& Context;
+  DelaunaySurfaceRefinerOutput& Best;
+  bool HasBest = false;
+  /** Whether the last attempt came to its end, see SurfaceRefiner. */
+  bool IsSettled = false;
+  double Begin = 0.0;
+};
+
+/** How many attempts there will be nobody knows: each gets a part of what is left. */
+ExecutionContext SurfaceAttempts::GetNextPart()
+{
+  const double part = this->Options.StructuralEdges.AccuracyAngle > 0.0 ? 0.5 : 0.9;
+  const double begin = std::exchange(this->Begin, this->Begin + part * (1.0 - this->Begin));
+  return this->Context.Part(begin, this->Begin);
+}
+
+/** Where curvature, or flips, keep a plan from its end, the edges there become structural. */
+Status SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
+{
+  for (int attempt = 0;; ++attempt)
+  {
+    DelaunaySurfaceRefinerOutput output;
+    const ExecutionContext part = this->GetNextPart();
+    SurfaceRefiner refiner(this->Input, this->Options, plan, part, output);
+    const Status status = refiner.Run();
+    if (status.IsAborted() || this->IsStoppedByUser(output) ||
+      !refiner.FindCrumpled(this->Options.StructuralEdges.IsExact))
+    {
+      if (!status.IsOk())
+      {
+        return status;
+      }
+      this->IsSettled = refiner.IsSettled();
+      this->Keep(std::move(output));
+      return status;
+    }
+    if (attempt == LargestNumberOfAttempts)
+    {
+      this->Options.StructuralEdges.IsExact.assign(this->Input.Surface->Triangles.size(), 1);
+    }
+  }
+}
+
+/** If it is better than what there is: of two that can be meshed the one with fewer faults. */
+void SurfaceAttempts::Keep(DelaunaySurfaceRefinerOutput&& output)
+{
+  const auto rate = [](const DelaunaySurfaceRefinerOutput& x)
+  { return std::make_pair(x.NonDelaunayTriangles.size(), x.UnresolvedTriangles.size()); };
+  if (!this->HasBest || rate(output) < rate(this->Best))
+  {
+    this->Best = std::move(output);
+    this->HasBest = true;
+  }
+}
+
+Status SurfaceAttempts::Run()
+{
+  // Where sizes are asked for, they are what most of the points are for.
+  const bool hasSizes = this->Options.MaximumEdgeLength > 0.0 || this->Options.MaximumArea > 0.0 ||
+    this->Options.MinimumAngle > 0.0 || this->Input.Sizing;
+  SurfaceRefinementPlan plan;
+  plan.GivesUp = !hasSizes;
+  const Status first = this->RunPlan(plan);
+  if (first.IsAborted() || this->IsSettled ||
+    (hasSizes && this->HasBest && this->Best.NonDelaunayTriangles.empty() &&
+      this->IsStoppedByUser(this->Best)))
+  {
+    return first;
+  }
+  Status status;
+  for (const MatchingRules rules : { MatchingRules::Corners, MatchingRules::ThinLayers })
+  {
+    if (!status.IsAborted() && !this->IsSettled)
+    {
+      plan.Rules = rules;
+      status = this->RunPlan(plan);
+    }
+  }
+  if (this->Options.Criterion != SurfaceCriterion::Delaunay && !status.IsAborted() &&
+    !this->IsSettled)
+  {
+    plan.Rules = MatchingRules::Usual;
+    plan.IsRelaxed = true;
+    plan.GivesUp = false;
+    status = this->RunPlan(plan);
+  }
+  return status.IsAborted() ? status : this->HasBest ? Status() : first;
+}
 } // namespace
 
 Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,
   const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
   DelaunaySurfaceRefinerOutput& output)
 {
-  // Where the facets' curvature keeps refinement from ending, the edges there become structural.
-  DelaunaySurfaceRefinerOptions current = options;
-  double begin = 0.0;
-  for (int attempt = 0;; ++attempt)
+  output = DelaunaySurfaceRefinerOutput();
+  const Status status = SurfaceAttempts(input, options, context, output).Run();
+  if (!status.IsOk())
   {
     output = DelaunaySurfaceRefinerOutput();
-    const double end = options.StructuralEdges.AccuracyAngle > 0.0 ? 0.5 * (begin + 1.0) : 1.0;
-    const ExecutionContext part = context.Part(begin, end);
-    SurfaceRefiner refiner(input, current, part, output);
-    const Status status = refiner.Run();
-    const bool isFull = options.MaximumNewPoints > 0 &&
-      static_cast<Id>(output.NewPoints.size()) >= options.MaximumNewPoints;
-    if (options.StructuralEdges.AccuracyAngle == 0.0 || isFull ||
-      !refiner.FindCrumpled(current.StructuralEdges.IsExact))
-    {
-      if (!status.IsOk())
-      {
-        output = DelaunaySurfaceRefinerOutput();
-      }
-      return status;
-    }
-    if (attempt == LargestNumberOfAttempts)
-    {
-      current.StructuralEdges.IsExact.assign(input.Surface->Triangles.size(), 1);
-    }
-    begin = end;
   }
+  return status;
 }
 } // namespace cdm

@@ -22,15 +22,19 @@
  *     Points in facets come last, when no edge is left to split.
  *     The rules and why they end: Filters/Core/README.md;
  *  4. test again the triangles whose proving sphere holds the new point;
- *  5. with an accuracy angle, facets are curved, and points that mend one triangle may disturb its
+ *  5. if that does not end within the limits: all anew with the rules for corners, then with those
+ *     for thin layers (MatchingRules in PartnerPoints.h), then by the criterion Delaunay alone;
+ *  6. with an accuracy angle, facets are curved, and points that mend one triangle may disturb its
  *     neighbors for ever. Triangles of the input where points come much closer than the input's are
- *     set aside; their edges become structural, and all begins anew.
+ *     set aside; their edges become structural, and all begins anew. So do those of sheets within
+ *     FlatnessRatio of each other that flips have made the same.
  *
  * Guarantees: exact decisions; input points keep their coordinates and ids; new points follow them.
  * Deterministic.
  * Failure: InvalidInput for a surface that breaks the invariants of TriangleMesh.h, or of which two
- * sheets within FlatnessRatio have become the same triangles. Triangles that
- * stay bad because a limit stops the refinement are listed in UnresolvedTriangles: never silently.
+ * sheets within FlatnessRatio become the same triangles whatever edges are structural. Triangles
+ * that miss the criterion are listed in UnresolvedTriangles, never silently; those that cannot even
+ * be meshed in NonDelaunayTriangles.
  * Cost: a triangle that is Delaunay takes one search of the octree, O(log n); a new point takes a
  * few searches and one query of the spheres that prove the other triangles. About 350 bytes per
  * triangle. Measured in Testing/Benchmarks/Surface.md.
@@ -75,9 +79,10 @@ struct DelaunaySurfaceRefinerOptions
   /** No edge is made shorter than this ratio of the diagonal. >= 0. */
   double MinimumEdgeRatio = 1e-9;
   /**
-   * The refinement stops when it has made so many points. 0: 50 for each triangle, at least 20000,
-   * or 1000000 where sizes or angles are asked for, and one for each mesh point. Surfaces that need
-   * more are hardly meant: sheets a hair apart that run into each other.
+   * The refinement stops when it has made so many points, but for what the criterion Delaunay
+   * needs. 0: 50 for each triangle, at least 20000, or 1000000 where sizes or angles are asked for,
+   * and one for each mesh point. Surfaces that need more are hardly meant: sheets a hair apart that
+   * run into each other.
    */
   Id MaximumNewPoints = 0;
   /** Threads for the first test of all triangles, at least 1; the result does not depend on it. */
@@ -120,8 +125,12 @@ struct DelaunaySurfaceRefinerOutput
   std::vector<StructuralEdge> StructuralEdges;
   /** Ids of the mesh points that are kept, ascending. */
   std::vector<Id> KeptMeshPoints;
-  /** Triangles that do not fulfil the criterion, ascending. */
+  /** Triangles that do not fulfil the criterion, or have an edge that does not, ascending. */
   std::vector<Id> UnresolvedTriangles;
+  /** Those of them whose smallest spheres are not empty though the criterion asks for it. */
+  std::vector<Id> WeakTriangles;
+  /** Those that are not strongly Delaunay: no mesh can be made with them. */
+  std::vector<Id> NonDelaunayTriangles;
   DelaunaySurfaceRefinerReport Report;
 };
 

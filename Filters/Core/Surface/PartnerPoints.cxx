@@ -35,17 +35,34 @@ constexpr double CloseMatchRatio = 0.5;
  * Of turned devices rounding would make partners of them here and there, and a quarter more points.
  */
 constexpr double PerpendicularCosine = 1e-9;
+/** Facets at 60 degrees or less are mirrored onto each other at the plane between them. */
+constexpr double MirrorCosine = 0.5;
+/** In the last place of the coordinates: no search for a match that is to be so exact. */
+constexpr double HopelessMatch = 0.02;
+
+// The ratios that follow belong to the rules for thin layers.
+/** Edges pass each other if the square of the sine between them is not below this, ... */
+constexpr double PassingSquaredSine = 0.01;
+/** ... and are closer to each other than this part of what the split leaves on either side, ... */
+constexpr double PassingGapRatio = 0.1;
+/** ... and than this part of the disturbing point's way along its edge from there. */
+constexpr double PassingWayRatio = 0.5;
+/** In place of NeedleGapRatio and CloseEndRatio. */
+constexpr double LayerGapRatio = 0.1;
+constexpr double LayerEndRatio = 0.1;
 } // namespace
 
 /**
  * The partner of a point on another edge: the point of this edge's line that is as far from the
- * common perpendicular of the two lines. If the edges meet, that is type R about their corner; if
+ * common perpendicular of the two lines; passing: where the edges pass each other, or -1. If the edges meet, that is type R about their corner; if
  * they are parallel it is type P. Being partners is mutual, so that two edges never climb up a
  * ladder between them, and a point is outside of the diametral spheres of all pieces that end at
  * its partner.
  */
-bool PartnerPoints::PlaceOnLine(Id segment, Id disturbing, double& way, Vec3& along) const
+bool PartnerPoints::PlaceOnLine(
+  Id segment, Id disturbing, double& way, Vec3& along, double& passing) const
 {
+  passing = -1.0;
   const EdgeIds& ends = this->Surface.GetSegment(segment).Points;
   const Vec3& a = this->Points[ends[0]];
   const Vec3& p = this->Points[disturbing];
@@ -85,8 +102,79 @@ bool PartnerPoints::PlaceOnLine(Id segment, Id disturbing, double& way, Vec3& al
     const double shift = squaredSine > 1e-24 ? -distance * squaredSine / (1.0 + cosine) : 0.0;
     way = foot + shift;
     along = 0.5 * (direction + line);
+    passing = -1.0;
+    if (this->Rules == MatchingRules::ThinLayers && squaredSine > PassingSquaredSine)
+    {
+      // Feet of the common perpendicular, here and on the other edge.
+      const double foothold = way + distance;
+      const Vec3 here = a + foothold * direction;
+      const Vec3 there = p + distance * line;
+      const double gap = Distance(here, there);
+      const double rest = std::min(foothold, Norm(edge) - foothold);
+      const bool isOnEdge = Dot(there - begin, there - this->Points[edges[other][1]]) < 0.0;
+      passing =
+        isOnEdge && gap < PassingGapRatio * rest && gap < PassingWayRatio * std::abs(distance)
+        ? foothold
+        : -1.0;
+    }
   }
   return best > PerpendicularCosine;
+}
+
+/**
+ * The partner of a point in a facet that shares a corner with the edge: as far from the corner. The
+ * foot would be nearer to it, and what matches that nearer still, in turns about the corner.
+ */
+bool PartnerPoints::RotateToSegment(Id segment, Id disturbing, double& way) const
+{
+  const RefinableSurface::Segment& piece = this->Surface.GetSegment(segment);
+  if (this->Rules == MatchingRules::Usual || !this->Incidences.GetEdges(disturbing).empty())
+  {
+    return false;
+  }
+  const Vec3& a = this->Points[piece.Points[0]];
+  const Vec3& b = this->Points[piece.Points[1]];
+  const Vec3& p = this->Points[disturbing];
+  double nearest = Infinity;
+  for (Id corner : this->Surface.GetInputEdges()[piece.InputEdge])
+  {
+    const double distance = Distance(p, this->Points[corner]);
+    for (Id facet : this->Incidences.GetFacets(disturbing))
+    {
+      const IdLists::Range corners = this->Incidences.GetCorners(facet);
+      if (distance < nearest && std::binary_search(corners.begin(), corners.end(), corner))
+      {
+        nearest = distance;
+        const Vec3& c = this->Points[corner];
+        way =
+          Distance(a, c) < Distance(b, c) ? distance - Distance(a, c) : Distance(a, c) - distance;
+      }
+    }
+  }
+  if (nearest < Infinity)
+  {
+    return true;
+  }
+  const Vec3 direction = (1.0 / Distance(a, b)) * (b - a);
+  const Vec3 normal = this->GetNormalAt(disturbing);
+  const double sine = Dot(normal, direction);
+  const double cosine = std::sqrt(std::max(0.0, 1.0 - sine * sine));
+  if (normal == Vec3() || cosine < MirrorCosine)
+  {
+    return false;
+  }
+  const Vec3 across = (1.0 / cosine) * (normal - sine * direction);
+  way = Dot(p - a, direction) - Dot(p - a, across) * sine / (1.0 + cosine);
+  return true;
+}
+
+/** The normal of the plane facet within which a point lies; zero for a point of an edge. */
+Vec3 PartnerPoints::GetNormalAt(Id point) const
+{
+  const IdLists::Range facets = this->Incidences.GetFacets(point);
+  return this->Incidences.GetEdges(point).empty() && facets.size() == 1
+    ? this->Incidences.GetNormal(*facets.begin())
+    : Vec3();
 }
 
 Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id disturbing) const
@@ -96,6 +184,9 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id disturbing) const
   const Vec3& b = this->Points[ends[1]];
   const double length = Distance(a, b);
   const Vec3 direction = (1.0 / length) * (b - a);
+  const bool isLayered = this->Rules == MatchingRules::ThinLayers;
+  const double needleGap = isLayered ? LayerGapRatio : NeedleGapRatio;
+  const double closeEnd = isLayered ? LayerEndRatio : CloseEndRatio;
   for (int attempt = 0; disturbing != NoId; ++attempt)
   {
     const Vec3& p = this->Points[disturbing];
@@ -104,14 +195,19 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id disturbing) const
     const bool isThin = height < ThinGapRatio * length;
     double way = foot;
     Vec3 along = direction;
-    const bool isPartner = this->PlaceOnLine(segment, disturbing, way, along);
+    double passing;
+    const bool isPartner = this->PlaceOnLine(segment, disturbing, way, along, passing) ||
+      this->RotateToSegment(segment, disturbing, way);
+    if (passing > 0.0)
+    {
+      return a + passing * direction;
+    }
     // Close to an end of the piece, that end is the partner as good as there is: p stays outside of
     // pieces that are shorter than its squared height over its distance along.
     const double rest = std::abs(std::min(way, length - way));
     const bool isOnSphere =
       std::abs(Dot(a - p, b - p)) <= PerpendicularCosine * Distance(a, p) * Distance(b, p);
-    const bool isClose =
-      (isOnSphere || height < NeedleGapRatio * length) && rest < CloseEndRatio * height;
+    const bool isClose = (isOnSphere || height < needleGap * length) && rest < closeEnd * height;
     if (isClose)
     {
       // A point that is on the sphere but for rounding is outside of the sphere of any piece.
@@ -157,7 +253,12 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id disturbing) const
   const bool isAcuteB = this->Incidences.IsAcuteCorner(ends[1]);
   if (isAcuteA != isAcuteB)
   {
-    const double way = std::ldexp(1.0, std::ilogb(length * (2.0 / 3.0)));
+    // First up to where the others have been split already.
+    const double inner = this->Incidences.GetInnerRadius(isAcuteA ? ends[0] : ends[1]);
+    const bool isInside = inner > SmallestPiece * length && inner < (1.0 - SmallestPiece) * length;
+    const double way = isInside && this->Rules != MatchingRules::Usual
+      ? inner
+      : std::ldexp(1.0, std::ilogb(length * (2.0 / 3.0)));
     return isAcuteA ? a + way * direction : b - way * direction;
   }
   return 0.5 * (a + b);
@@ -223,10 +324,23 @@ bool PartnerPoints::RotateAboutCorner(Id t, Id disturbing, Vec3& target) const
   const Vec3& a = this->Points[triangle.Points[0]];
   const Vec3& b = this->Points[triangle.Points[1]];
   const Vec3& c = this->Points[triangle.Points[2]];
-  const Vec3 normal = Cross(b - a, c - a);
+  Vec3 normal = Cross(b - a, c - a);
+  normal = (1.0 / Norm(normal)) * normal;
   const Vec3 arm = p - this->Points[corner];
-  const Vec3 inPlane = arm - (Dot(arm, normal) / SquaredNorm(normal)) * normal;
-  target = this->Points[corner] + (nearest / Norm(inPlane)) * inPlane;
+  const Vec3 inPlane = arm - Dot(arm, normal) * normal;
+  // A point within another plane facet is mirrored at the plane midway between the two, which leads
+  // back to it; that of an edge has no other facet in which it would have to be met again.
+  const Vec3 own = this->GetNormalAt(disturbing);
+  const double cosine = Dot(own, normal);
+  if (this->Rules == MatchingRules::Usual || std::abs(cosine) < MirrorCosine)
+  {
+    target = this->Points[corner] + (nearest / Norm(inPlane)) * inPlane;
+  }
+  else
+  {
+    const Vec3 across = cosine < 0.0 ? normal - own : normal + own;
+    target = p - (Dot(arm, normal) / (1.0 + std::abs(cosine))) * across;
+  }
   // Steep or far beyond the triangle, the turned point would do nothing for it.
   return SquaredNorm(inPlane) > 0.25 * SquaredNorm(arm) && InEquatorialSphere(a, b, c, target) > 0;
 }
@@ -302,6 +416,15 @@ Vec3 PartnerPoints::MatchAcross(Id t, Id disturbing, const Vec3& position, doubl
     }
   }
   if (best <= 0.5 || Distance(position, p) > NeedleGapRatio * radius)
+  {
+    return position;
+  }
+  // The best of some 9000 doubles around the position is a tenth of the last place away.
+  const double largest =
+    std::max({ std::abs(position.X), std::abs(position.Y), std::abs(position.Z) });
+  const double lastPlace = std::nextafter(largest, Infinity) - largest;
+  if (this->Rules != MatchingRules::Usual &&
+    SquaredNorm(position - p) / (8.0 * radius) < HopelessMatch * lastPlace)
   {
     return position;
   }

@@ -30,13 +30,33 @@
 
 namespace cdm
 {
+/** Which places for new points are tried; surfaces that one does not end on may need the other. */
+enum class MatchingRules : char
+{
+  /** Feet on edges, projections in facets: fewest points where sheets and edges are few. */
+  Usual,
+  /**
+   * For bodies that touch in corners and edges: what matches a point is as far from a common corner
+   * as it is, and mirrored at the plane between two facets.
+   */
+  Corners,
+  /**
+   * For stacks of sheets that are much closer to each other than their triangles are wide. Edges
+   * that pass each other are split where they do; points that match those of several sheets keep
+   * away from each other; around corners new points in facets keep to the distances that there are.
+   */
+  ThinLayers
+};
+
 class PartnerPoints
 {
 public:
   /** All are shared with the caller, who may append to them. Diagonal: of the bounding box. */
   PartnerPoints(const RefinableSurface& surface, SurfaceIncidences& incidences,
-    const std::vector<Vec3>& points, const PointOctree& octree, double diagonal)
-    : Surface(surface), Incidences(incidences), Points(points), Octree(octree), Diagonal(diagonal)
+    const std::vector<Vec3>& points, const PointOctree& octree, double diagonal,
+    MatchingRules rules)
+    : Surface(surface), Incidences(incidences), Points(points), Octree(octree), Diagonal(diagonal),
+      Rules(rules)
   {
   }
 
@@ -55,7 +75,9 @@ public:
   Vec3 MatchAcross(Id triangle, Id disturbing, const Vec3& position, double radius) const;
 
 private:
-  bool PlaceOnLine(Id segment, Id disturbing, double& way, Vec3& along) const;
+  bool PlaceOnLine(Id segment, Id disturbing, double& way, Vec3& along, double& passing) const;
+  bool RotateToSegment(Id segment, Id disturbing, double& way) const;
+  Vec3 GetNormalAt(Id point) const;
   bool RotateAboutEdge(Id triangle, Id disturbing, Vec3& target) const;
   bool RotateAboutCorner(Id triangle, Id disturbing, Vec3& target) const;
   bool Project(Id triangle, Id disturbing, Vec3& target) const;
@@ -65,6 +87,7 @@ private:
   const std::vector<Vec3>& Points;
   const PointOctree& Octree;
   double Diagonal;
+  MatchingRules Rules;
 };
 } // namespace cdm
 

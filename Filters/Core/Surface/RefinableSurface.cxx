@@ -8,6 +8,16 @@
 
 namespace cdm
 {
+namespace
+{
+/**
+ * Normals whose components are as equal as that count as equal along both axes, so that all
+ * triangles of a plane like x = z are projected along the same one: a point on an edge but for
+ * rounding may be on either side of it, depending on the axis.
+ */
+constexpr double EqualAxes = 1.001;
+} // namespace
+
 RefinableSurface::RefinableSurface(const TriangleMesh& surface,
   const std::vector<StructuralEdge>& edges, const std::vector<Vec3>& points)
   : Points(points)
@@ -180,7 +190,7 @@ int RefinableSurface::GetProjectionAxis(Id triangle, int& turn) const
   int axis = 0;
   for (int i = 1; i < 3; ++i)
   {
-    axis = std::abs(normal[i]) > std::abs(normal[axis]) ? i : axis;
+    axis = std::abs(normal[i]) > EqualAxes * std::abs(normal[axis]) ? i : axis;
   }
   turn = ProjectedOrientation(axis, a, this->Points[ids[1]], this->Points[ids[2]]);
   return axis;

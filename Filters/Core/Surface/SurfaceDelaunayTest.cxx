@@ -61,6 +61,8 @@ public:
     return distance > this->SquaredReach ? Infinity : distance;
   }
 
+  bool IsNeedle() const { return this->Form.has_value(); }
+
   /** Beyond it nothing matters. */
   Box GetReach() const
   {
@@ -232,6 +234,7 @@ void SurfaceDelaunayTest::Run(
   result.Cocircular.clear();
   SmallestSphereVisitor visitor(this->Points, triangle, isSmallestSphereWanted, result);
   this->Octree.Visit(visitor, visitor.GetReach());
+  result.IsNeedle = visitor.IsNeedle();
   std::sort(result.Cocircular.begin(), result.Cocircular.end());
   // The proof may be a little larger than the empty sphere: that costs a needless test at most.
   constexpr double Inflation = 1.0 + 1e-6;

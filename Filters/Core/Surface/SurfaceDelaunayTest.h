@@ -47,6 +47,8 @@ public:
      */
     Vec3 ProofCenter;
     double ProofRadius = 0.0;
+    /** Of such a needle that its sphere may hold any point: the search was a long one. */
+    bool IsNeedle = false;
   };
 
   SurfaceDelaunayTest(const std::vector<Vec3>& points, const PointOctree& octree)

@@ -8,7 +8,9 @@ namespace cdm
 SurfaceIncidences::SurfaceIncidences(const RefinableSurface& surface,
   const std::vector<Vec3>& points, Id numberOfSurfacePoints, double flatness)
   : Surface(surface), Points(points), NumberOfSurfacePoints(numberOfSurfacePoints),
-    NumberOfGivenPoints(static_cast<Id>(points.size())), AcuteCorners(numberOfSurfacePoints, -1)
+    NumberOfGivenPoints(static_cast<Id>(points.size())),
+    InnerRadii(numberOfSurfacePoints, std::numeric_limits<double>::infinity()),
+    AcuteCorners(numberOfSurfacePoints, -1)
 {
   this->CollectFacets();
   this->CollectEdges();
@@ -120,6 +122,17 @@ void SurfaceIncidences::AddPoint(Id facet, Id inputEdge)
 {
   this->NewPointFacets.push_back(facet);
   this->NewPointEdges.push_back(inputEdge);
+  if (inputEdge == NoId)
+  {
+    return;
+  }
+  const Vec3& position =
+    this->Points[this->NumberOfGivenPoints + static_cast<Id>(this->NewPointEdges.size()) - 1];
+  for (Id end : this->Surface.GetInputEdges()[inputEdge])
+  {
+    double& radius = this->InnerRadii[end];
+    radius = std::min(radius, Distance(position, this->Points[end]));
+  }
 }
 
 IdLists::Range SurfaceIncidences::GetFacets(Id point) const

@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -65,6 +66,13 @@ public:
     }
   }
 
+  /** Distance of the nearest new point on an input edge from a point at its end; or infinity. */
+  double GetInnerRadius(Id point) const
+  {
+    return point < this->NumberOfSurfacePoints ? this->InnerRadii[point]
+                                               : std::numeric_limits<double>::infinity();
+  }
+
   /** Whether two input edges meet at a point at less than 90 degrees; never at a new one. */
   bool IsAcuteCorner(Id point);
 
@@ -96,6 +104,7 @@ private:
   std::vector<std::pair<std::uint64_t, Id>> SharedEdges;
   std::vector<Vec3> Normals;
   IdLists Corners;
+  std::vector<double> InnerRadii;
   /** -1: not known yet. */
   std::vector<signed char> AcuteCorners;
 };

@@ -22,12 +22,22 @@ constexpr std::size_t ReportInterval = 256;
 
 /** In curved facets, points closer than that to others, in shortest edges of the input there. */
 constexpr double CrumplingRatio = 1.0 / 8.0;
+/**
+ * Points closer to a match than this part of the disturbing point's distance from it are match
+ * enough: it is the triangle that is too large, and a match would disturb what lies between.
+ */
+constexpr double CloseMatchRatio = 0.1;
+/** A plan that may give up does so after this part as many needles that are bad as points. */
+constexpr Id NeedlePart = 4;
+/** Distances from a corner that are as equal as that count as equal. */
+constexpr double EqualRadii = 1.01;
 } // namespace
 
 SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
   const std::vector<StructuralEdge>& edges, const std::vector<Vec3>& meshPoints,
-  const DelaunaySurfaceRefinerOptions& options, SizingField sizing, bool isSaturated)
-  : Options(options), Points(surface.Points),
+  const DelaunaySurfaceRefinerOptions& options, SizingField sizing, bool isSaturated,
+  SurfaceRefinementPlan plan)
+  : Options(options), Plan(std::move(plan)), Points(surface.Points),
     NumberOfSurfacePoints(static_cast<Id>(surface.Points.size())),
     Diagonal(GetBoundingBoxDiagonal(surface.Points)),
     Flatness(options.StructuralEdges.FlatnessRatio * this->Diagonal),
@@ -37,13 +47,12 @@ SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
 {
   this->Points.insert(this->Points.end(), meshPoints.begin(), meshPoints.end());
   // Without a limit of the user's, one that only a runaway refinement reaches: sheets a hair apart.
-  this->MaximumNewPoints = options.MaximumNewPoints > 0
-    ? options.MaximumNewPoints
-    : static_cast<Id>(
-        std::min<std::size_t>(std::max<std::size_t>(this->Limits.HasAny() ? 1000000 : 20000,
-                                50 * surface.Triangles.size()) +
-            meshPoints.size(),
-          LargestId / 8));
+  this->UsualMaximum = static_cast<Id>(std::min<std::size_t>(
+    std::max<std::size_t>(this->Limits.HasAny() ? 1000000 : 20000, 50 * surface.Triangles.size()) +
+      meshPoints.size(),
+    LargestId / 8));
+  this->MaximumNewPoints =
+    options.MaximumNewPoints > 0 ? options.MaximumNewPoints : this->UsualMaximum;
   this->Octree.Insert(this->Points);
   this->Surface = std::make_unique<RefinableSurface>(surface, edges, this->Points);
   this->Flips = std::make_unique<SurfaceFlips>(
@@ -87,8 +96,8 @@ void SurfaceRefinement::CollectIncidences()
     this->Options.StructuralEdges.AccuracyAngle > 0.0 ? this->Flatness : Infinity;
   this->Incidences = std::make_unique<SurfaceIncidences>(
     *this->Surface, this->Points, this->NumberOfSurfacePoints, flatness);
-  this->Partners = std::make_unique<PartnerPoints>(
-    *this->Surface, *this->Incidences, this->Points, this->Octree, this->Diagonal);
+  this->Partners = std::make_unique<PartnerPoints>(*this->Surface, *this->Incidences, this->Points,
+    this->Octree, this->Diagonal, this->Plan.Rules);
   this->Walk = std::make_unique<FacetWalk>(
     *this->Surface, *this->Partners, this->Points, this->Octree, this->Diagonal);
 }
@@ -263,9 +272,15 @@ void SurfaceRefinement::PullCocircular(const std::vector<Id>& triangles)
   }
 }
 
+bool SurfaceRefinement::IsDelaunay(Id triangle) const
+{
+  SurfaceDelaunayTest::Result found;
+  return this->IsGood(triangle, found, false);
+}
+
 bool SurfaceRefinement::IsUnresolved(Id triangle) const
 {
-  if (static_cast<std::size_t>(triangle) < this->IsBad.size() && this->IsBad[triangle] != 0)
+  if (this->IsBadTriangle(triangle) || this->IsWeak(triangle))
   {
     return true;
   }
@@ -327,16 +342,62 @@ bool SurfaceRefinement::IsCocircularFacet(Id t, const SurfaceDelaunayTest::Resul
   return reached == cocircular;
 }
 
-bool SurfaceRefinement::IsGood(Id t, SurfaceDelaunayTest::Result& found) const
+bool SurfaceRefinement::IsGood(Id t, SurfaceDelaunayTest::Result& found, bool isStrong) const
 {
-  this->Test.Run(this->Surface->GetTriangle(t).Points, found,
-    this->Options.Criterion != SurfaceCriterion::Delaunay);
+  this->Test.Run(this->Surface->GetTriangle(t).Points, found, isStrong);
   if (!found.IsDelaunay || (!found.Cocircular.empty() && !this->IsCocircularFacet(t, found)))
   {
     return false;
   }
-  return this->Options.Criterion == SurfaceCriterion::Delaunay ||
-    found.InsideSmallestSphere.empty();
+  return !isStrong || found.InsideSmallestSphere.empty();
+}
+
+/** The limit of points is reached: as many again for what the criterion Delaunay needs. */
+void SurfaceRefinement::StartRescue()
+{
+  this->MaximumRescuePoints = static_cast<Id>(this->NewPoints.size()) + this->UsualMaximum;
+  this->EdgeQueue.clear();
+}
+
+/** Triangles that are still to be looked at count as bad. */
+void SurfaceRefinement::GiveUp()
+{
+  for (const QueueEntry& entry : this->Queue)
+  {
+    this->IsBad[entry.Triangle] |=
+      this->States[entry.Triangle] == entry.State && this->IsProven[entry.Triangle] == 0;
+  }
+  for (const auto& [length, segment] : this->EdgeQueue)
+  {
+    this->IsDisturbed.resize(this->Surface->GetNumberOfSegments(), 0);
+    this->IsDisturbed[segment] = 1;
+  }
+  this->Queue.clear();
+  this->EdgeQueue.clear();
+}
+
+void SurfaceRefinement::JudgeRelaxed()
+{
+  this->WeakTriangles.clear();
+  this->NumberOfFailures = static_cast<Id>(std::count(this->IsBad.begin(), this->IsBad.end(), 1) +
+    std::count(this->IsDisturbed.begin(), this->IsDisturbed.end(), 1));
+  if (this->Options.Criterion == SurfaceCriterion::Delaunay || !this->IsRelaxed())
+  {
+    return;
+  }
+  this->WeakTriangles.resize(this->Surface->GetNumberOfTriangles(), 0);
+  SurfaceDelaunayTest::Result found;
+  for (Id t = 0; t < this->Surface->GetNumberOfTriangles(); ++t)
+  {
+    this->WeakTriangles[t] = this->IsGood(t, found, true) ? 0 : 1;
+  }
+  this->IsDisturbed.resize(this->Surface->GetNumberOfSegments(), 0);
+  for (Id s = 0; s < this->Surface->GetNumberOfSegments() && this->AreEdgesTested(); ++s)
+  {
+    DiametralSphereVisitor visitor(this->Points, this->Surface->GetSegment(s).Points);
+    this->Octree.Visit(visitor, visitor.GetReach());
+    this->IsDisturbed[s] = visitor.Found != NoId ? 1 : 0;
+  }
 }
 
 /**
@@ -406,7 +467,7 @@ bool SurfaceRefinement::ResolveByFlip(Id t)
     }
     SurfaceDelaunayTest::Result first;
     SurfaceDelaunayTest::Result second;
-    const bool isStronger = this->Options.Criterion != SurfaceCriterion::Delaunay;
+    const bool isStronger = this->IsStrong();
     this->Test.Run({ a, d, c }, first, isStronger);
     this->Test.Run({ d, b, c }, second, isStronger);
     const bool isAllowed =
@@ -550,11 +611,17 @@ bool SurfaceRefinement::ResolveInFacet(Id t, Id disturbing, const Vec3& target, 
     const auto isDisturbedBy = [&](const Vec3& p)
     { return InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], p) >= 0; };
     const bool isDisturbed = disturbing != NoId && isDisturbedBy(this->Points[disturbing]);
+    if (isMirrored && !isDisturbed && this->IsMatchedByEnd(landing.Segment, disturbing, target))
+    {
+      return false;
+    }
+    const bool isTargetPartner =
+      this->Plan.Rules != MatchingRules::Usual && isMirrored && isDisturbedBy(target);
     // On a curved facet the walk may lead to an edge that has nothing to do with the triangle.
     return (isDisturbed || isDisturbedBy(target) ||
              std::any_of(
                start.begin(), start.end(), [&](Id p) { return isDisturbedBy(this->Points[p]); })) &&
-      this->SplitSegment(landing.Segment, isDisturbed ? disturbing : NoId);
+      this->SplitSegment(landing.Segment, isDisturbed || isTargetPartner ? disturbing : NoId);
   }
 
   // A point that does not disturb the triangle would not remove it (on curved facets).
@@ -564,6 +631,18 @@ bool SurfaceRefinement::ResolveInFacet(Id t, Id disturbing, const Vec3& target, 
       this->Points[start[0]], this->Points[start[1]], this->Points[start[2]], position) <= 0)
   {
     return false;
+  }
+  if (isMirrored && this->Plan.Rules == MatchingRules::ThinLayers)
+  {
+    const double reach = CloseMatchRatio * Distance(position, this->Points[disturbing]);
+    NearestPointVisitor visitor(position, disturbing, reach);
+    this->Octree.Visit(visitor, visitor.GetReach());
+    const IdLists::Range facets =
+      visitor.Nearest != NoId ? this->Incidences->GetFacets(visitor.Nearest) : IdLists::Range();
+    if (std::binary_search(facets.begin(), facets.end(), surface.GetTriangle(t).Facet))
+    {
+      return false;
+    }
   }
   const Id current = landing.Triangle;
   if (landing.Edge != NoId && surface.GetSegmentAt(current, landing.Edge) != NoId)
@@ -575,6 +654,10 @@ bool SurfaceRefinement::ResolveInFacet(Id t, Id disturbing, const Vec3& target, 
   const Id encroached = this->Walk->FindEncroachedSegment(current, position);
   if (encroached != NoId)
   {
+    if (isMirrored && this->IsMatchedByEnd(encroached, disturbing, position))
+    {
+      return false;
+    }
     return this->SplitSegment(encroached, isMirrored ? disturbing : NoId);
   }
 
@@ -678,6 +761,54 @@ void SurfaceRefinement::NoteCrumpling(Id t, Id newPoint)
   }
 }
 
+/**
+ * Whether an end of a segment matches the disturbing point as well as the position does. The usual
+ * rules do not ask for it.
+ */
+bool SurfaceRefinement::IsMatchedByEnd(Id segment, Id disturbing, const Vec3& position) const
+{
+  const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
+  const double nearest =
+    std::min(Distance(position, this->Points[ends[0]]), Distance(position, this->Points[ends[1]]));
+  return this->Plan.Rules != MatchingRules::Usual &&
+    nearest < CloseMatchRatio * Distance(position, this->Points[disturbing]);
+}
+
+/**
+ * With the rules for thin layers: in place of the circumcenter of a triangle at a corner of the
+ * input, whose other points are as far from it as the nearest ones on its edges, the point between
+ * them at the same distance; if one is farther away, that distance on the way there. Nearer points
+ * would ask for nearer ones in all sheets that meet in the corner.
+ */
+bool SurfaceRefinement::FindShellPoint(Id t, Vec3& target) const
+{
+  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+  for (int i = 0; i < 3 && this->Plan.Rules == MatchingRules::ThinLayers; ++i)
+  {
+    const Id v = ids[i];
+    if (v >= this->NumberOfSurfacePoints || this->Incidences->GetEdges(v).size() < 2)
+    {
+      continue;
+    }
+    const Vec3& corner = this->Points[v];
+    Vec3 near = this->Points[ids[(i + 1) % 3]] - corner;
+    Vec3 far = this->Points[ids[(i + 2) % 3]] - corner;
+    if (SquaredNorm(near) > SquaredNorm(far))
+    {
+      std::swap(near, far);
+    }
+    const double radius = Norm(near);
+    if (radius <= EqualRadii * this->Incidences->GetInnerRadius(v))
+    {
+      const double farther = Norm(far);
+      const Vec3 direction = farther > EqualRadii * radius ? far : near + (radius / farther) * far;
+      target = corner + (radius / Norm(direction)) * direction;
+      return true;
+    }
+  }
+  return false;
+}
+
 void SurfaceRefinement::Process(Id t, QueueState state)
 {
   Id segment = NoId;
@@ -689,7 +820,7 @@ void SurfaceRefinement::Process(Id t, QueueState state)
       this->Proofs.Set(t, this->Found.ProofCenter, this->Found.ProofRadius);
       this->IsProven[t] = 1;
     }
-    if (this->FindTooCoarse(t, segment))
+    if (!this->IsRescuing() && this->FindTooCoarse(t, segment))
     {
       this->CollectIncidences();
       // Too coarse is no fault: if a limit forbids to refine, the triangle stays as it is.
@@ -704,6 +835,7 @@ void SurfaceRefinement::Process(Id t, QueueState state)
     }
     return;
   }
+  this->NumberOfNeedles += !isProven && this->Found.IsNeedle ? 1 : 0;
   this->Proofs.Remove(t);
   this->CollectIncidences();
   if (this->ResolveByFlip(t))
@@ -719,7 +851,7 @@ void SurfaceRefinement::Process(Id t, QueueState state)
   this->IsBad[t] = 0;
   const DisturbedEdge edge = this->FindDisturbedEdge(t);
   if (edge.Segment != NoId && state == QueueState::First &&
-    this->Options.Criterion == SurfaceCriterion::SmallestSphere)
+    this->Options.Criterion == SurfaceCriterion::SmallestSphere && !this->IsRescuing())
   {
     this->Enqueue(t, QueueState::Edge, edge.Distance);
     return;
@@ -743,6 +875,7 @@ void SurfaceRefinement::Process(Id t, QueueState state)
   Vec3 target;
   const bool isMirrored = disturbing != NoId && this->Partners->PlaceInFacet(t, disturbing, target);
   if ((isMirrored && this->ResolveInFacet(t, disturbing, target, true)) ||
+    (this->FindShellPoint(t, target) && this->ResolveInFacet(t, disturbing, target, false)) ||
     this->ResolveInFacet(t, disturbing, this->FindCircumcenter(t), false) ||
     this->SplitLongestEdge(t))
   {
@@ -755,6 +888,10 @@ void SurfaceRefinement::Process(Id t, QueueState state)
 
 void SurfaceRefinement::EnqueueEdge(Id segment)
 {
+  if (this->IsRelaxed())
+  {
+    return;
+  }
   const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
   this->EdgeQueue.emplace_back(Distance(this->Points[ends[0]], this->Points[ends[1]]), segment);
   std::push_heap(this->EdgeQueue.begin(), this->EdgeQueue.end(), std::greater<>());
@@ -786,7 +923,7 @@ void SurfaceRefinement::ProcessEdge()
     return;
   }
   this->CollectIncidences();
-  if (this->IsFull() || !this->SplitSegment(segment, visitor.Found))
+  if (!this->SplitSegment(segment, visitor.Found))
   {
     this->IsDisturbed.resize(this->Surface->GetNumberOfSegments(), 0);
     this->IsDisturbed[segment] = 1;
@@ -809,10 +946,20 @@ Status SurfaceRefinement::Refine(const ExecutionContext& context)
     {
       return range;
     }
+    this->HasGivenUp = this->HasGivenUp ||
+      (this->Plan.GivesUp && this->NumberOfNeedles > this->UsualMaximum / NeedlePart);
+    if (this->IsFull() && !this->IsRescuing())
+    {
+      this->Plan.GivesUp ? this->GiveUp() : this->StartRescue();
+    }
     if (!this->EdgeQueue.empty())
     {
       this->ProcessEdge();
       continue;
+    }
+    if (this->Queue.empty())
+    {
+      break;
     }
     if (!this->AreAllTested && !this->TestAll(context.Part(done, done)))
     {
@@ -826,7 +973,7 @@ Status SurfaceRefinement::Refine(const ExecutionContext& context)
       continue;
     }
     this->States[t] = QueueState::None;
-    if (this->IsFull())
+    if (this->IsRescuing() && static_cast<Id>(this->NewPoints.size()) >= this->MaximumRescuePoints)
     {
       this->IsBad[t] = this->IsProven[t] == 0 && !this->IsGood(t, this->Found);
       continue;

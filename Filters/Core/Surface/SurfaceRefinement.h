@@ -34,6 +34,19 @@
 
 namespace cdm
 {
+/** How a surface is refined; one that a plan does not come to an end with may need another one. */
+struct SurfaceRefinementPlan
+{
+  MatchingRules Rules = MatchingRules::Usual;
+  /** Whether triangles only have to fulfil the criterion Delaunay, and edges none. */
+  bool IsRelaxed = false;
+  /**
+   * What to do when as many points have been made as may be: go on with what the criterion Delaunay
+   * needs, or give up.
+   */
+  bool GivesUp = false;
+};
+
 class SurfaceRefinement
 {
 public:
@@ -45,9 +58,13 @@ public:
    */
   SurfaceRefinement(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
     const std::vector<Vec3>& meshPoints, const DelaunaySurfaceRefinerOptions& options,
-    SizingField sizing, bool isSaturated);
+    SizingField sizing, bool isSaturated, SurfaceRefinementPlan plan = {});
 
-  /** All triangles and, where they count, edges; then again what has been changed. */
+  /**
+   * All triangles and, where they count, edges; then again what has been changed. When as many
+   * points have been made as may be, what is left gets only what the criterion Delaunay needs, or
+   * is left as it is, see the plan.
+   */
   Status Refine(const ExecutionContext& context);
 
   /**
@@ -76,11 +93,33 @@ public:
   const std::vector<PointParents>& GetNewPoints() const { return this->NewPoints; }
   Id GetNumberOfEdgePoints() const { return this->NumberOfEdgePoints; }
   Id GetNumberOfFlips() const { return this->Flips->GetNumberOfFlips(); }
-  /** Whether it has made as many points as it may. */
-  bool IsFull() const { return static_cast<Id>(this->NewPoints.size()) >= this->MaximumNewPoints; }
+  /** Whether it has made as many points as it may, but for what the criterion Delaunay needs. */
+  bool IsFull() const
+  {
+    return static_cast<Id>(this->NewPoints.size()) >= this->MaximumNewPoints || this->HasGivenUp;
+  }
 
-  /** Of what a limit has kept from being refined: by the criterion, or at a disturbed edge. */
+  /** Whether triangles only have to fulfil the criterion Delaunay, by the plan or by now. */
+  bool IsRelaxed() const { return this->Plan.IsRelaxed || this->IsRescuing(); }
+  /** Finds out which of those miss the criterion asked for; what follows does not know before. */
+  void JudgeRelaxed();
+
+  /** Whether a triangle misses the criterion asked for, or lies at a disturbed edge. */
   bool IsUnresolved(Id triangle) const;
+  /** How many triangles and edges are not as they are to be, whatever the plan has relaxed. */
+  Id GetNumberOfFailures() const { return this->NumberOfFailures; }
+  bool IsDelaunay(Id triangle) const;
+  /** Whether nothing could be done for a triangle that is to be better. */
+  bool IsBadTriangle(Id triangle) const
+  {
+    return static_cast<std::size_t>(triangle) < this->IsBad.size() && this->IsBad[triangle] != 0;
+  }
+  /** Whether it may be only that: its smallest sphere is not empty. */
+  bool IsWeak(Id triangle) const
+  {
+    return static_cast<std::size_t>(triangle) < this->WeakTriangles.size() &&
+      this->WeakTriangles[triangle] != 0;
+  }
   /** Whether the triangle is part of a curved facet. */
   bool IsCurved(Id triangle) const
   {
@@ -148,7 +187,19 @@ private:
   {
     return this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges;
   }
-  bool IsGood(Id t, SurfaceDelaunayTest::Result& found) const;
+  bool IsGood(Id t, SurfaceDelaunayTest::Result& found) const
+  {
+    return this->IsGood(t, found, this->IsStrong());
+  }
+  bool IsGood(Id t, SurfaceDelaunayTest::Result& found, bool isStrong) const;
+  /** Whether the smallest spheres of triangles have to be empty. */
+  bool IsStrong() const
+  {
+    return this->Options.Criterion != SurfaceCriterion::Delaunay && !this->IsRelaxed();
+  }
+  bool IsRescuing() const { return this->MaximumRescuePoints > 0; }
+  void StartRescue();
+  void GiveUp();
   bool TestAll(const ExecutionContext& context);
   bool IsCocircularFacet(Id t, const SurfaceDelaunayTest::Result& found) const;
   bool FindTooCoarse(Id t, Id& segment) const;
@@ -167,6 +218,8 @@ private:
   void TestAgainAround(const Vec3& position);
   void Touch(Id t);
   Vec3 FindCircumcenter(Id t) const;
+  bool FindShellPoint(Id t, Vec3& target) const;
+  bool IsMatchedByEnd(Id segment, Id disturbing, const Vec3& position) const;
   void Enqueue(Id t);
   void Enqueue(Id t, QueueState state, double order);
   double GetNextNumber() { return static_cast<double>(this->NumberOfEnqueued++); }
@@ -180,12 +233,16 @@ private:
   }
 
   const DelaunaySurfaceRefinerOptions Options;
+  const SurfaceRefinementPlan Plan;
   std::vector<Vec3> Points;
   const Id NumberOfSurfacePoints;
   const double Diagonal;
   const double Flatness;
   const double MinimumEdge;
   Id MaximumNewPoints = 0;
+  /** As many as without a limit of the user's; and so many in all, from when that is reached. */
+  Id UsualMaximum = 0;
+  Id MaximumRescuePoints = 0;
   PointOctree Octree;
   SurfaceDelaunayTest Test;
   SurfaceDelaunayTest::Result Found;
@@ -194,6 +251,10 @@ private:
   TriangleLimits Limits;
   std::vector<PointParents> NewPoints;
   Id NumberOfEdgePoints = 0;
+  Id NumberOfFailures = 0;
+  /** Tests of needles, which a refinement that has come down to rounding errors makes many of. */
+  Id NumberOfNeedles = 0;
+  bool HasGivenUp = false;
 
   /** These are made when the first triangle has to be refined. */
   std::unique_ptr<SurfaceIncidences> Incidences;
@@ -212,6 +273,8 @@ private:
   std::vector<char> IsProven;
   bool AreAllTested = false;
   std::vector<char> IsBad;
+  /** Of each triangle once they have been judged; empty if all have to fulfil the criterion. */
+  std::vector<char> WeakTriangles;
   std::vector<char> IsTouched;
   std::vector<Id> Touched;
   std::vector<Id> Reached;

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Random complexes of eight kinds (ComplexKinds.h) with each criterion: all of them are meshed, and
+// the table that is printed says how many fulfil the criterion asked for, and at which price.
+//
+// CDM_COMPLEXES=12500 build/bin/TestComplexKinds makes so many of each kind, CDM_FIRST_SEED other
+// ones.
+#include "ComplexKinds.h"
+#include "Core/Certificate/MeshChecks.h"
+#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Surface/DelaunaySurfaceRefiner.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+using namespace cdm;
+
+namespace
+{
+/** Volumes of slabs that are far from the origin are known to so many digits only. */
+constexpr double VolumeTolerance = 1e-6;
+
+struct Counts
+{
+  int Complexes = 0;
+  /** With all triangles as the criterion wants them. */
+  int Fulfilled = 0;
+  /** Points of the surface in units of those with the criterion Delaunay, where it is fulfilled. */
+  std::vector<double> Ratios;
+  /** Seeds of the others. */
+  std::vector<std::uint64_t> Missed;
+};
+
+/** Of each criterion. */
+using KindCounts = std::array<Counts, 3>;
+
+std::uint64_t GetFromEnvironment(const char* name, std::uint64_t otherwise)
+{
+  const char* const text = std::getenv(name);
+  return text != nullptr ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+/** Refines, meshes and lets the checker judge. Returns the points of the surface. */
+std::size_t MeshComplex(const TriangleMesh& surface, SurfaceCriterion criterion, bool& isFulfilled)
+{
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &surface;
+  DelaunaySurfaceRefinerOptions options;
+  options.Criterion = criterion;
+  DelaunaySurfaceRefinerOutput refined;
+  const Status status = RefineDelaunaySurface(input, options, {}, refined);
+  EXPECT_TRUE(status.IsOk()) << status.Message;
+  EXPECT_TRUE(refined.NonDelaunayTriangles.empty()) << refined.NonDelaunayTriangles.size();
+  isFulfilled = refined.UnresolvedTriangles.empty();
+
+  AdvancingFrontTetrahedralizerInput mesherInput;
+  mesherInput.Surface = &refined.Surface;
+  AdvancingFrontTetrahedralizerOutput mesh;
+  const Status meshed = TetrahedralizeByAdvancingFront(mesherInput, {}, {}, mesh);
+  EXPECT_TRUE(meshed.IsOk()) << meshed.Message;
+  MeshCheckReport report;
+  EXPECT_TRUE(CheckTetMesh(mesh.Mesh, &mesh.Boundary, {}, report).IsOk());
+  EXPECT_TRUE(report.IsValid(VolumeTolerance)) << report.GetSummary();
+  if (isFulfilled && criterion != SurfaceCriterion::Delaunay)
+  {
+    EXPECT_EQ(report.SmallestSphereViolations, 0);
+  }
+  if (!isFulfilled)
+  {
+    EXPECT_LE(report.SmallestSphereViolations, static_cast<Id>(refined.WeakTriangles.size()));
+  }
+  return refined.Surface.Points.size();
+}
+
+KindCounts MeshComplexes(ComplexKind kind, std::uint64_t usualCount)
+{
+  KindCounts counts;
+  const std::uint64_t first = GetFromEnvironment("CDM_FIRST_SEED", 1);
+  const std::uint64_t count = GetFromEnvironment("CDM_COMPLEXES", usualCount);
+  for (std::uint64_t seed = first; seed < first + count; ++seed)
+  {
+    ComplexMaker maker(kind, seed);
+    PolygonSoup soup = maker.Make();
+    maker.Place(soup);
+    BoundaryTriangulatorOutput triangulated;
+    if (!TriangulateBoundary(soup, {}, {}, triangulated).IsOk() ||
+      triangulated.Surface.Triangles.empty())
+    {
+      // All is outside, or what is thin intersects itself when it is turned and rounded.
+      continue;
+    }
+    std::size_t points = 0;
+    for (int criterion = 0; criterion < 3; ++criterion)
+    {
+      SCOPED_TRACE(std::string(GetComplexKindName(kind)) + ", seed " + std::to_string(seed) +
+        ", criterion " + std::to_string(criterion));
+      bool isFulfilled = false;
+      const std::size_t made =
+        MeshComplex(triangulated.Surface, static_cast<SurfaceCriterion>(criterion), isFulfilled);
+      points = criterion == 0 ? made : points;
+      Counts& own = counts[criterion];
+      ++own.Complexes;
+      if (isFulfilled)
+      {
+        ++own.Fulfilled;
+        own.Ratios.push_back(static_cast<double>(made) / static_cast<double>(points));
+      }
+      else
+      {
+        own.Missed.push_back(seed);
+      }
+    }
+  }
+  for (int criterion = 0; criterion < 3; ++criterion)
+  {
+    Counts& own = counts[criterion];
+    std::sort(own.Ratios.begin(), own.Ratios.end());
+    std::printf(
+      "%-14s criterion %d: %d meshed, %d fulfil it, points in units of Delaunay's: median "
+      "%.1f, worst %.1f; missed by seeds",
+      GetComplexKindName(kind), criterion, own.Complexes, own.Fulfilled,
+      own.Ratios.empty() ? 0.0 : own.Ratios[own.Ratios.size() / 2],
+      own.Ratios.empty() ? 0.0 : own.Ratios.back());
+    for (std::uint64_t seed : own.Missed)
+    {
+      std::printf(" %llu", static_cast<unsigned long long>(seed));
+    }
+    std::printf("\n");
+  }
+  return counts;
+}
+
+/** The criterion Delaunay always, the others but for one in a hundred. */
+void ExpectFulfilled(const KindCounts& counts)
+{
+  EXPECT_EQ(counts[0].Missed.size(), 0u);
+  for (const Counts& own : counts)
+  {
+    EXPECT_LE(100 * own.Missed.size(), static_cast<std::size_t>(own.Complexes));
+  }
+}
+} // namespace
+
+TEST(ComplexKinds, CubeTetrahedra)
+{
+  ExpectFulfilled(MeshComplexes(ComplexKind::CubeTetrahedra, 200));
+}
+
+TEST(ComplexKinds, GridTetrahedra)
+{
+  ExpectFulfilled(MeshComplexes(ComplexKind::GridTetrahedra, 600));
+}
+
+TEST(ComplexKinds, Pyramids)
+{
+  ExpectFulfilled(MeshComplexes(ComplexKind::Pyramids, 600));
+}
+
+TEST(ComplexKinds, VoronoiCells)
+{
+  ExpectFulfilled(MeshComplexes(ComplexKind::VoronoiCells, 400));
+}
+
+TEST(ComplexKinds, Boxes)
+{
+  ExpectFulfilled(MeshComplexes(ComplexKind::Boxes, 400));
+}
+
+/** Not all fulfil the stronger criteria; all are meshed. */
+TEST(ComplexKinds, Fans)
+{
+  EXPECT_EQ(MeshComplexes(ComplexKind::Fan, 40)[0].Missed.size(), 0u);
+}
+
+TEST(ComplexKinds, TiltedPlates)
+{
+  EXPECT_EQ(MeshComplexes(ComplexKind::TiltedPlates, 10)[0].Missed.size(), 0u);
+}
+
+TEST(ComplexKinds, SlabTetrahedra)
+{
+  EXPECT_EQ(MeshComplexes(ComplexKind::SlabTetrahedra, 4)[0].Missed.size(), 0u);
+}
+
+/** Five points in a slab of 4e-5: edges that pass each other were halved towards that place. */
+TEST(ComplexKinds, EdgesThatPassEachOtherAreSplitThere)
+{
+  ComplexMaker maker(ComplexKind::SlabTetrahedra, 15);
+  BoundaryTriangulatorOutput triangulated;
+  ASSERT_TRUE(TriangulateBoundary(maker.Make(), {}, {}, triangulated).IsOk());
+  ASSERT_EQ(triangulated.Surface.Points.size(), 5u);
+  for (const SurfaceCriterion criterion :
+    { SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
+  {
+    bool isFulfilled = false;
+    EXPECT_LT(MeshComplex(triangulated.Surface, criterion, isFulfilled), 300u);
+    EXPECT_TRUE(isFulfilled);
+  }
+}
