@@ -245,7 +245,7 @@ std::array<double, 3> ChooseSpacing(const double (&spacing)[3], double longestEd
 }
 
 /** Check the mesh, bring its boundary up to date if tetrahedra were peeled off, make outputs. */
-cdm::Status Finish(const Run& run, vtkUnstructuredGrid* grid, vtkPolyData* surface,
+cdm::Status Finish(const Run& run, int criterion, vtkUnstructuredGrid* grid, vtkPolyData* surface,
   vtkSliverRemover* remover, vtkUnstructuredGrid* output, vtkPolyData* boundaryOutput)
 {
   cdm::TetMesh mesh;
@@ -292,7 +292,8 @@ cdm::Status Finish(const Run& run, vtkUnstructuredGrid* grid, vtkPolyData* surfa
   output->ShallowCopy(grid);
   vtkNew<vtkStringArray> certificate;
   certificate->SetName("Certificate");
-  certificate->InsertNextValue(report.GetSummary());
+  certificate->InsertNextValue(report.GetSummary() +
+    (criterion == vtkConformingDelaunayMesher::Delaunay ? "" : "; " + report.GetSphereSummary()));
   output->GetFieldData()->AddArray(certificate);
   if (status.IsOk() && !report.IsValid())
   {
@@ -615,7 +616,7 @@ cdm::Status vtkConformingDelaunayMesher::MeshPolygons(const std::string& prefix,
     status = vtkCoreBridge::Guard(
       [&]
       {
-        return Finish(run, vtkUnstructuredGrid::SafeDownCast(last->GetOutputDataObject(0)),
+        return Finish(run, this->Criterion, vtkUnstructuredGrid::SafeDownCast(last->GetOutputDataObject(0)),
           vtkPolyData::SafeDownCast(lastWithBoundary->GetOutputDataObject(1)), remover, mesh,
           boundary);
       });

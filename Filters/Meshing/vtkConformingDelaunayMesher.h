@@ -29,14 +29,17 @@
  *
  * Outputs: port 0: vtkUnstructuredGrid of VTK_TETRA with the cell array RegionId (int), the point
  * data of the input, interpolated at new points, and the string array Certificate in the field
- * data: one line that says what the check found. Port 1: the boundary of the mesh and its regions
+ * data: one line that says what the check found, with a stronger criterion also between which
+ * regions it is missed. Port 1: the boundary of the mesh and its regions
  * as triangles, with BoundaryLabels (int, 2 components), StructuralFacetId (int: see
- * vtkDelaunaySurfaceRefiner) and the cell data of the input polygons.
+ * vtkDelaunaySurfaceRefiner) and the cell data of the input polygons; where the criterion is missed
+ * also Unresolved (unsigned char), 1 for triangles that miss it.
  * Port 2: the problems found in the input, see vtkBoundaryTriangulator.
  *
  * Guarantees: those of the stages. Tetrahedra are positively oriented, none is flat, circumspheres
  * are empty, the boundary is kept, points of the input keep their coordinates. A result that the
- * check finds at fault comes with a warning. Deterministic.
+ * check finds at fault comes with a warning. A surface that cannot fulfil the criterion within the
+ * limits is meshed all the same, with a warning. Deterministic.
  *
  * Failure: the error of the stage that failed, with the cells of this filter's input, and empty
  * outputs; port 2 still lists what was found. An aborted run has empty outputs. An error in a block

@@ -402,6 +402,12 @@ TEST(MeshChecks, CriteriaForBoundariesAreCounted)
   EXPECT_GT(edges, 0);
   EXPECT_EQ(spheres, Check(model, false).SmallestSphereViolations);
   EXPECT_EQ(edges, Check(model, false).EdgeSphereViolations);
+  ASSERT_EQ(1u, Check(model, false).Interfaces.size());
+  EXPECT_EQ(spheres, Check(model, false).Interfaces[0].Violations);
+  EXPECT_EQ(std::to_string(spheres) +
+      " of 4 boundary triangles have a point in their smallest sphere: " + std::to_string(spheres) +
+      " of 4 outside of region 0",
+    Check(model, false).GetSphereSummary());
   EXPECT_TRUE(Check(model, false).IsValid()) << "these criteria are no condition for a valid mesh";
 }
 

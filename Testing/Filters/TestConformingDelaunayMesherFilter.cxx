@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "../Core/ComplexKinds.h"
 #include "FilterTesting.h"
 
 #include <vtkCleanPolyData.h>
@@ -134,6 +135,45 @@ TEST(ConformingDelaunayMesherFilter, PeelingLeavesAValidMesh)
   EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
   EXPECT_TRUE(Contains(GetCertificate(filter->GetOutput()), ": valid"))
     << GetCertificate(filter->GetOutput());
+}
+
+/** Random tetrahedra of many regions in a slab: the stronger criteria are beyond the rules. */
+TEST(ConformingDelaunayMesherFilter, MeshesWhatMissesTheCriterion)
+{
+  cdm::ComplexMaker maker(cdm::ComplexKind::SlabTetrahedra, 1);
+  const cdm::PolygonSoup soup = maker.Make();
+  SurfaceBuilder builder;
+  for (const cdm::Vec3& point : soup.Points)
+  {
+    builder.AddPoint(point[0], point[1], point[2]);
+  }
+  for (cdm::Id i = 0; i < soup.GetNumberOfPolygons(); ++i)
+  {
+    const cdm::Id* const polygon = soup.GetPolygon(i);
+    builder.AddPolygon({ polygon, polygon + soup.GetPolygonSize(i) },
+      static_cast<int>(soup.Labels[i].Front), static_cast<int>(soup.Labels[i].Back));
+  }
+  for (const bool hasSteinerPoints : { false, true })
+  {
+    vtkNew<vtkConformingDelaunayMesher> filter;
+    filter->SetInputData(builder.Build(true));
+    filter->SetCriterionToSmallestSphere();
+    filter->SetAddSteinerPoints(hasSteinerPoints);
+    vtkNew<EventRecorder> recorder;
+    recorder->Watch(filter);
+    filter->Update();
+    EXPECT_EQ(recorder->Errors, "");
+    EXPECT_TRUE(Contains(recorder->Warnings, "do not fulfil the criterion within the limits"));
+    EXPECT_EQ(Contains(recorder->Warnings, "no Steiner points"), hasSteinerPoints);
+    EXPECT_GT(filter->GetOutput()->GetNumberOfCells(), 0);
+    vtkDataArray* marks =
+      FindArray(GetSurface(filter, 1)->GetCellData(), "Unresolved", 1, VTK_UNSIGNED_CHAR);
+    ASSERT_NE(marks, nullptr);
+    EXPECT_EQ(marks->GetRange()[1], 1.0);
+    const std::string certificate = GetCertificate(filter->GetOutput());
+    EXPECT_TRUE(Contains(certificate, ": valid; ")) << certificate;
+    EXPECT_TRUE(Contains(certificate, " between regions ")) << certificate;
+  }
 }
 
 TEST(ConformingDelaunayMesherFilter, WorksWithoutSliverRemoval)

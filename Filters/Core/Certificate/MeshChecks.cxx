@@ -17,6 +17,7 @@
 #include <cstdio>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -156,6 +157,7 @@ private:
   bool CheckFacets(const ExecutionContext& context);
   bool CheckSpheres(const SphereCriteria& criteria, const ExecutionContext& context);
   bool CheckBoundarySpheres(const SphereCriteria& criteria, const ExecutionContext& context);
+  void CountByInterface(const std::vector<char>& isEmpty);
   void FinishVolumes();
 
   Id FindMeshPoint(Id boundaryPoint) const;
@@ -182,6 +184,7 @@ private:
   std::vector<Id> SortedPoints;
   /** Outer and interface facets of the mesh. */
   std::vector<TriangleIds> BorderFacets;
+  std::vector<RegionPair> BorderRegions;
   /** Ascending ids of the regions, and what is known of each. */
   std::vector<Id> RegionIds;
   std::vector<Region> Regions;
@@ -538,6 +541,8 @@ bool Checker::CheckFacets(const ExecutionContext& context)
     if (isBorder)
     {
       this->BorderFacets.push_back(begin->Points);
+      const auto sides = std::minmax(regions.Front, regions.Back);
+      this->BorderRegions.push_back({ sides.first, sides.second });
       if (this->Boundary != nullptr && triangle == triangleEnd)
       {
         ++this->Report.UnboundFacets;
@@ -614,27 +619,47 @@ bool Checker::CheckBoundarySpheres(const SphereCriteria& criteria, const Executi
     edges.push_back({ ids[0], ids[2] });
   }
   SortUnique(edges);
-  const auto countFilled =
-    [&](const auto& simplices, const ExecutionContext& part, const char* activity, Id& result)
+  const auto findEmpty =
+    [&](const auto& simplices, const ExecutionContext& part, const char* activity, Id& filled)
   {
-    std::atomic<Id> filled{ 0 };
+    // A degenerate triangle has no sphere; it shows as flat tetrahedra.
+    std::vector<char> isEmpty(simplices.size(), 1);
     const bool isDone =
       ParallelLoop(simplices.size(), { this->NumberOfThreads, ContinueInterval }, part, activity,
         [&](std::size_t begin, std::size_t end, std::size_t)
         {
           for (std::size_t i = begin; i < end; ++i)
           {
-            filled += criteria.HasEmptySmallestSphere(simplices[i]) ? 0 : 1;
+            isEmpty[i] = criteria.HasEmptySmallestSphere(simplices[i]);
           }
         });
-    result = filled;
-    return isDone;
+    filled = static_cast<Id>(std::count(isEmpty.begin(), isEmpty.end(), 0));
+    return std::make_pair(isDone, isEmpty);
   };
-  // A degenerate triangle has no sphere; it shows as flat tetrahedra.
-  return countFilled(this->BorderFacets, context.Part(0.0, 0.5), "Checking boundary triangles",
-           this->Report.SmallestSphereViolations) &&
-    countFilled(
-      edges, context.Part(0.5, 1.0), "Checking boundary edges", this->Report.EdgeSphereViolations);
+  const auto triangles = findEmpty(this->BorderFacets, context.Part(0.0, 0.5),
+    "Checking boundary triangles", this->Report.SmallestSphereViolations);
+  this->CountByInterface(triangles.second);
+  return triangles.first &&
+    findEmpty(
+      edges, context.Part(0.5, 1.0), "Checking boundary edges", this->Report.EdgeSphereViolations)
+      .first;
+}
+
+void Checker::CountByInterface(const std::vector<char>& isEmpty)
+{
+  std::map<std::pair<Id, Id>, InterfaceSpheres> interfaces;
+  for (std::size_t i = 0; i < isEmpty.size(); ++i)
+  {
+    const RegionPair& regions = this->BorderRegions[i];
+    InterfaceSpheres& found = interfaces[{ regions.Front, regions.Back }];
+    found.Regions = regions;
+    ++found.Facets;
+    found.Violations += isEmpty[i] ? 0 : 1;
+  }
+  for (const auto& item : interfaces)
+  {
+    this->Report.Interfaces.push_back(item.second);
+  }
 }
 
 /** "3 name" with the name's plural where needed. */
@@ -725,6 +750,27 @@ std::string MeshCheckReport::GetSummary() const
     text += "empty";
   }
   return text + (this->IsValid() ? ": valid" : ": not valid");
+}
+
+std::string MeshCheckReport::GetSphereSummary() const
+{
+  Id facets = 0;
+  std::string places;
+  for (const InterfaceSpheres& spheres : this->Interfaces)
+  {
+    facets += spheres.Facets;
+    if (spheres.Violations != 0)
+    {
+      const std::string back = std::to_string(spheres.Regions.Back);
+      places += (places.empty() ? ": " : ", ") + std::to_string(spheres.Violations) + " of " +
+        std::to_string(spheres.Facets) +
+        (spheres.Regions.Front == OutsideRegion
+            ? " outside of region " + back
+            : " between regions " + std::to_string(spheres.Regions.Front) + " and " + back);
+    }
+  }
+  return std::to_string(this->SmallestSphereViolations) + " of " + std::to_string(facets) +
+    " boundary triangles have a point in their smallest sphere" + places;
 }
 
 Status CheckMeshInput(const TetMesh& mesh, const TriangleMesh* boundary)

@@ -51,6 +51,16 @@ struct RegionVolume
   double GetRelativeError() const;
 };
 
+/** The outer or interface facets between two regions, whichever side is in front. */
+struct InterfaceSpheres
+{
+  /** Front <= Back. */
+  RegionPair Regions;
+  Id Facets = 0;
+  /** Those whose smallest sphere holds a point (Crit. 3.1). */
+  Id Violations = 0;
+};
+
 struct MeshCheckReport
 {
   Id Tetrahedra = 0;
@@ -84,6 +94,8 @@ struct MeshCheckReport
   double LargestDihedralAngle = 0.0;
   /** Ascending by region. */
   std::vector<RegionVolume> Regions;
+  /** Ascending by regions. */
+  std::vector<InterfaceSpheres> Interfaces;
   /** Up to ten tetrahedra at fault, for messages. */
   std::vector<Id> Examples;
 
@@ -91,6 +103,8 @@ struct MeshCheckReport
   bool IsValid(double volumeTolerance = 1e-12) const;
   /** One line of text. */
   std::string GetSummary() const;
+  /** Another one: where the smallest spheres of the boundary are empty (Crit. 3.1). */
+  std::string GetSphereSummary() const;
 };
 
 /**

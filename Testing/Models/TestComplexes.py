@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Small random complexes that the stronger criteria did not end on: all of them are meshed now.
+
+    TestComplexes.py --shared FOLDER --validator PROGRAM --output FOLDER
+
+Each is meshed by the composite mesher with each criterion, with and without Steiner points. Slabs
+may miss a stronger criterion: then there is a mesh, a warning, and the mark Unresolved on the
+triangles. All others have to fulfil it, and no tetrahedron misses the radius-edge ratio or the
+dihedral angle but at sharp angles. An independent validator has to find each mesh Delaunay and
+conforming. Prints a table. Exit status 77: no complexes.
+"""
+import argparse
+import csv
+import os
+import sys
+import time
+
+from TestSteinerModels import validate
+from conforming_delaunay import vtkConformingDelaunayMesher
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+CRITERIA = ("Delaunay", "SmallestSphere", "SmallestSphereAndEdges")
+# The validator's counts that have to be zero with each of them.
+MUST_BE_ZERO = ((), ("equatorial_violations",),
+                ("equatorial_violations", "diametral_violations_structural"))
+INEVITABLE = 4
+
+
+class Messages:
+    """The errors and warnings of a filter."""
+
+    def __init__(self, algorithm):
+        self.errors = self.warnings = 0
+        algorithm.AddObserver("ErrorEvent", self.add_error)
+        algorithm.AddObserver("WarningEvent", self.add_warning)
+
+    def add_error(self, *_):
+        self.errors += 1
+
+    def add_warning(self, *_):
+        self.warnings += 1
+
+
+def mesh(path, criterion, has_steiner_points):
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(path)
+    mesher = vtkConformingDelaunayMesher()
+    mesher.SetInputConnection(reader.GetOutputPort())
+    mesher.SetCriterion(criterion)
+    mesher.SetAddSteinerPoints(has_steiner_points)
+    messages = Messages(mesher)
+    mesher.Update()
+    return mesher, messages
+
+
+def find_faults(mesher, messages, is_thin):
+    """What is wrong without a look at the mesh's geometry, and whether the criterion is fulfilled."""
+    wrong = ["%d errors" % messages.errors] if messages.errors else []
+    if mesher.GetOutput(0).GetNumberOfCells() == 0:
+        return wrong + ["no mesh"], False
+    is_fulfilled = not mesher.GetOutputDataObject(1).GetCellData().HasArray("Unresolved")
+    if not is_fulfilled and not is_thin:
+        wrong.append("the criterion is missed")
+    if not is_fulfilled and not messages.warnings:
+        wrong.append("no warning")
+    if is_fulfilled and mesher.GetAddSteinerPoints():
+        faults = mesher.GetOutput(0).GetCellData().GetArray("RefinementFault")
+        if faults:
+            faults = vtk_to_numpy(faults)
+            missed = int(((faults != 0) & (faults != INEVITABLE)).sum())
+            if missed and not is_thin:
+                wrong.append("%d tetrahedra miss a limit" % missed)
+    return wrong, is_fulfilled
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--shared", required=True)
+    parser.add_argument("--validator", required=True)
+    parser.add_argument("--output", required=True)
+    arguments = parser.parse_args()
+    folder = os.path.join(arguments.shared, "complexes")
+    index = os.path.join(folder, "INDEX.csv")
+    if not os.path.isfile(index):
+        print("Skipped: there is no " + index)
+        return 77
+    with open(index, newline="") as file:
+        files = [row["file"] for row in csv.DictReader(file)]
+    failures = []
+    print("%-18s %-22s %7s %8s %8s %9s %8s" % (
+        "complex", "criterion", "Steiner", "points", "tets", "fulfilled", "seconds"))
+    for name in files:
+        path = os.path.join(folder, name)
+        for criterion, criterion_name in enumerate(CRITERIA):
+            for has_steiner_points in (False, True):
+                start = time.process_time()
+                mesher, messages = mesh(path, criterion, has_steiner_points)
+                grid = mesher.GetOutput(0)
+                wrong, is_fulfilled = find_faults(mesher, messages, name.startswith("slab"))
+                print("%-18s %-22s %7s %8d %8d %9s %8.2f" % (
+                    name, criterion_name, has_steiner_points, grid.GetNumberOfPoints(),
+                    grid.GetNumberOfCells(), is_fulfilled, time.process_time() - start), flush=True)
+                if grid.GetNumberOfCells():
+                    counts = MUST_BE_ZERO[criterion] if is_fulfilled else ()
+                    wrong += validate(arguments.validator, path, grid,
+                                      os.path.join(arguments.output, name + ".vtu"), counts)
+                if wrong:
+                    failures.append("%s, %s, Steiner points %s: %s" % (
+                        name, criterion_name, has_steiner_points, "; ".join(wrong)))
+    print("\n".join(failures) or "all as they should be")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
