@@ -3,9 +3,10 @@
 // the table that is printed says how many fulfil the criterion asked for, and at which price.
 //
 // CDM_COMPLEXES=12500 build/bin/TestComplexKinds makes so many of each kind, CDM_FIRST_SEED other
-// ones.
+// ones, CDM_STEINER_COMPLEXES=1000 so many with Steiner points.
 #include "ComplexKinds.h"
 #include "Core/Certificate/MeshChecks.h"
+#include "Core/Improvement/SteinerPointRefiner.h"
 #include "Core/Surface/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
@@ -132,8 +133,97 @@ KindCounts MeshComplexes(ComplexKind kind, std::uint64_t usualCount)
       std::printf(" %llu", static_cast<unsigned long long>(seed));
     }
     std::printf("\n");
+    std::fflush(stdout);
   }
   return counts;
+}
+
+/** What the Steiner stage makes of complexes of one kind. */
+struct SteinerCounts
+{
+  int Complexes = 0;
+  /** With all triangles as the criterion wants them. */
+  int Fulfilled = 0;
+  /** With no triangle in fault, and no tetrahedron but at sharp angles and in thin layers. */
+  int Clean = 0;
+  std::vector<std::uint64_t> Missed;
+};
+
+/** Puts Steiner points into a complex; what the report says is what the checker finds. */
+void RefineComplex(const TriangleMesh& surface, const SteinerPointRefinerOptions& options,
+  std::uint64_t seed, SteinerCounts& counts)
+{
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &surface;
+  DelaunaySurfaceRefinerOptions surfaceOptions;
+  surfaceOptions.Criterion = options.Criterion;
+  DelaunaySurfaceRefinerOutput refined;
+  ASSERT_TRUE(RefineDelaunaySurface(input, surfaceOptions, {}, refined).IsOk());
+  AdvancingFrontTetrahedralizerInput mesherInput;
+  mesherInput.Surface = &refined.Surface;
+  AdvancingFrontTetrahedralizerOutput mesh;
+  ASSERT_TRUE(TetrahedralizeByAdvancingFront(mesherInput, {}, {}, mesh).IsOk());
+
+  SteinerPointRefinerInput steinerInput;
+  steinerInput.Mesh = &mesh.Mesh;
+  steinerInput.Boundary = &mesh.Boundary;
+  SteinerPointRefinerOutput output;
+  const Status status = RefineBySteinerPoints(steinerInput, options, {}, output);
+  ASSERT_TRUE(status.IsOk()) << status.Message;
+  MeshCheckReport check;
+  EXPECT_TRUE(CheckTetMesh(output.Mesh, &output.Boundary, {}, check).IsOk());
+  EXPECT_TRUE(check.IsValid(VolumeTolerance)) << check.GetSummary();
+  const SteinerPointRefinerReport& report = output.Report;
+  EXPECT_LE(check.SmallestSphereViolations, report.WeakTriangles) << check.GetSphereSummary();
+  ++counts.Complexes;
+  if (report.UnresolvedTriangles == 0)
+  {
+    ++counts.Fulfilled;
+    counts.Clean += report.TooLarge + report.BadlyShaped + report.Slivers == 0;
+  }
+  else
+  {
+    counts.Missed.push_back(seed);
+  }
+}
+
+/** Ratios of 2, 1.4 and 1.2, angles of 15 and 20 degrees, in turns; both stronger criteria. */
+void RefineComplexes(ComplexKind kind, std::uint64_t usualCount)
+{
+  const std::uint64_t first = GetFromEnvironment("CDM_FIRST_SEED", 1);
+  const std::uint64_t count = GetFromEnvironment("CDM_STEINER_COMPLEXES", usualCount);
+  for (const SurfaceCriterion criterion :
+    { SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
+  {
+    SteinerCounts counts;
+    for (std::uint64_t seed = first; seed < first + count; ++seed)
+    {
+      BoundaryTriangulatorOutput triangulated;
+      if (!TriangulateBoundary(ComplexMaker(kind, seed).Make(), {}, {}, triangulated).IsOk() ||
+        triangulated.Surface.Triangles.empty())
+      {
+        continue;
+      }
+      SCOPED_TRACE(std::string(GetComplexKindName(kind)) + ", seed " + std::to_string(seed) +
+        ", criterion " + std::to_string(static_cast<int>(criterion)));
+      static const double ratios[] = { 2.0, 1.4, 1.2 };
+      SteinerPointRefinerOptions options;
+      options.Criterion = criterion;
+      options.RadiusEdgeRatio = ratios[seed % 3];
+      options.DihedralAngleTarget = seed % 2 == 0 ? 15.0 : 20.0;
+      RefineComplex(triangulated.Surface, options, seed, counts);
+    }
+    std::printf("%-14s criterion %d, Steiner points: %d meshed, %d fulfil it, %d are clean; missed "
+                "by seeds",
+      GetComplexKindName(kind), static_cast<int>(criterion), counts.Complexes, counts.Fulfilled,
+      counts.Clean);
+    for (std::uint64_t seed : counts.Missed)
+    {
+      std::printf(" %llu", static_cast<unsigned long long>(seed));
+    }
+    std::printf("\n");
+    std::fflush(stdout);
+  }
 }
 
 /** The criterion Delaunay always, the others but for one in a hundred. */
@@ -187,6 +277,22 @@ TEST(ComplexKinds, SlabTetrahedra)
 {
   EXPECT_EQ(MeshComplexes(ComplexKind::SlabTetrahedra, 4)[0].Missed.size(), 0u);
 }
+
+/** But for tilted plates: layers a thousand times as wide as thick get 100,000 tetrahedra each. */
+class SteinerPointsInComplexes : public testing::TestWithParam<int>
+{
+};
+
+TEST_P(SteinerPointsInComplexes, BoundaryIsKept)
+{
+  const auto kind = static_cast<ComplexKind>(this->GetParam());
+  RefineComplexes(kind, kind == ComplexKind::SlabTetrahedra ? 2 : 6);
+}
+
+INSTANTIATE_TEST_SUITE_P(ComplexKinds, SteinerPointsInComplexes,
+  testing::Range(0, static_cast<int>(ComplexKind::TiltedPlates)),
+  [](const testing::TestParamInfo<int>& info)
+  { return std::string(GetComplexKindName(static_cast<ComplexKind>(info.param))); });
 
 /** Five points in a slab of 4e-5: edges that pass each other were halved towards that place. */
 TEST(ComplexKinds, EdgesThatPassEachOtherAreSplitThere)

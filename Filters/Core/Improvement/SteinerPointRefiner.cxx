@@ -97,6 +97,10 @@ private:
   DelaunaySurfaceRefinerOptions GetSurfaceOptions() const;
   RefinedMeshOptions GetRoundOptions() const;
   Status StartRound();
+  Status StartRoundOn(const TriangleMesh& surface, const std::vector<InteriorPoint>& interior,
+    const std::vector<Id>& sourceCells, const ExecutionContext& context);
+  void NoteState();
+  Status RestoreRound(const ExecutionContext& context);
   bool CanSplitInPlace() const;
   Status SplitBoundary();
   Status RefineRound(bool isShapeTested);
@@ -117,6 +121,7 @@ private:
   };
   Status RefineSizes();
   Status RefineShapes();
+  Status FinishSlivers();
   Status MendSlivers(Outcome& outcome);
   bool RequestCouplings();
   Status MoveOrRequest(Outcome& outcome);
@@ -170,6 +175,18 @@ private:
   bool IsSharpPerturbed = false;
   /** Whether the last round has split nothing of what was requested. */
   bool IsStuck = false;
+  /**
+   * What the mesh is made of while all smallest spheres are empty: before points that are put into
+   * them, or moved, ask for splits.
+   */
+  struct
+  {
+    TriangleMesh Surface;
+    std::vector<StructuralEdge> Edges;
+    std::vector<InteriorPoint> Interior;
+  } Noted;
+  /** Whether a split has asked for what cannot be had: the boundary stays as it was before. */
+  bool IsBoundaryFinal = false;
 };
 
 Id Refiner::GetMaximumNewPoints(
@@ -341,54 +358,67 @@ Status Refiner::StartRound()
   }
   if (this->Round && !refined.WeakTriangles.empty())
   {
-    // Points inside would make the boundary vanish there: what was requested cannot be had.
-    ++this->Output.Report.Rounds;
-    this->IsStuck = true;
-    return Status();
+    return this->RestoreRound(context.Part(0.3, 1.0));
   }
   std::vector<InteriorPoint> kept;
   for (Id p : refined.KeptMeshPoints)
   {
     kept.push_back(this->Interior[p]);
   }
+  this->Edges = std::move(refined.StructuralEdges);
+  status = this->StartRoundOn(
+    refined.Surface, kept, refined.Surface.SourceCells, context.Part(0.3, 0.4));
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  this->IsStuck = refined.NewPoints.empty();
+  this->Output.Report.BoundaryPoints += static_cast<Id>(refined.NewPoints.size());
+  this->Output.Report.UnresolvedTriangles = static_cast<Id>(refined.UnresolvedTriangles.size());
+  this->Output.Report.WeakTriangles = static_cast<Id>(refined.WeakTriangles.size());
+  return status;
+}
 
-  points.clear();
-  for (const InteriorPoint& point : kept)
+/**
+ * Tetrahedralizes a surface whose triangles come from those of Surface, which it becomes, with these
+ * points inside.
+ */
+Status Refiner::StartRoundOn(const TriangleMesh& surface,
+  const std::vector<InteriorPoint>& interior, const std::vector<Id>& sourceCells,
+  const ExecutionContext& context)
+{
+  std::vector<Vec3> points;
+  for (const InteriorPoint& point : interior)
   {
     points.push_back(point.Position);
   }
   AdvancingFrontTetrahedralizerInput boundary;
-  boundary.Surface = &refined.Surface;
+  boundary.Surface = &surface;
   boundary.MeshPoints = &points;
   AdvancingFrontTetrahedralizerOptions threads;
   threads.NumberOfThreads = this->Options.NumberOfThreads;
   AdvancingFrontTetrahedralizerOutput made;
-  status = TetrahedralizeByAdvancingFront(boundary, threads, context.Part(0.3, 0.4), made);
+  Status status = TetrahedralizeByAdvancingFront(boundary, threads, context, made);
   if (!status.IsOk())
   {
-    return this->Translate(std::move(status), refined.Surface.SourceCells);
+    return this->Translate(std::move(status), sourceCells);
   }
 
   // From here on the round counts.
   ++this->Output.Report.Rounds;
   this->CollectReport();
-  this->IsStuck = refined.NewPoints.empty();
-  this->Output.Report.BoundaryPoints += static_cast<Id>(refined.NewPoints.size());
-  this->Output.Report.UnresolvedTriangles = static_cast<Id>(refined.UnresolvedTriangles.size());
-  this->Output.Report.WeakTriangles = static_cast<Id>(refined.WeakTriangles.size());
   this->Interior.clear();
   for (Id p : made.MeshPointSources)
   {
-    this->Interior.push_back(kept[p]);
+    this->Interior.push_back(interior[p]);
   }
   this->Round.reset();
   for (Id& source : made.Boundary.SourceCells)
   {
-    source = this->Surface.SourceCells[refined.Surface.SourceCells[source]];
+    source = this->Surface.SourceCells[sourceCells[source]];
   }
+  made.Boundary.Points = surface.Points;
   this->Surface = std::move(made.Boundary);
-  this->Surface.Points = std::move(refined.Surface.Points);
-  this->Edges = std::move(refined.StructuralEdges);
   this->CollectSurfaceSizes();
   this->Round = std::make_unique<RefinedMesh>(std::move(made.Mesh),
     RefinedBoundary{ this->Surface, this->Edges, this->Edges }, this->Interior, this->Memory,
@@ -398,6 +428,29 @@ Status Refiner::StartRound()
   this->Round->NoteNewPoints(this->IsNew);
   std::fill(this->IsNew.begin(), this->IsNew.end(), 0);
   return status;
+}
+
+void Refiner::NoteState()
+{
+  this->Noted = { this->Surface, this->Edges, this->Round->GetInterior() };
+}
+
+/**
+ * Where splits that were requested would leave triangles without empty smallest spheres: the mesh as
+ * it was before, whose boundary is split no more. Part of the splits may have been made already.
+ */
+Status Refiner::RestoreRound(const ExecutionContext& context)
+{
+  this->IsStuck = true;
+  this->IsBoundaryFinal = true;
+  this->Output.Report.BoundaryPoints -= static_cast<Id>(
+    this->Surface.Points.size() - this->Noted.Surface.Points.size());
+  this->Surface.SourceCells = this->Noted.Surface.SourceCells;
+  this->Edges = std::move(this->Noted.Edges);
+  std::vector<Id> sources(this->Surface.SourceCells.size());
+  std::iota(sources.begin(), sources.end(), 0);
+  return this->StartRoundOn(
+    this->Noted.Surface, this->Noted.Interior, sources, context);
 }
 
 /** Whether there is little to be split, and facets are plane: curved ones may have to be tried. */
@@ -706,6 +759,7 @@ Status Refiner::RefineSizes()
   while (status.IsOk() && !this->IsStuck && this->CountRequests() > 0 && !this->Round->IsFull() &&
     this->Output.Report.Rounds < MaximumRounds)
   {
+    this->NoteState();
     status = this->SplitBoundary();
     status = status.IsOk() ? this->RefineRound(false) : status;
   }
@@ -725,8 +779,14 @@ Status Refiner::RefineShapes()
   while (status.IsOk() && outcome != Outcome::Done)
   {
     status = this->RefineRound(true);
+    this->NoteState();
     outcome = Outcome::Open;
-    if (status.IsOk() &&
+    if (status.IsOk() && this->IsBoundaryFinal)
+    {
+      status = this->FinishSlivers();
+      outcome = Outcome::Done;
+    }
+    else if (status.IsOk() &&
       (this->IsStuck || this->Round->IsFull() || this->CountRequests() <= FewRequests))
     {
       status = this->MendSlivers(outcome);
@@ -743,6 +803,20 @@ Status Refiner::RefineShapes()
       this->IsStuck = this->IsStuck && outcome != Outcome::Moved;
     }
   }
+  return status;
+}
+
+/** By points inside alone: the boundary is final. */
+Status Refiner::FinishSlivers()
+{
+  Status status;
+  if (this->Options.DihedralAngleTarget > 0.0)
+  {
+    status = this->PerturbSlivers(SliverMeans::Points);
+    status = status.IsOk() ? this->RefineRound(true) : status;
+    status = status.IsOk() ? this->PerturbLastSlivers() : status;
+  }
+  this->RequestCouplings();
   return status;
 }
 
