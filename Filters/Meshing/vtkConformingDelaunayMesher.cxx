@@ -292,8 +292,10 @@ cdm::Status Finish(const Run& run, int criterion, vtkUnstructuredGrid* grid, vtk
   output->ShallowCopy(grid);
   vtkNew<vtkStringArray> certificate;
   certificate->SetName("Certificate");
-  certificate->InsertNextValue(report.GetSummary() +
-    (criterion == vtkConformingDelaunayMesher::Delaunay ? "" : "; " + report.GetSphereSummary()));
+  // The verdict comes last: scripts look for it there.
+  certificate->InsertNextValue(
+    (criterion == vtkConformingDelaunayMesher::Delaunay ? "" : report.GetSphereSummary() + "; ") +
+    report.GetSummary());
   output->GetFieldData()->AddArray(certificate);
   if (status.IsOk() && !report.IsValid())
   {
