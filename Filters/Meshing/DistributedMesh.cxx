@@ -69,10 +69,10 @@ vtkSmartPointer<vtkUnsignedCharArray> MakeGhostArray(std::size_t count)
 } // namespace
 
 //--------------------------------------------------------------------------------------------------
-DistributedMesh::DistributedMesh(ProcessGroup& processes, const cdm::ExecutionContext& context,
-  int numberOfThreads, int numberOfGhostLevels)
-  : Processes(processes), Context(context), NumberOfThreads(numberOfThreads),
-    NumberOfGhostLevels(numberOfGhostLevels), Input(processes), Surface(processes)
+DistributedMesh::DistributedMesh(
+  ProcessGroup& processes, const cdm::ExecutionContext& context, int numberOfGhostLevels)
+  : Processes(processes), Context(context), NumberOfGhostLevels(numberOfGhostLevels),
+    Input(processes), Surface(processes)
 {
 }
 
@@ -196,8 +196,8 @@ cdm::Status DistributedMesh::Tetrahedralize()
     begin = end;
     end += 0.5 * (0.85 - end);
     ++this->NumberOfRounds;
-    cdm::Status status = this->Processes.Do(
-      [&] { return this->Part->Update(this->NumberOfThreads, part.Part(0.0, 0.9)); });
+    cdm::Status status =
+      this->Processes.Do([&] { return this->Part->Update(part.Part(0.0, 0.9)); });
     std::vector<std::vector<cdm::ConflictQuery>> queries;
     if (status.IsOk())
     {
@@ -309,7 +309,7 @@ cdm::Status DistributedMesh::FindRegions()
           this->PartTriangles.push_back(static_cast<cdm::Id>(t));
         }
       }
-      return cdm::BuildNeighbors(this->Mesh);
+      return cdm::BuildNeighbors(this->Mesh, this->Context.GetNumberOfThreads());
     });
   if (!status.IsOk())
   {

@@ -33,8 +33,8 @@ class vtkUnstructuredGrid;
 class DistributedMesh
 {
 public:
-  DistributedMesh(ProcessGroup& processes, const cdm::ExecutionContext& context,
-    int numberOfThreads, int numberOfGhostLevels);
+  DistributedMesh(
+    ProcessGroup& processes, const cdm::ExecutionContext& context, int numberOfGhostLevels);
 
   /** Called by all processes with their pieces; the second one may be null. */
   cdm::Status Run(vtkPointSet* input, vtkPointSet* meshPoints);
@@ -76,7 +76,6 @@ private:
 
   ProcessGroup& Processes;
   const cdm::ExecutionContext& Context;
-  int NumberOfThreads;
   int NumberOfGhostLevels;
 
   DistributedPoints Input;

@@ -90,7 +90,7 @@ cdm::Status ProcessGroup::Agree(const cdm::Status& own) const
 //--------------------------------------------------------------------------------------------------
 cdm::Status ProcessGroup::Do(const std::function<cdm::Status()>& work) const
 {
-  return this->Agree(vtkCoreBridge::Guard(work));
+  return this->Agree(cdm::RunGuarded(work));
 }
 
 //--------------------------------------------------------------------------------------------------

@@ -16,7 +16,6 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
-#include <vtkSMPTools.h>
 #include <vtkUnstructuredGrid.h>
 
 vtkStandardNewMacro(vtkAdvancingFrontTetrahedralizer);
@@ -70,7 +69,7 @@ int vtkAdvancingFrontTetrahedralizer::RequestData(
   std::vector<cdm::Vec3> meshPoints;
   std::vector<cdm::RegionSeed> seeds;
   cdm::AdvancingFrontTetrahedralizerOutput result;
-  const cdm::Status status = vtkCoreBridge::Guard(
+  const cdm::Status status = cdm::RunGuarded(
     [&]
     {
       cdm::Status step = input->GetNumberOfPolys() + input->GetNumberOfStrips() > 0
@@ -89,7 +88,6 @@ int vtkAdvancingFrontTetrahedralizer::RequestData(
         cdm::AdvancingFrontTetrahedralizerOptions options;
         options.CloseOpenBoundary = this->CloseOpenBoundary;
         options.MaximumNumberOfTetrahedra = this->MaximumNumberOfTetrahedra;
-        options.NumberOfThreads = vtkSMPTools::GetEstimatedNumberOfThreads();
         step = cdm::TetrahedralizeByAdvancingFront(
           { &surface, &meshPoints, &seeds }, options, vtkCoreBridge::MakeContext(this), result);
         vtkCoreBridge::OffsetCells(step, vtkCoreBridge::GetFirstPolygon(input));

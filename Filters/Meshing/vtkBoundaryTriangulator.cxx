@@ -221,7 +221,7 @@ int vtkBoundaryTriangulator::RequestData(
   cdm::PolygonSoup soup;
   std::vector<vtkIdType> cells;
   cdm::BoundaryTriangulatorOutput result;
-  const cdm::Status status = vtkCoreBridge::Guard(
+  const cdm::Status status = cdm::RunGuarded(
     [&]
     {
       cdm::Status step = vtkCoreBridge::ToPolygonSoup(input, soup, cells);

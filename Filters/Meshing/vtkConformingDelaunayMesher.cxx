@@ -261,16 +261,15 @@ cdm::Status Finish(const Run& run, int criterion, vtkUnstructuredGrid* grid, vtk
     return status;
   }
   const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(run.Filter).Part(0.95, 1.0);
-  const int threads = vtkCoreBridge::GetNumberOfThreads();
   if (remover->GetNumberOfPeeledTetrahedra() > 0)
   {
     cdm::MeshCheckReport before;
-    status = cdm::CheckTetMesh(mesh, &boundary, context.Part(0.0, 0.5), before, threads);
+    status = cdm::CheckTetMesh(mesh, &boundary, context.Part(0.0, 0.5), before);
     const double allowed = GetPeeledVolumeRatio(boundary, before, remover->GetFlatnessRatio());
     boundary = UpdateBoundary(mesh, boundary);
     if (status.IsOk())
     {
-      status = cdm::CheckTetMesh(mesh, &boundary, context.Part(0.5, 1.0), report, threads);
+      status = cdm::CheckTetMesh(mesh, &boundary, context.Part(0.5, 1.0), report);
     }
     // The new facets are the mesh's own: only those before tell whether more is missing.
     if (before.LargestVolumeError > allowed)
@@ -284,7 +283,7 @@ cdm::Status Finish(const Run& run, int criterion, vtkUnstructuredGrid* grid, vtk
   }
   else
   {
-    status = cdm::CheckTetMesh(mesh, &boundary, context, report, threads);
+    status = cdm::CheckTetMesh(mesh, &boundary, context, report);
     boundaryOutput->ShallowCopy(surface);
   }
   boundaryOutput->GetCellData()->RemoveArray(vtkCoreBridge::InputCellName);
@@ -615,10 +614,11 @@ cdm::Status vtkConformingDelaunayMesher::MeshPolygons(const std::string& prefix,
   }
   if (status.IsOk())
   {
-    status = vtkCoreBridge::Guard(
+    status = cdm::RunGuarded(
       [&]
       {
-        return Finish(run, this->Criterion, vtkUnstructuredGrid::SafeDownCast(last->GetOutputDataObject(0)),
+        return Finish(run, this->Criterion,
+          vtkUnstructuredGrid::SafeDownCast(last->GetOutputDataObject(0)),
           vtkPolyData::SafeDownCast(lastWithBoundary->GetOutputDataObject(1)), remover, mesh,
           boundary);
       });

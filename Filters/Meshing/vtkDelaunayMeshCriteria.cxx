@@ -222,7 +222,7 @@ int vtkDelaunayMeshCriteria::RequestData(
   cdm::TriangleMesh boundary;
   cdm::MeshCriteriaReport report;
   vtkDataSet* faulty = input;
-  const cdm::Status status = vtkCoreBridge::Guard(
+  const cdm::Status status = cdm::RunGuarded(
     [&]
     {
       cdm::Status step = vtkCoreBridge::ToTetrahedra(input, mesh, cells);
@@ -233,8 +233,8 @@ int vtkDelaunayMeshCriteria::RequestData(
       }
       if (step.IsOk())
       {
-        step = cdm::EvaluateMeshCriteria(mesh, surface ? &boundary : nullptr,
-          { vtkCoreBridge::GetNumberOfThreads() }, vtkCoreBridge::MakeContext(this), report);
+        step = cdm::EvaluateMeshCriteria(
+          mesh, surface ? &boundary : nullptr, vtkCoreBridge::MakeContext(this), report);
       }
       return step;
     });

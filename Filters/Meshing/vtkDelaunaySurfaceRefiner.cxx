@@ -20,7 +20,6 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
-#include <vtkSMPTools.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <iterator>
@@ -44,7 +43,6 @@ cdm::DelaunaySurfaceRefinerOptions MakeOptions(vtkDelaunaySurfaceRefiner* filter
   options.MeshPointClearanceRatio = filter->GetMeshPointClearanceRatio();
   options.MinimumEdgeRatio = filter->GetMinimumEdgeRatio();
   options.MaximumNewPoints = filter->GetMaximumNewPoints();
-  options.NumberOfThreads = vtkSMPTools::GetEstimatedNumberOfThreads();
   return options;
 }
 
@@ -118,7 +116,7 @@ int vtkDelaunaySurfaceRefiner::RequestData(
   std::vector<cdm::Vec3> meshPoints;
   cdm::DelaunaySurfaceRefinerInput engineInput{ &surface, &meshPoints, {} };
   cdm::DelaunaySurfaceRefinerOutput result;
-  const cdm::Status status = vtkCoreBridge::Guard(
+  const cdm::Status status = cdm::RunGuarded(
     [&]
     {
       cdm::Status step = vtkCoreBridge::ToTriangleMesh(input, surface);

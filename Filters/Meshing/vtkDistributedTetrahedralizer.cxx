@@ -11,7 +11,6 @@
 #include <vtkMultiProcessController.h>
 #include <vtkObjectFactory.h>
 #include <vtkPolyData.h>
-#include <vtkSMPTools.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkUnstructuredGrid.h>
 
@@ -90,8 +89,7 @@ int vtkDistributedTetrahedralizer::RequestData(
   const auto ghostLevels = vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS();
   ProcessGroup processes(this->Controller);
   const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(this);
-  DistributedMesh mesh(processes, context, vtkSMPTools::GetEstimatedNumberOfThreads(),
-    info->Has(ghostLevels) ? info->Get(ghostLevels) : 0);
+  DistributedMesh mesh(processes, context, info->Has(ghostLevels) ? info->Get(ghostLevels) : 0);
   cdm::Status status = mesh.Run(input, vtkPointSet::GetData(inputVector[1]));
   this->NumberOfRounds = mesh.GetNumberOfRounds();
   this->NumberOfHaloPoints = mesh.GetNumberOfHaloPoints();

@@ -398,7 +398,7 @@ void vtkGmshMeshWriter::WriteData()
   auto contacts = vtkPolyData::SafeDownCast(this->GetExecutive()->GetInputData(1, 0));
   GroupCollector collector(grid, contacts);
   vtkDataSet* faulty = nullptr;
-  const cdm::Status status = vtkCoreBridge::Guard([&] { return collector.Run(faulty); });
+  const cdm::Status status = cdm::RunGuarded([&] { return collector.Run(faulty); });
   if (!status.IsOk())
   {
     vtkCoreBridge::ReportError(this, status, faulty);

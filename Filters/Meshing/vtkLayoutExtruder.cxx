@@ -205,7 +205,7 @@ int vtkLayoutExtruder::RequestData(
   }
   cdm::PolygonSoup boundary;
   std::vector<Id> facetIds;
-  const cdm::Status status = vtkCoreBridge::Guard(
+  const cdm::Status status = cdm::RunGuarded(
     [&]
     {
       cdm::PolygonSoup polygons;

@@ -188,7 +188,7 @@ int vtkMaterialInterfaceExtractor::RequestData(
   vtkDataArray* labels = this->GetInputArrayToProcess(0, inputVector, association);
   cdm::TriangleMesh surface;
   cdm::MaterialInterfacesReport report;
-  const cdm::Status status = vtkCoreBridge::Guard(
+  const cdm::Status status = cdm::RunGuarded(
     [&]
     {
       cdm::LabelledGrid grid;

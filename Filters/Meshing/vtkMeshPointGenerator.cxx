@@ -167,9 +167,8 @@ int vtkMeshPointGenerator::RequestData(
   options.Seed = static_cast<std::uint64_t>(this->Seed);
   options.BoundaryClearance = this->BoundaryClearance;
   options.MaximumNumberOfPoints = this->MaximumNumberOfPoints;
-  options.NumberOfThreads = vtkCoreBridge::GetNumberOfThreads();
   cdm::MeshPointGeneratorOutput result;
-  const cdm::Status status = vtkCoreBridge::Guard(
+  const cdm::Status status = cdm::RunGuarded(
     [&]
     {
       cdm::Status step = vtkCoreBridge::ToTriangleMesh(input, surface);

@@ -113,7 +113,7 @@ int vtkMovingBoundaryRemesher::RequestData(
   options.Refinement.MaximumEdgeLength = this->MaximumEdgeLength;
   options.Refinement.MaximumNewPoints = this->MaximumNewPoints;
   cdm::MovingBoundaryOutput result;
-  const cdm::Status status = vtkCoreBridge::Guard(
+  const cdm::Status status = cdm::RunGuarded(
     [&]
     {
       cdm::Status step = vtkCoreBridge::ToTetMesh(input, mesh);

@@ -107,7 +107,7 @@ int vtkSizingFromSolution::RequestData(
   vtkDataArray* solution = this->GetInputArrayToProcess(0, inputVector);
   const int components = this->Anisotropic ? 3 : 1;
   std::vector<double> sizes[3];
-  const cdm::Status status = vtkCoreBridge::Guard(
+  const cdm::Status status = cdm::RunGuarded(
     [&]
     {
       const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(this);
@@ -169,7 +169,7 @@ int vtkSizingFromSolution::RequestData(
       }
       for (int i = 0; i < components && step.IsOk() && this->Gradation > 0.0; ++i)
       {
-        step = cdm::BoundGradation(cells, { this->Gradation, vtkCoreBridge::GetNumberOfThreads() },
+        step = cdm::BoundGradation(cells, { this->Gradation },
           context.Part(0.5 + 0.5 * i / components, 0.5 + 0.5 * (i + 1) / components), sizes[i]);
       }
       return step;

@@ -104,7 +104,7 @@ int vtkSliverRemover::RequestData(
   cdm::TetMesh mesh;
   cdm::RawVector<cdm::TetrahedronIds> before;
   cdm::SliverRemoverReport report;
-  const cdm::Status status = vtkCoreBridge::Guard(
+  const cdm::Status status = cdm::RunGuarded(
     [&]
     {
       cdm::Status step = vtkCoreBridge::ToTetMesh(input, mesh);
@@ -115,7 +115,6 @@ int vtkSliverRemover::RequestData(
         options.DihedralAngleTarget = this->DihedralAngleTarget;
         options.FlatnessRatio = this->FlatnessRatio;
         options.QualityBeforeDelaunay = this->QualityBeforeDelaunay;
-        options.NumberOfThreads = vtkCoreBridge::GetNumberOfThreads();
         step = vtkCoreBridge::ToFlags(input, vtkCoreBridge::FreePointName, options.IsFree);
         if (!step.IsOk())
         {

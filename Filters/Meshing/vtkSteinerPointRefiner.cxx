@@ -18,7 +18,6 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
-#include <vtkSMPTools.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
@@ -110,7 +109,7 @@ int vtkSteinerPointRefiner::RequestData(
   cdm::SteinerPointRefinerOutput result;
   // Errors count cells of the boundary if there is one.
   vtkDataSet* namedInput = input;
-  const cdm::Status status = vtkCoreBridge::Guard(
+  const cdm::Status status = cdm::RunGuarded(
     [&]
     {
       cdm::Status step = vtkCoreBridge::ToTetMesh(input, mesh);
@@ -155,7 +154,6 @@ int vtkSteinerPointRefiner::RequestData(
       options.StructuralEdges.AccuracyAngle = this->AccuracyAngle;
       options.StructuralEdges.FlatnessRatio = this->FlatnessRatio;
       options.MaximumNewPoints = this->MaximumNewPoints;
-      options.NumberOfThreads = vtkSMPTools::GetEstimatedNumberOfThreads();
       step =
         cdm::RefineBySteinerPoints(engineInput, options, vtkCoreBridge::MakeContext(this), result);
       if (boundaryInput)

@@ -33,7 +33,7 @@ int vtkStructuralEdgeExtractor::RequestData(
 
   cdm::TriangleMesh surface;
   cdm::StructuralEdgesOutput result;
-  const cdm::Status status = vtkCoreBridge::Guard(
+  const cdm::Status status = cdm::RunGuarded(
     [&]
     {
       cdm::Status step = vtkCoreBridge::ToTriangleMesh(input, surface);

@@ -192,21 +192,19 @@ int vtkVoronoiControlVolumes::RequestData(
   cdm::TetMesh mesh;
   cdm::ControlVolumes volumes;
   cdm::ControlPolyhedra polyhedra;
-  const cdm::Status status = vtkCoreBridge::Guard(
+  const cdm::Status status = cdm::RunGuarded(
     [&]
     {
       const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(this);
       const double share = this->GenerateBoxes ? 0.5 : 1.0;
-      const cdm::ControlVolumeOptions options{ vtkCoreBridge::GetNumberOfThreads() };
       cdm::Status step = vtkCoreBridge::ToTetMesh(input, mesh);
       if (step.IsOk())
       {
-        step = cdm::ComputeControlVolumes(mesh, options, context.Part(0.0, share), volumes);
+        step = cdm::ComputeControlVolumes(mesh, context.Part(0.0, share), volumes);
       }
       if (step.IsOk() && this->GenerateBoxes)
       {
-        step =
-          cdm::MakeControlPolyhedra(mesh, volumes, options, context.Part(share, 1.0), polyhedra);
+        step = cdm::MakeControlPolyhedra(mesh, volumes, context.Part(share, 1.0), polyhedra);
       }
       return step;
     });

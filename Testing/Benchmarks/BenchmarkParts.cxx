@@ -137,7 +137,7 @@ void Measure(const std::string& kind, std::size_t numberOfPoints, int numberOfPa
     for (std::size_t r = 0; r < count; ++r)
     {
       const double start = GetSeconds();
-      const Status status = parts[r].Update(1, {});
+      const Status status = parts[r].Update({});
       if (!status.IsOk())
       {
         std::printf("%s\n", status.Message.c_str());
@@ -152,7 +152,12 @@ void Measure(const std::string& kind, std::size_t numberOfPoints, int numberOfPa
       {
         const auto& queries = parts[r].GetQueries()[s];
         const double start = GetSeconds();
-        parts[s].Answer(queries, {}, answers[r][s]);
+        const Status status = parts[s].Answer(queries, {}, answers[r][s]);
+        if (!status.IsOk())
+        {
+          std::printf("%s\n", status.Message.c_str());
+          std::exit(1);
+        }
         costs[s].Others += GetSeconds() - start;
         costs[r].Queries += queries.size();
         costs[r].Bytes += double(queries.size() * sizeof(ConflictQuery));

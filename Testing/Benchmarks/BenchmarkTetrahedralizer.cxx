@@ -195,9 +195,9 @@ void RunOurs(const PointSet& points, Clock& clock, int threads, TetgenMesh* mesh
   input.MeshPoints = &points;
   cdm::AdvancingFrontTetrahedralizerOptions options;
   options.CloseOpenBoundary = true;
-  options.NumberOfThreads = threads;
   cdm::AdvancingFrontTetrahedralizerOutput output;
-  const cdm::Status status = cdm::TetrahedralizeByAdvancingFront(input, options, {}, output);
+  const cdm::Status status =
+    cdm::TetrahedralizeByAdvancingFront(input, options, cdm::ExecutionContext(threads), output);
   clock.Stop(GetCounts(points, status.IsOk() ? output.Mesh.Tetrahedra.size() : 0));
   if (mesh)
   {

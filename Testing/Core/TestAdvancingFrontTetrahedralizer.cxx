@@ -313,9 +313,9 @@ TEST(PointsOnly, DoesNotDependOnThreadsAndNumbers)
     ASSERT_TRUE(TetrahedralizeByAdvancingFront(input, options, {}, expected).IsOk());
     for (const int threads : { 2, 3, 8, 61 })
     {
-      options.NumberOfThreads = threads;
       AdvancingFrontTetrahedralizerOutput output;
-      ASSERT_TRUE(TetrahedralizeByAdvancingFront(input, options, {}, output).IsOk());
+      const ExecutionContext context(threads);
+      ASSERT_TRUE(TetrahedralizeByAdvancingFront(input, options, context, output).IsOk());
       EXPECT_EQ(output.Mesh.Tetrahedra, expected.Mesh.Tetrahedra) << kind << " " << threads;
       EXPECT_EQ(output.Mesh.Neighbors, expected.Mesh.Neighbors) << kind << " " << threads;
       EXPECT_EQ(output.Boundary.Triangles, expected.Boundary.Triangles) << kind << " " << threads;
@@ -680,7 +680,7 @@ TEST(AdvancingFront, ClosesOpenBoundary)
   surface.Triangles.resize(10);
   AdvancingFrontTetrahedralizerOutput output;
   EXPECT_EQ(TetrahedralizeByAdvancingFront({ &surface, nullptr, nullptr }, {}, {}, output).Code,
-    StatusCode::InvalidInput);
+    StatusCode::NotClosed);
   AdvancingFrontTetrahedralizerOptions options;
   options.CloseOpenBoundary = true;
   ASSERT_TRUE(
@@ -811,7 +811,7 @@ TEST(AdvancingFront, NamesContradictingLabels)
   AdvancingFrontTetrahedralizerOutput output;
   const Status status =
     TetrahedralizeByAdvancingFront({ &surface, nullptr, nullptr }, {}, {}, output);
-  EXPECT_EQ(status.Code, StatusCode::InvalidInput);
+  EXPECT_EQ(status.Code, StatusCode::NotDelaunay);
   EXPECT_FALSE(status.Cells.empty());
   EXPECT_TRUE(output.Mesh.Tetrahedra.empty());
 }

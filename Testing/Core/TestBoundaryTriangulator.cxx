@@ -81,10 +81,10 @@ BoundaryTriangulatorOutput ExpectOk(
 }
 
 Status ExpectInvalid(const PolygonSoup& soup, BoundaryTriangulatorOutput& output,
-  const BoundaryTriangulatorOptions& options = {})
+  StatusCode code = StatusCode::InvalidInput, const BoundaryTriangulatorOptions& options = {})
 {
   const Status status = TriangulateBoundary(soup, options, {}, output);
-  EXPECT_EQ(StatusCode::InvalidInput, status.Code);
+  EXPECT_EQ(code, status.Code);
   EXPECT_FALSE(status.Message.empty());
   EXPECT_TRUE(output.Surface.Points.empty());
   EXPECT_TRUE(output.Surface.Triangles.empty());
@@ -92,10 +92,11 @@ Status ExpectInvalid(const PolygonSoup& soup, BoundaryTriangulatorOutput& output
   return status;
 }
 
-Status ExpectInvalid(const PolygonSoup& soup, const BoundaryTriangulatorOptions& options = {})
+Status ExpectInvalid(const PolygonSoup& soup, StatusCode code = StatusCode::InvalidInput,
+  const BoundaryTriangulatorOptions& options = {})
 {
   BoundaryTriangulatorOutput output;
-  return ExpectInvalid(soup, output, options);
+  return ExpectInvalid(soup, output, code, options);
 }
 
 Id CountProblems(const BoundaryTriangulatorOutput& output, SurfaceProblemKind kind)
@@ -344,7 +345,7 @@ TEST(BoundaryTriangulator, SelfIntersectionsAreRefusedOrReported)
   faces.push_back({ 8, 9, 10 });
   const PolygonSoup soup = MakeSoup(points, faces);
   BoundaryTriangulatorOutput output;
-  const Status status = ExpectInvalid(soup, output);
+  const Status status = ExpectInvalid(soup, output, StatusCode::SelfIntersecting);
   EXPECT_EQ((std::vector<Id>{ 5, 6 }), status.Cells);
   // The triangle crosses one or both halves of the face.
   const Id pairs = CountProblems(output, SurfaceProblemKind::SelfIntersection);
@@ -372,7 +373,7 @@ TEST(BoundaryTriangulator, OverlappingCoplanarPolygonsIntersect)
   const PolygonSoup soup =
     MakeSoup({ { 0, 0, 0 }, { 4, 0, 0 }, { 0, 4, 0 }, { 1, 1, 0 }, { 5, 1, 0 }, { 1, 5, 0 } },
       { { 0, 1, 2 }, { 3, 4, 5 } });
-  EXPECT_EQ((std::vector<Id>{ 0, 1 }), ExpectInvalid(soup).Cells);
+  EXPECT_EQ((std::vector<Id>{ 0, 1 }), ExpectInvalid(soup, StatusCode::SelfIntersecting).Cells);
 }
 
 TEST(BoundaryTriangulator, InvalidOutlines)
@@ -405,13 +406,13 @@ TEST(BoundaryTriangulator, BadInputIsRefused)
 
   PolygonSoup soup = MakeSoup(MakeCubePoints(), CubeFaces);
   soup.Labels.resize(5);
-  ExpectInvalid(soup);
+  EXPECT_FALSE(ExpectInvalid(soup).IsOk());
   soup.Labels.clear();
   BoundaryTriangulatorOptions options;
   options.MergeTolerance = -1.0;
-  ExpectInvalid(soup, options);
+  EXPECT_FALSE(ExpectInvalid(soup, StatusCode::InvalidOption, options).IsOk());
   options.MergeTolerance = std::numeric_limits<double>::quiet_NaN();
-  ExpectInvalid(soup, options);
+  EXPECT_FALSE(ExpectInvalid(soup, StatusCode::InvalidOption, options).IsOk());
 }
 
 TEST(BoundaryTriangulator, NonPlanarPolygonsAreCounted)

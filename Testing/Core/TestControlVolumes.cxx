@@ -23,9 +23,7 @@ namespace
 ControlVolumes Compute(const TetMesh& mesh, int threads = 2)
 {
   ControlVolumes volumes;
-  ControlVolumeOptions options;
-  options.NumberOfThreads = threads;
-  const Status status = ComputeControlVolumes(mesh, options, {}, volumes);
+  const Status status = ComputeControlVolumes(mesh, ExecutionContext(threads), volumes);
   EXPECT_TRUE(status.IsOk()) << status.Message;
   return volumes;
 }
@@ -88,7 +86,7 @@ void ExpectSums(const TetMesh& mesh, const ControlVolumes& volumes, double toler
 void ExpectClosedPolyhedra(const TetMesh& mesh, const ControlVolumes& volumes, double tolerance)
 {
   ControlPolyhedra polyhedra;
-  ASSERT_TRUE(MakeControlPolyhedra(mesh, volumes, {}, {}, polyhedra).IsOk());
+  ASSERT_TRUE(MakeControlPolyhedra(mesh, volumes, {}, polyhedra).IsOk());
   ASSERT_EQ(volumes.Boxes.size() + 1, polyhedra.BoxOffsets.size());
   for (std::size_t box = 0; box < volumes.Boxes.size(); ++box)
   {
@@ -206,7 +204,7 @@ TEST(ControlVolumes, CubicGrid)
   ExpectClosedPolyhedra(mesh, volumes, 1e-17);
 
   ControlPolyhedra polyhedra;
-  ASSERT_TRUE(MakeControlPolyhedra(mesh, volumes, {}, {}, polyhedra).IsOk());
+  ASSERT_TRUE(MakeControlPolyhedra(mesh, volumes, {}, polyhedra).IsOk());
   for (std::size_t box = 0; box < volumes.Boxes.size(); ++box)
   {
     if (countSides(mesh.Points[volumes.Boxes[box].Point]) == 0)
@@ -235,7 +233,7 @@ TEST(ControlVolumes, BodyCenteredLattice)
     return low > 0.9 && high < size - 1.9;
   };
   ControlPolyhedra polyhedra;
-  ASSERT_TRUE(MakeControlPolyhedra(mesh, volumes, {}, {}, polyhedra).IsOk());
+  ASSERT_TRUE(MakeControlPolyhedra(mesh, volumes, {}, polyhedra).IsOk());
   int inner = 0;
   for (std::size_t i = 0; i < volumes.Boxes.size(); ++i)
   {
@@ -291,7 +289,7 @@ TEST(ControlVolumes, CertificateCountsTheSameNegativeCouplings)
     SplitAt(mesh, jitter > 0.0 ? 3.0 : 0.5);
     const ControlVolumes volumes = Compute(mesh);
     MeshCriteriaReport report;
-    ASSERT_TRUE(EvaluateMeshCriteria(mesh, nullptr, {}, {}, report).IsOk());
+    ASSERT_TRUE(EvaluateMeshCriteria(mesh, nullptr, {}, report).IsOk());
     EXPECT_EQ(jitter > 0.0, report.GetCount(MeshFault::NonDelaunayTetrahedron) > 0);
     EXPECT_GT(volumes.NegativeCouplings, 0);
     EXPECT_EQ(volumes.NegativeCouplings, report.GetCount(MeshFault::NegativeCoupling));
@@ -405,9 +403,7 @@ TEST(ControlVolumes, PolyhedraAreTheSameForAnyNumberOfThreads)
     const auto make = [&](int threads)
     {
       ControlPolyhedra polyhedra;
-      ControlVolumeOptions options;
-      options.NumberOfThreads = threads;
-      EXPECT_TRUE(MakeControlPolyhedra(mesh, volumes, options, {}, polyhedra).IsOk());
+      EXPECT_TRUE(MakeControlPolyhedra(mesh, volumes, ExecutionContext(threads), polyhedra).IsOk());
       return polyhedra;
     };
     const ControlPolyhedra one = make(1);
@@ -434,15 +430,15 @@ TEST(ControlVolumes, BadTetrahedraAndAbort)
       { reached = std::max(reached, fraction); },
       [&] { return reached >= limit; });
     ControlVolumes volumes;
-    EXPECT_TRUE(ComputeControlVolumes(mesh, {}, context, volumes).IsAborted());
+    EXPECT_TRUE(ComputeControlVolumes(mesh, context, volumes).IsAborted());
     volumes = Compute(mesh);
     reached = -1.0;
     ControlPolyhedra polyhedra;
-    EXPECT_TRUE(MakeControlPolyhedra(mesh, volumes, {}, context, polyhedra).IsAborted());
+    EXPECT_TRUE(MakeControlPolyhedra(mesh, volumes, context, polyhedra).IsAborted());
   }
   std::swap(mesh.Tetrahedra[7][0], mesh.Tetrahedra[7][1]);
   ControlVolumes volumes;
-  const Status status = ComputeControlVolumes(mesh, {}, {}, volumes);
+  const Status status = ComputeControlVolumes(mesh, {}, volumes);
   EXPECT_EQ(StatusCode::InvalidInput, status.Code);
   EXPECT_EQ(std::vector<Id>{ 7 }, status.Cells);
 }

@@ -607,11 +607,11 @@ TEST(IntersectionResolver, BadOptionsAndTooFewRounds)
   std::vector<PointParents> newPoints;
   options.MaximumRounds = 0;
   EXPECT_EQ(
-    StatusCode::InvalidInput, ResolveIntersections(options, {}, surface, newPoints, report).Code);
+    StatusCode::InvalidOption, ResolveIntersections(options, {}, surface, newPoints, report).Code);
   options = {};
   options.Tolerance = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(
-    StatusCode::InvalidInput, ResolveIntersections(options, {}, surface, newPoints, report).Code);
+    StatusCode::InvalidOption, ResolveIntersections(options, {}, surface, newPoints, report).Code);
 
   // Vertices nearer than the tolerance are merged first, which takes the only round.
   options = {};
@@ -623,7 +623,7 @@ TEST(IntersectionResolver, BadOptionsAndTooFewRounds)
   surface.SourceCells.push_back(3);
   const TriangleMesh before = surface;
   const Status status = ResolveIntersections(options, {}, surface, newPoints, report);
-  EXPECT_EQ(StatusCode::InvalidInput, status.Code);
+  EXPECT_EQ(StatusCode::SelfIntersecting, status.Code);
   EXPECT_EQ((std::vector<Id>{ 5, 7 }), status.Cells);
   EXPECT_EQ(before.Triangles, surface.Triangles);
   options.MaximumRounds = 2;

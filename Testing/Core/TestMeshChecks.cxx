@@ -552,7 +552,7 @@ TEST(MeshChecks, SameForAnyNumberOfThreads)
   for (const int threads : { 2, 3, 8 })
   {
     MeshCheckReport other;
-    ASSERT_TRUE(CheckTetMesh(mesh, &boundary, {}, other, threads).IsOk());
+    ASSERT_TRUE(CheckTetMesh(mesh, &boundary, ExecutionContext(threads), other).IsOk());
     EXPECT_EQ(one.GetSummary(), other.GetSummary());
     EXPECT_EQ(one.Examples, other.Examples);
     EXPECT_EQ(one.WrongNeighbors, other.WrongNeighbors);

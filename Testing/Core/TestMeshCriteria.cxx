@@ -34,9 +34,7 @@ TetMesh MakeMesh(std::vector<Vec3> points, RawVector<TetrahedronIds> tetrahedra)
 MeshCriteriaReport Evaluate(const TetMesh& mesh, int threads = 2)
 {
   MeshCriteriaReport report;
-  MeshCriteriaOptions options;
-  options.NumberOfThreads = threads;
-  const Status status = EvaluateMeshCriteria(mesh, nullptr, options, {}, report);
+  const Status status = EvaluateMeshCriteria(mesh, nullptr, ExecutionContext(threads), report);
   EXPECT_TRUE(status.IsOk()) << status.Message;
   return report;
 }
@@ -168,17 +166,17 @@ TEST(MeshCriteria, VolumesAreThoseOfTheBoundary)
     boundary.Labels.push_back({ OutsideRegion, 0 });
   }
   MeshCriteriaReport report;
-  ASSERT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, {}, report).IsOk());
+  ASSERT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, report).IsOk());
   EXPECT_TRUE(report.IsClean());
   for (Vec3& point : boundary.Points)
   {
     point = 2.0 * point;
   }
-  ASSERT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, {}, report).IsOk());
+  ASSERT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, report).IsOk());
   EXPECT_NEAR(7.0 / 8.0, report.LargestVolumeError, 1e-15);
   EXPECT_FALSE(report.IsClean());
   boundary.Labels[2] = { OutsideRegion, 4 };
-  ASSERT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, {}, report).IsOk());
+  ASSERT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, report).IsOk());
   ASSERT_EQ(2u, report.Regions.size());
   EXPECT_EQ(4, report.Regions[1].Region);
   EXPECT_EQ(0, report.Regions[1].Tetrahedra);
@@ -362,20 +360,20 @@ TEST(MeshCriteria, AbortAndInvalidInput)
       { reached = std::max(reached, fraction); },
       [&] { return reached >= limit; });
     MeshCriteriaReport report;
-    EXPECT_TRUE(EvaluateMeshCriteria(mesh, nullptr, {}, context, report).IsAborted());
+    EXPECT_TRUE(EvaluateMeshCriteria(mesh, nullptr, context, report).IsAborted());
     EXPECT_GE(reached, limit);
   }
   TetMesh broken = mesh;
   broken.Tetrahedra[2][1] = 3000;
   MeshCriteriaReport report;
-  Status status = EvaluateMeshCriteria(broken, nullptr, {}, {}, report);
+  Status status = EvaluateMeshCriteria(broken, nullptr, {}, report);
   EXPECT_EQ(StatusCode::InvalidInput, status.Code);
   EXPECT_EQ(std::vector<Id>{ 2 }, status.Cells);
   broken = mesh;
   broken.Points[7].Y = std::numeric_limits<double>::quiet_NaN();
-  status = EvaluateMeshCriteria(broken, nullptr, {}, {}, report);
+  status = EvaluateMeshCriteria(broken, nullptr, {}, report);
   EXPECT_EQ(std::vector<Id>{ 7 }, status.Points);
   broken = mesh;
   broken.Regions.pop_back();
-  EXPECT_EQ(StatusCode::InvalidInput, EvaluateMeshCriteria(broken, nullptr, {}, {}, report).Code);
+  EXPECT_EQ(StatusCode::InvalidInput, EvaluateMeshCriteria(broken, nullptr, {}, report).Code);
 }

@@ -50,12 +50,12 @@ SizingField MakeConstant(const LocalSpacing& spacing)
   return [spacing](const Vec3&) { return spacing; };
 }
 
-MeshPointGeneratorOutput Generate(
-  const TriangleMesh& surface, const SizingField& sizing, const MeshPointGeneratorOptions& options)
+MeshPointGeneratorOutput Generate(const TriangleMesh& surface, const SizingField& sizing,
+  const MeshPointGeneratorOptions& options, const ExecutionContext& context = {})
 {
   const MeshPointGeneratorInput input{ &surface, sizing };
   MeshPointGeneratorOutput output;
-  const Status status = GenerateMeshPoints(input, options, {}, output);
+  const Status status = GenerateMeshPoints(input, options, context, output);
   EXPECT_TRUE(status.IsOk()) << status.Message;
   EXPECT_EQ(output.Regions.size(), output.Points.size());
   EXPECT_EQ(output.Layers.size(), output.Points.size());
@@ -449,12 +449,12 @@ TEST(MeshPointGenerator, RefusesWhatCannotBe)
 {
   const TriangleMesh box = MakeBox({ 1.0, 1.0, 1.0 });
   MeshPointGeneratorOutput output;
-  const auto expect =
-    [&](const MeshPointGeneratorOptions& options, double spacing, const std::string& part)
+  const auto expect = [&](const MeshPointGeneratorOptions& options, double spacing, StatusCode code,
+                        const std::string& part)
   {
     const MeshPointGeneratorInput input{ &box, MakeConstant(spacing) };
     const Status status = GenerateMeshPoints(input, options, {}, output);
-    EXPECT_EQ(status.Code, StatusCode::InvalidInput);
+    EXPECT_EQ(status.Code, code);
     EXPECT_NE(status.Message.find(part), std::string::npos) << status.Message;
   };
   MeshPointGeneratorOptions options;
@@ -463,11 +463,11 @@ TEST(MeshPointGenerator, RefusesWhatCannotBe)
     { PointPlacement::Octree, PointPlacement::OrthoProduct, PointPlacement::Random })
   {
     options.Placement = placement;
-    expect(options, 0.05, "1000 points");
+    expect(options, 0.05, StatusCode::LimitReached, "1000 points");
   }
   options = MakeOptions(PointPlacement::None);
   options.Layers = { { 0, 3, 2, 0.1, 1.0 } };
-  expect(options, 0.2, "no interface");
+  expect(options, 0.2, StatusCode::InvalidOption, "no interface");
 
   // A spacing larger than the body leaves no place, which is no error.
   options = {};
@@ -531,13 +531,12 @@ TEST(MeshPointGenerator, TheSameForAnyNumberOfThreads)
       {
         options.Layers = { { 0, 1, 3, 0.01, 1.2 } };
       }
-      options.NumberOfThreads = 1;
       const MeshPointGeneratorOutput expected = Generate(stack, sizing, options);
       EXPECT_GT(expected.Points.size(), one.Placement == PointPlacement::None ? 100u : 3000u);
       for (const int threads : { 2, 3, 8 })
       {
-        options.NumberOfThreads = threads;
-        const MeshPointGeneratorOutput output = Generate(stack, sizing, options);
+        const MeshPointGeneratorOutput output =
+          Generate(stack, sizing, options, ExecutionContext(threads));
         EXPECT_EQ(output.Points, expected.Points) << threads;
         EXPECT_EQ(output.Regions, expected.Regions) << threads;
         EXPECT_EQ(output.Layers, expected.Layers) << threads;

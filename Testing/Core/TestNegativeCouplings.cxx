@@ -21,7 +21,7 @@ namespace
 std::vector<EdgeIds> FindByCertificate(const TetMesh& mesh, const TriangleMesh& boundary)
 {
   MeshCriteriaReport report;
-  EXPECT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, {}, report).IsOk());
+  EXPECT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, report).IsOk());
   std::vector<EdgeIds> edges;
   for (const MeshViolation& violation : report.Violations)
   {

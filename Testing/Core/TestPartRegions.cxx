@@ -78,7 +78,7 @@ TEST(PartRegions, HearsFromOtherParts)
   ASSERT_TRUE(regions.Finish(found).IsOk());
   EXPECT_EQ(found, (RawVector<Id>{ 3, 3 }));
   const Status status = regions.SetRegion(0, 4);
-  EXPECT_EQ(status.Code, StatusCode::InvalidInput);
+  EXPECT_EQ(status.Code, StatusCode::NotClosed);
   EXPECT_NE(status.Message.find("Regions 3 and 4 are not separated"), std::string::npos);
 }
 
@@ -92,14 +92,14 @@ TEST(PartRegions, NamesTriangles)
   triangles.pop_back();
   sides.pop_back();
   Status status = PartRegions(mesh, 5, triangles, sides).Start();
-  EXPECT_EQ(status.Code, StatusCode::InvalidInput);
+  EXPECT_EQ(status.Code, StatusCode::NotClosed);
   EXPECT_EQ(status.Cells, std::vector<Id>{ 3 });
   // A triangle that is no facet, at an own point or at none.
   MakeSurface(true, triangles, sides);
   triangles.push_back({ 2, 3, 4 });
   sides.push_back({ 5, 5 });
   status = PartRegions(mesh, 5, triangles, sides).Start();
-  EXPECT_EQ(status.Code, StatusCode::InvalidInput);
+  EXPECT_EQ(status.Code, StatusCode::NotDelaunay);
   EXPECT_EQ(status.Cells, std::vector<Id>{ 7 });
   EXPECT_TRUE(PartRegions(mesh, 2, triangles, sides).Start().IsOk());
 }
@@ -116,6 +116,6 @@ TEST(PartRegions, RefusesRegionsUpToTheHull)
   ASSERT_TRUE(regions.Start().IsOk());
   RawVector<Id> found;
   const Status status = regions.Finish(found);
-  EXPECT_EQ(status.Code, StatusCode::InvalidInput);
+  EXPECT_EQ(status.Code, StatusCode::NotClosed);
   EXPECT_NE(status.Message.find("Region 5 is not closed"), std::string::npos) << status.Message;
 }

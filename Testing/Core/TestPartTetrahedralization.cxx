@@ -144,7 +144,7 @@ Whole MakeParts(const std::vector<Vec3>& points, const std::vector<int>& partOf,
     isFinished = true;
     for (PartTetrahedralization& part : parts)
     {
-      const Status status = part.Update(1, {});
+      const Status status = part.Update({});
       EXPECT_TRUE(status.IsOk()) << status.Message;
     }
     std::vector<std::vector<ConflictAnswers>> answers(count, std::vector<ConflictAnswers>(count));
@@ -404,7 +404,7 @@ TEST(PartTetrahedralization, StopsWhenAborted)
                                 { { 0, 0, 1 }, 3 }, { { 1, 1, 1 }, 4 } },
     0, { Box() }, {});
   const ExecutionContext aborting({}, [] { return true; });
-  EXPECT_TRUE(part.Update(1, aborting).IsAborted());
+  EXPECT_TRUE(part.Update(aborting).IsAborted());
   ConflictAnswers answers;
   EXPECT_TRUE(part.Answer(std::vector<ConflictQuery>(1), aborting, answers).IsAborted());
 }

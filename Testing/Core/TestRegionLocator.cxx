@@ -164,7 +164,7 @@ TEST(RegionLocator, RefusesOpenSurfacesAndWrongLabels)
   surface.Labels[3] = { OutsideRegion, 5 };
   RegionLocator wrong(surface);
   Status status = wrong.Build();
-  EXPECT_EQ(status.Code, StatusCode::InvalidInput);
+  EXPECT_EQ(status.Code, StatusCode::NotClosed);
   EXPECT_EQ(status.Cells, std::vector<Id>{ 3 });
 
   soup.Offsets.pop_back();
@@ -172,11 +172,11 @@ TEST(RegionLocator, RefusesOpenSurfacesAndWrongLabels)
   soup.Labels.pop_back();
   surface = Triangulate(soup);
   RegionLocator openLabelled(surface);
-  EXPECT_EQ(openLabelled.Build().Code, StatusCode::InvalidInput);
+  EXPECT_EQ(openLabelled.Build().Code, StatusCode::NotClosed);
   surface.Labels.clear();
   RegionLocator open(surface);
   status = open.Build();
-  EXPECT_EQ(status.Code, StatusCode::InvalidInput);
+  EXPECT_EQ(status.Code, StatusCode::NotClosed);
   EXPECT_NE(status.Message.find("encloses nothing"), std::string::npos);
   EXPECT_FALSE(status.Cells.empty());
 }

@@ -154,16 +154,16 @@ TEST(SizingField, GradationIsTheSameForAnyNumberOfThreads)
   for (const std::vector<double>& sizes : given)
   {
     std::vector<double> one = sizes;
-    ASSERT_TRUE(BoundGradation(cells, { 0.3, 1 }, {}, one).IsOk());
+    ASSERT_TRUE(BoundGradation(cells, { 0.3 }, ExecutionContext(1), one).IsOk());
     EXPECT_TRUE(one != sizes);
     // A field that is bounded stays as it is.
     std::vector<double> again = one;
-    ASSERT_TRUE(BoundGradation(cells, { 0.3, 2 }, {}, again).IsOk());
+    ASSERT_TRUE(BoundGradation(cells, { 0.3 }, ExecutionContext(2), again).IsOk());
     EXPECT_TRUE(one == again);
     for (const int threads : { 2, 3, 8 })
     {
       std::vector<double> other = sizes;
-      ASSERT_TRUE(BoundGradation(cells, { 0.3, threads }, {}, other).IsOk());
+      ASSERT_TRUE(BoundGradation(cells, { 0.3 }, ExecutionContext(threads), other).IsOk());
       EXPECT_TRUE(one == other) << threads;
     }
   }

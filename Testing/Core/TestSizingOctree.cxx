@@ -26,11 +26,12 @@ LocalSpacing GetConeSpacing(const Vec3& p)
 
 struct Tree
 {
-  Tree(const Vec3& size, SizingField sizing, const SizingOctreeOptions& options)
+  Tree(const Vec3& size, SizingField sizing, const SizingOctreeOptions& options,
+    const ExecutionContext& context = {})
     : Surface(MakeBox(size)), Locator(this->Surface), Sizing(std::move(sizing))
   {
     EXPECT_TRUE(this->Locator.Build().IsOk());
-    this->Result = this->Octree.Build(this->Locator, this->Sizing, options, {});
+    this->Result = this->Octree.Build(this->Locator, this->Sizing, options, context);
   }
 
   /** The largest difference of levels of leaves that touch. */
@@ -153,7 +154,7 @@ TEST(SizingOctree, RefusesTooFineSizings)
   options.MaximumNumberOfLeaves = 1000;
   const Tree many(
     { 1.0, 1.0, 1.0 }, [](const Vec3&) { return 0.01; }, options);
-  EXPECT_EQ(many.Result.Code, StatusCode::InvalidInput);
+  EXPECT_EQ(many.Result.Code, StatusCode::LimitReached);
   EXPECT_NE(many.Result.Message.find("1000 points"), std::string::npos);
   options.MaximumNumberOfLeaves = 1000000;
   const Tree deep(
@@ -162,7 +163,7 @@ TEST(SizingOctree, RefusesTooFineSizings)
       return 1e-8 + Distance(p, { 0.0, 0.0, 0.0 });
     },
     options);
-  EXPECT_EQ(deep.Result.Code, StatusCode::InvalidInput);
+  EXPECT_EQ(deep.Result.Code, StatusCode::LimitReached);
   EXPECT_NE(deep.Result.Message.find("2^19"), std::string::npos);
 }
 
@@ -174,14 +175,12 @@ TEST(SizingOctree, TheSameForAnyNumberOfThreads)
   const auto cone = [](const Vec3& p) { return 0.3 * GetConeSpacing(p).GetSmallest(); };
   for (const SizingField& sizing : { SizingField(cone), SizingField(flat) })
   {
-    SizingOctreeOptions options;
-    options.NumberOfThreads = 1;
+    const SizingOctreeOptions options;
     const Tree one({ 1.0, 1.5, 0.5 }, sizing, options);
     EXPECT_GT(one.Octree.GetLeaves().size(), 1000u);
     for (const int threads : { 2, 3, 8 })
     {
-      options.NumberOfThreads = threads;
-      const Tree other({ 1.0, 1.5, 0.5 }, sizing, options);
+      const Tree other({ 1.0, 1.5, 0.5 }, sizing, options, ExecutionContext(threads));
       ASSERT_EQ(other.Octree.GetLeaves().size(), one.Octree.GetLeaves().size());
       for (std::size_t i = 0; i < one.Octree.GetLeaves().size(); ++i)
       {

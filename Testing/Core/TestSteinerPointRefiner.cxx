@@ -129,7 +129,7 @@ void ExpectRight(const SteinerPointRefinerInput& input, const SteinerPointRefine
   }
 
   MeshCriteriaReport criteria;
-  ASSERT_TRUE(EvaluateMeshCriteria(output.Mesh, &output.Boundary, {}, {}, criteria).IsOk());
+  ASSERT_TRUE(EvaluateMeshCriteria(output.Mesh, &output.Boundary, {}, criteria).IsOk());
   EXPECT_EQ(
     criteria.GetCount(MeshFault::NegativeCoupling) > 0, output.Report.NegativeCouplings > 0);
 
@@ -179,11 +179,11 @@ void ExpectRight(const SteinerPointRefinerInput& input, const SteinerPointRefine
   }
 }
 
-SteinerPointRefinerOutput Refine(
-  const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options)
+SteinerPointRefinerOutput Refine(const SteinerPointRefinerInput& input,
+  const SteinerPointRefinerOptions& options, const ExecutionContext& context = {})
 {
   SteinerPointRefinerOutput output;
-  const Status status = RefineBySteinerPoints(input, options, {}, output);
+  const Status status = RefineBySteinerPoints(input, options, context, output);
   EXPECT_TRUE(status.IsOk()) << status.Message;
   ExpectRight(input, options, output);
   return output;
@@ -673,8 +673,7 @@ TEST(SteinerPointRefiner, DoesNotDependOnThreads)
   SteinerPointRefinerOptions options;
   options.MaximumEdgeLength = 0.1;
   const SteinerPointRefinerOutput one = Refine(input, options);
-  options.NumberOfThreads = 3;
-  const SteinerPointRefinerOutput three = Refine(input, options);
+  const SteinerPointRefinerOutput three = Refine(input, options, ExecutionContext(3));
   EXPECT_EQ(one.Mesh.Points, three.Mesh.Points);
   EXPECT_TRUE(std::equal(one.Mesh.Tetrahedra.begin(), one.Mesh.Tetrahedra.end(),
     three.Mesh.Tetrahedra.begin(), three.Mesh.Tetrahedra.end()));

@@ -497,9 +497,8 @@ TEST(SurfaceRefinerShapes, TheSameForAnyNumberOfThreads)
     EXPECT_GT(first.NewPoints.size(), 100u);
     for (const int threads : { 2, 3, 8 })
     {
-      options.NumberOfThreads = threads;
       DelaunaySurfaceRefinerOutput other;
-      ASSERT_TRUE(RefineDelaunaySurface(input, options, {}, other).IsOk());
+      ASSERT_TRUE(RefineDelaunaySurface(input, options, ExecutionContext(threads), other).IsOk());
       EXPECT_EQ(first.Surface.Points, other.Surface.Points);
       EXPECT_EQ(first.Surface.Triangles, other.Surface.Triangles);
     }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ExecutionContext.h
- * @brief Progress and abort: the one way in which a running stage talks to its caller.
+ * @brief What a running stage has from its caller: progress, abort, and how many threads it may use.
  */
 #ifndef cdmExecutionContext_h
 #define cdmExecutionContext_h
+
+#include "Core/Basics/Threads.h"
 
 #include <functional>
 #include <utility>
@@ -13,7 +15,8 @@ namespace cdm
 {
 /**
  * Stages call Continue() in every loop that can last longer than 50 ms. A default constructed
- * context neither reports nor aborts. Continue() belongs on the thread that called the stage.
+ * context neither reports nor aborts, and has one thread. Continue() belongs on the thread that
+ * called the stage. No result depends on the number of threads.
  */
 class ExecutionContext
 {
@@ -24,11 +27,16 @@ public:
   using AbortFunction = std::function<bool()>;
 
   ExecutionContext() = default;
-  ExecutionContext(ProgressFunction progress, AbortFunction abort)
-    : Progress(std::move(progress))
-    , Abort(std::move(abort))
+  ExecutionContext(ProgressFunction progress, AbortFunction abort, int numberOfThreads = 1)
+    : Progress(std::move(progress)), Abort(std::move(abort)),
+      NumberOfThreads(static_cast<int>(cdm::GetNumberOfThreads(numberOfThreads)))
   {
   }
+  /** A silent context that cannot be aborted. Threads: 0: one for each processor core. */
+  explicit ExecutionContext(int numberOfThreads) : ExecutionContext({}, {}, numberOfThreads) {}
+
+  /** At least 1. */
+  int GetNumberOfThreads() const { return this->NumberOfThreads; }
 
   /** Report progress within this context's share; false if the stage has to return Aborted. */
   bool Continue(double fraction, const char* activity) const
@@ -55,7 +63,8 @@ private:
   AbortFunction Abort;
   double Begin = 0.0;
   double End = 1.0;
+  int NumberOfThreads = 1;
 };
-}
+} // namespace cdm
 
 #endif

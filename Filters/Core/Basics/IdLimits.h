@@ -21,31 +21,34 @@ constexpr std::uint64_t EdgesOfTetrahedron = 6;
 /** Ids made from that of a triangle: 3 * triangle + i for its edges. */
 constexpr std::uint64_t EdgesOfTriangle = 3;
 
-/** InvalidInput if there are too many of them; what names them. */
+/** LimitReached if there are too many of them; what names them. */
 inline Status CheckIdRange(std::uint64_t number, const char* what)
 {
   return number <= LargestId
     ? Status()
-    : Status::InvalidInput("The input has " + std::to_string(number) + " " + what +
-        ", more than the 2147483647 that 32-bit ids can count. Mesh it in parts.");
+    : Status::Failure(StatusCode::LimitReached,
+        "The input has " + std::to_string(number) + " " + what +
+          ", more than the 2147483647 that 32-bit ids can count. Mesh it in parts.");
 }
 
 inline Status CheckNumberOfTetrahedra(std::uint64_t number)
 {
   return number <= LargestId / EdgesOfTetrahedron
     ? Status()
-    : Status::InvalidInput("The mesh has " + std::to_string(number) +
-        " tetrahedra, more than the " + std::to_string(LargestId / EdgesOfTetrahedron) +
-        " whose edges 32-bit ids can count. Split it.");
+    : Status::Failure(StatusCode::LimitReached,
+        "The mesh has " + std::to_string(number) + " tetrahedra, more than the " +
+          std::to_string(LargestId / EdgesOfTetrahedron) +
+          " whose edges 32-bit ids can count. Split it.");
 }
 
 inline Status CheckNumberOfTriangles(std::uint64_t number)
 {
   return number <= LargestId / EdgesOfTriangle
     ? Status()
-    : Status::InvalidInput("The surface has " + std::to_string(number) +
-        " polygons, more than the " + std::to_string(LargestId / EdgesOfTriangle) +
-        " whose edges 32-bit ids can count. Mesh it in parts.");
+    : Status::Failure(StatusCode::LimitReached,
+        "The surface has " + std::to_string(number) + " polygons, more than the " +
+          std::to_string(LargestId / EdgesOfTriangle) +
+          " whose edges 32-bit ids can count. Mesh it in parts.");
 }
 
 /** Points of a surface and mesh points get ids together, and so does the point at infinity. */
@@ -62,10 +65,11 @@ inline Status CheckRefinement(std::uint64_t numberOfPoints, std::uint64_t number
   return numberOfPoints + room <= LargestId &&
       numberOfTriangles + room <= LargestId / EdgesOfTriangle
     ? Status()
-    : Status::InvalidInput("The refined surface has " + std::to_string(numberOfPoints) +
-        " points with the mesh points and " + std::to_string(numberOfTriangles) +
-        " triangles, and is not finished: 32-bit ids cannot count many more. Ask for larger "
-        "triangles, or mesh it in parts.");
+    : Status::Failure(StatusCode::LimitReached,
+        "The refined surface has " + std::to_string(numberOfPoints) +
+          " points with the mesh points and " + std::to_string(numberOfTriangles) +
+          " triangles, and is not finished: 32-bit ids cannot count many more. Ask for larger "
+          "triangles, or mesh it in parts.");
 }
 } // namespace cdm
 

@@ -25,7 +25,7 @@ namespace cdm
 struct ParallelLoopOptions
 {
   /** 0: one for each processor core. */
-  int NumberOfThreads = 0;
+  int NumberOfThreads = 1;
   /** Items in a block. At least 1. */
   std::size_t BlockSize = 2048;
 };

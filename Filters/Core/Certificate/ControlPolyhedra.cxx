@@ -39,11 +39,11 @@ struct EdgeUse
 class PolyhedronMaker
 {
 public:
-  PolyhedronMaker(const TetMesh& mesh, const ControlVolumes& volumes,
-    const ControlVolumeOptions& options, ControlPolyhedra& polyhedra)
+  PolyhedronMaker(const TetMesh& mesh, const ControlVolumes& volumes, int numberOfThreads,
+    ControlPolyhedra& polyhedra)
     : Mesh(mesh), Volumes(volumes), Polyhedra(polyhedra)
   {
-    this->LoopOptions.NumberOfThreads = options.NumberOfThreads;
+    this->LoopOptions.NumberOfThreads = numberOfThreads;
   }
 
   Status Run(const ExecutionContext& context);
@@ -591,9 +591,13 @@ bool PolyhedronMaker::GatherBoxes(const ExecutionContext& context)
 } // namespace
 
 Status MakeControlPolyhedra(const TetMesh& mesh, const ControlVolumes& volumes,
-  const ControlVolumeOptions& options, const ExecutionContext& context, ControlPolyhedra& polyhedra)
+  const ExecutionContext& context, ControlPolyhedra& polyhedra)
 {
-  polyhedra = {};
-  return PolyhedronMaker(mesh, volumes, options, polyhedra).Run(context);
+  return RunGuarded(
+    [&]() -> Status
+    {
+      polyhedra = {};
+      return PolyhedronMaker(mesh, volumes, context.GetNumberOfThreads(), polyhedra).Run(context);
+    });
 }
 } // namespace cdm

@@ -39,8 +39,7 @@ struct ControlPolyhedra
 
 /** The mesh and what ComputeControlVolumes() made of it. */
 Status MakeControlPolyhedra(const TetMesh& mesh, const ControlVolumes& volumes,
-  const ControlVolumeOptions& options, const ExecutionContext& context,
-  ControlPolyhedra& polyhedra);
+  const ExecutionContext& context, ControlPolyhedra& polyhedra);
 } // namespace cdm
 
 #endif

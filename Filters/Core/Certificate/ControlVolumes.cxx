@@ -33,10 +33,10 @@ struct EdgeShares
 class Calculator
 {
 public:
-  Calculator(const TetMesh& mesh, const ControlVolumeOptions& options, ControlVolumes& volumes)
-    : Mesh(mesh), Volumes(volumes), Incidence(mesh, options.NumberOfThreads)
+  Calculator(const TetMesh& mesh, int numberOfThreads, ControlVolumes& volumes)
+    : Mesh(mesh), Volumes(volumes), Incidence(mesh, numberOfThreads)
   {
-    this->LoopOptions.NumberOfThreads = options.NumberOfThreads;
+    this->LoopOptions.NumberOfThreads = numberOfThreads;
   }
 
   Status Run(const ExecutionContext& context);
@@ -337,11 +337,16 @@ bool Calculator::SumBoundaryAreas(const ExecutionContext& context)
 }
 } // namespace
 
-Status ComputeControlVolumes(const TetMesh& mesh, const ControlVolumeOptions& options,
-  const ExecutionContext& context, ControlVolumes& volumes)
+Status ComputeControlVolumes(
+  const TetMesh& mesh, const ExecutionContext& context, ControlVolumes& volumes)
 {
-  volumes = {};
-  const Status status = CheckNumberOfTetrahedra(mesh.Tetrahedra.size());
-  return status.IsOk() ? Calculator(mesh, options, volumes).Run(context) : status;
+  return RunGuarded(
+    [&]() -> Status
+    {
+      volumes = {};
+      const Status status = CheckNumberOfTetrahedra(mesh.Tetrahedra.size());
+      return status.IsOk() ? Calculator(mesh, context.GetNumberOfThreads(), volumes).Run(context)
+                           : status;
+    });
 }
 } // namespace cdm

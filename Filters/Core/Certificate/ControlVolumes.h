@@ -30,12 +30,6 @@
 
 namespace cdm
 {
-struct ControlVolumeOptions
-{
-  /** 0: one for each processor core. */
-  int NumberOfThreads = 0;
-};
-
 /** The part of a region that is nearest to a point of it. */
 struct ControlBox
 {
@@ -76,8 +70,8 @@ struct ControlVolumes
 };
 
 /** Neighbors are used. */
-Status ComputeControlVolumes(const TetMesh& mesh, const ControlVolumeOptions& options,
-  const ExecutionContext& context, ControlVolumes& volumes);
+Status ComputeControlVolumes(
+  const TetMesh& mesh, const ExecutionContext& context, ControlVolumes& volumes);
 } // namespace cdm
 
 #endif

@@ -817,19 +817,27 @@ Status CheckMeshInput(const TetMesh& mesh, const TriangleMesh* boundary)
 }
 
 Status CheckTetMesh(const TetMesh& mesh, const TriangleMesh* boundary,
-  const ExecutionContext& context, MeshCheckReport& report, int numberOfThreads)
+  const ExecutionContext& context, MeshCheckReport& report)
 {
-  report = {};
-  const Status status = CheckMeshInput(mesh, boundary);
-  if (status.IsOk() && mesh.Neighbors.size() != mesh.Tetrahedra.size())
-  {
-    return Status::InvalidInput(
-      "The mesh needs four neighbours for each tetrahedron: BuildNeighbors() makes them.");
-  }
-  return status.IsOk() ? Checker(mesh, boundary, numberOfThreads, report).Run(context) : status;
+  return RunGuarded(
+    [&]() -> Status
+    {
+      report = {};
+      const Status status = CheckMeshInput(mesh, boundary);
+      if (status.IsOk() && mesh.Neighbors.size() != mesh.Tetrahedra.size())
+      {
+        return Status::InvalidInput(
+          "The mesh needs four neighbours for each tetrahedron: BuildNeighbors() makes them.");
+      }
+      return status.IsOk()
+        ? Checker(mesh, boundary, context.GetNumberOfThreads(), report).Run(context)
+        : status;
+    });
 }
 
-Status BuildNeighbors(TetMesh& mesh, int numberOfThreads)
+namespace
+{
+Status RunBuildNeighbors(TetMesh& mesh, int numberOfThreads)
 {
   Status status = CheckTetrahedra(mesh);
   if (!status.IsOk())
@@ -875,8 +883,16 @@ Status BuildNeighbors(TetMesh& mesh, int numberOfThreads)
   }
   return {};
 }
+} // namespace
 
-Status CheckMeshInvariants(const TetMesh& mesh, int numberOfThreads)
+Status BuildNeighbors(TetMesh& mesh, int numberOfThreads)
+{
+  return RunGuarded([&] { return RunBuildNeighbors(mesh, numberOfThreads); });
+}
+
+namespace
+{
+Status RunCheckMeshInvariants(const TetMesh& mesh, int numberOfThreads)
 {
   const std::size_t count = mesh.Tetrahedra.size();
   if (mesh.Regions.size() != count || mesh.Neighbors.size() != count)
@@ -919,5 +935,11 @@ Status CheckMeshInvariants(const TetMesh& mesh, int numberOfThreads)
                              " tetrahedra are inverted, flat, or have wrong points or neighbors: "
                              "only valid meshes can be changed.",
                            wrong);
+}
+} // namespace
+
+Status CheckMeshInvariants(const TetMesh& mesh, int numberOfThreads)
+{
+  return RunGuarded([&] { return RunCheckMeshInvariants(mesh, numberOfThreads); });
 }
 } // namespace cdm

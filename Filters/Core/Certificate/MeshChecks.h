@@ -113,24 +113,21 @@ struct MeshCheckReport
  */
 Status CheckMeshInput(const TetMesh& mesh, const TriangleMesh* boundary);
 
-/**
- * boundary may be null: then boundary and volumes are not compared. Threads: at least 1; the report
- * does not depend on it.
- */
+/** boundary may be null: then boundary and volumes are not compared. */
 Status CheckTetMesh(const TetMesh& mesh, const TriangleMesh* boundary,
-  const ExecutionContext& context, MeshCheckReport& report, int numberOfThreads = 1);
+  const ExecutionContext& context, MeshCheckReport& report);
 
 /**
  * The invariants of TetMesh.h, one tetrahedron by itself: InvalidInput names those that are
  * inverted, flat, or have wrong points or neighbors. What stages ask for that change a mesh.
  */
-Status CheckMeshInvariants(const TetMesh& mesh, int numberOfThreads = 1);
+Status CheckMeshInvariants(const TetMesh& mesh, int numberOfThreads);
 
 /**
  * Neighbors of tetrahedra from their vertices alone; for meshes that come from outside. Threads: 0:
  * one for each processor core. No check: it takes SimplexIncidence.h.
  */
-Status BuildNeighbors(TetMesh& mesh, int numberOfThreads = 0);
+Status BuildNeighbors(TetMesh& mesh, int numberOfThreads = 1);
 } // namespace cdm
 
 #endif

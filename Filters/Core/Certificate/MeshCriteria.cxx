@@ -98,11 +98,11 @@ bool AreSmooth(const BorderFacet& first, const BorderFacet& second, const EdgeId
 class Evaluator
 {
 public:
-  Evaluator(const TetMesh& mesh, const TriangleMesh* boundary, const MeshCriteriaOptions& options,
+  Evaluator(const TetMesh& mesh, const TriangleMesh* boundary, int numberOfThreads,
     MeshCriteriaReport& report)
-    : Mesh(mesh), Boundary(boundary), Report(report), Incidence(mesh, options.NumberOfThreads)
+    : Mesh(mesh), Boundary(boundary), Report(report), Incidence(mesh, numberOfThreads)
   {
-    this->LoopOptions.NumberOfThreads = options.NumberOfThreads;
+    this->LoopOptions.NumberOfThreads = numberOfThreads;
   }
 
   Status Run(const ExecutionContext& context);
@@ -785,14 +785,20 @@ std::string MeshCriteriaReport::GetCertificate() const
 }
 
 Status EvaluateMeshCriteria(const TetMesh& mesh, const TriangleMesh* boundary,
-  const MeshCriteriaOptions& options, const ExecutionContext& context, MeshCriteriaReport& report)
+  const ExecutionContext& context, MeshCriteriaReport& report)
 {
-  report = {};
-  Status status = CheckNumberOfTetrahedra(mesh.Tetrahedra.size());
-  if (status.IsOk())
-  {
-    status = CheckMeshInput(mesh, boundary);
-  }
-  return status.IsOk() ? Evaluator(mesh, boundary, options, report).Run(context) : status;
+  return RunGuarded(
+    [&]() -> Status
+    {
+      report = {};
+      Status status = CheckNumberOfTetrahedra(mesh.Tetrahedra.size());
+      if (status.IsOk())
+      {
+        status = CheckMeshInput(mesh, boundary);
+      }
+      return status.IsOk()
+        ? Evaluator(mesh, boundary, context.GetNumberOfThreads(), report).Run(context)
+        : status;
+    });
 }
 } // namespace cdm

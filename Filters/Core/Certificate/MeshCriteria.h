@@ -95,12 +95,6 @@ struct TetrahedronQuality
 TetrahedronQuality GetTetrahedronQuality(
   const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-struct MeshCriteriaOptions
-{
-  /** 0: one for each processor core. */
-  int NumberOfThreads = 0;
-};
-
 struct MeshCriteriaReport
 {
   Id Tetrahedra = 0;
@@ -147,7 +141,7 @@ struct MeshCriteriaReport
  * compared.
  */
 Status EvaluateMeshCriteria(const TetMesh& mesh, const TriangleMesh* boundary,
-  const MeshCriteriaOptions& options, const ExecutionContext& context, MeshCriteriaReport& report);
+  const ExecutionContext& context, MeshCriteriaReport& report);
 } // namespace cdm
 
 #endif

@@ -298,9 +298,9 @@ Status Builder::InsertRound(std::vector<Id> left, int numberOfThreads)
   const bool isDone = this->Work<false>(worker, report);
   if (!worker.Postponed.empty())
   {
-    return Status::InvalidInput("The points need more than " +
-      std::to_string(VertexInsertion::MaximumTetrahedra) +
-      " tetrahedra, which 32-bit facet ids cannot number.");
+    return Status::Failure(StatusCode::LimitReached,
+      "The points need more than " + std::to_string(VertexInsertion::MaximumTetrahedra) +
+        " tetrahedra, which 32-bit facet ids cannot number.");
   }
   return isDone ? Status() : Status::Aborted();
 }

@@ -76,9 +76,10 @@ Status PartRegions::FindFacets()
   if (!missing.empty())
   {
     const std::string count = std::to_string(missing.size());
-    return Status::InvalidInput(count +
+    return Status::Failure(StatusCode::NotDelaunay,
+      count +
         " triangles of the surface are not Delaunay; refine the surface with "
-        "vtkDelaunaySurfaceRefiner first (mesh points on its second port, if there are any).",
+        "the surface refiner first (mesh points on its second port, if there are any).",
       std::move(missing));
   }
   return {};
@@ -125,8 +126,9 @@ Status PartRegions::SetRegionOfComponent(Id component, Id region, Id triangle)
   Component& item = this->Components[component];
   if (item.IsKnown && item.Region != region)
   {
-    return Status::InvalidInput("Regions " + std::to_string(std::min(item.Region, region)) +
-        " and " + std::to_string(std::max(item.Region, region)) +
+    return Status::Failure(StatusCode::NotClosed,
+      "Regions " + std::to_string(std::min(item.Region, region)) + " and " +
+        std::to_string(std::max(item.Region, region)) +
         " are not separated by the surface, or its BoundaryLabels contradict each other. Close the "
         "surface or correct the labels.",
       triangle == NoId ? std::vector<Id>() : std::vector<Id>{ triangle });
@@ -192,9 +194,11 @@ Status PartRegions::Finish(RawVector<Id>& regions) const
       if (this->Mesh.Neighbors[t][i] == NoId && (this->Barriers[t] >> i & 1) == 0 &&
         this->HasOwnPoint(facet))
       {
-        return Status::InvalidInput("Region " + std::to_string(component.Region) +
-          " is not closed: it reaches the convex hull of the points. Close the surface or correct "
-          "its BoundaryLabels.");
+        return Status::Failure(StatusCode::NotClosed,
+          "Region " + std::to_string(component.Region) +
+            " is not closed: it reaches the convex hull of the points. Close the surface or "
+            "correct "
+            "its BoundaryLabels.");
       }
     }
     regions.push_back(component.Region);

@@ -564,8 +564,9 @@ void PartTetrahedralization::Take(const Doubt& doubt)
   }
 }
 
-Status PartTetrahedralization::Update(int numberOfThreads, const ExecutionContext& context)
+Status PartTetrahedralization::Update(const ExecutionContext& context)
 {
+  const int numberOfThreads = context.GetNumberOfThreads();
   // One number more stands for the point at infinity.
   const Status range =
     CheckIdRange(std::uint64_t(this->Points.size()) + 1, "points in and around one part");

@@ -140,7 +140,7 @@ public:
    * A round: tetrahedralizes what is known, and makes the queries. The first one needs four points
    * that are not coplanar. A part without points of its own has nothing to do.
    */
-  Status Update(int numberOfThreads, const ExecutionContext& context);
+  Status Update(const ExecutionContext& context);
   /** What each part is to be asked. */
   const std::vector<std::vector<ConflictQuery>>& GetQueries() const { return this->Queries; }
   /** As the part that is asked. */

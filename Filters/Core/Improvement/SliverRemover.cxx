@@ -113,7 +113,7 @@ private:
   bool IsDead(Id tetrahedron) const { return this->Mesh.Tetrahedra[tetrahedron][0] == NoId; }
   const Vec3& GetPoint(Id point) const { return this->Mesh.Points[point]; }
   double MeasureAngle(const TetrahedronIds& ids) const;
-  void MeasureAngles();
+  void MeasureAngles(int numberOfThreads);
   double MeasureSmallestAngle() const;
   void Schedule(Id tetrahedron);
   bool FindRing(Id tetrahedron, int edge, std::size_t maximumSize, Ring& ring) const;
@@ -831,11 +831,11 @@ bool Remover::PeelAndFlip(const ExecutionContext& context)
   return !isAborted;
 }
 
-void Remover::MeasureAngles()
+void Remover::MeasureAngles(int numberOfThreads)
 {
   const std::size_t count = this->Mesh.Tetrahedra.size();
   this->Angles.resize(count);
-  ParallelLoop(count, { this->Options.NumberOfThreads }, {}, "",
+  ParallelLoop(count, { numberOfThreads }, {}, "",
     [this](std::size_t begin, std::size_t end, std::size_t)
     {
       for (std::size_t t = begin; t < end; ++t)
@@ -847,7 +847,7 @@ void Remover::MeasureAngles()
 
 Status Remover::Run(const ExecutionContext& context)
 {
-  this->MeasureAngles();
+  this->MeasureAngles(context.GetNumberOfThreads());
   this->Stamps.assign(this->Mesh.Tetrahedra.size(), 0);
   this->Report.SmallestDihedralAngleBefore = this->MeasureSmallestAngle();
   const bool mayMove = (!this->Options.IsFree.empty() || this->Options.AreBoundaryPointsFree) &&
@@ -860,7 +860,7 @@ Status Remover::Run(const ExecutionContext& context)
       MoveSliverPoints(this->Target, this->Options.IsFree, this->Options.AreBoundaryPointsFree,
         context.Part(share, 1.0), this->Mesh, this->Report.MovedPoints);
     isAborted = !status.IsOk();
-    this->MeasureAngles();
+    this->MeasureAngles(context.GetNumberOfThreads());
   }
   this->Report.SmallestDihedralAngleAfter = this->MeasureSmallestAngle();
   return isAborted ? Status::Aborted() : Status{};
@@ -870,13 +870,17 @@ Status Remover::Run(const ExecutionContext& context)
 Status RemoveSlivers(TetMesh& mesh, const SliverRemoverOptions& options,
   const ExecutionContext& context, SliverRemoverReport& report)
 {
-  report = {};
-  const Status status = CheckMeshInvariants(mesh, options.NumberOfThreads);
-  if (status.IsOk() && !options.IsFree.empty() && options.IsFree.size() != mesh.Points.size())
-  {
-    return Status::InvalidInput(
-      "Which points are free has to be said for each point, or for none.");
-  }
-  return status.IsOk() ? Remover(mesh, options, report).Run(context) : status;
+  return RunGuarded(
+    [&]() -> Status
+    {
+      report = {};
+      const Status status = CheckMeshInvariants(mesh, context.GetNumberOfThreads());
+      if (status.IsOk() && !options.IsFree.empty() && options.IsFree.size() != mesh.Points.size())
+      {
+        return Status::InvalidInput(
+          "Which points are free has to be said for each point, or for none.");
+      }
+      return status.IsOk() ? Remover(mesh, options, report).Run(context) : status;
+    });
 }
 } // namespace cdm

@@ -62,8 +62,6 @@ struct SliverRemoverOptions
   bool AreBoundaryPointsFree = false;
   /** Flips and smoothing need not keep the mesh Delaunay; points of the boundary then stay. */
   bool QualityBeforeDelaunay = false;
-  /** Threads to look at the mesh with, at least 1; the result does not depend on it. */
-  int NumberOfThreads = 1;
 };
 
 struct SliverRemoverReport

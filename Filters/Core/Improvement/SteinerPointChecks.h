@@ -14,7 +14,6 @@ namespace cdm
 /**
  * Whether mesh and boundary fit each other and all numbers are in their ranges: an error names
  * tetrahedra, triangles of the boundary, or new points.
- * @param threads 0: as many as the machine has
  */
 Status CheckSteinerPointInput(const SteinerPointRefinerInput& input, int threads);
 } // namespace cdm

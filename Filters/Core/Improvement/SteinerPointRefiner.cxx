@@ -318,7 +318,6 @@ DelaunaySurfaceRefinerOptions Refiner::GetSurfaceOptions() const
   options.StructuralEdges.FlatnessRatio = this->Options.StructuralEdges.FlatnessRatio;
   options.MaximumEdgeLength = this->Options.MaximumEdgeLength;
   options.MeshPointClearanceRatio = 0.0;
-  options.NumberOfThreads = this->Options.NumberOfThreads;
   if (this->Options.MaximumVolume > 0.0)
   {
     const double edge =
@@ -366,8 +365,8 @@ Status Refiner::StartRound()
     kept.push_back(this->Interior[p]);
   }
   this->Edges = std::move(refined.StructuralEdges);
-  status = this->StartRoundOn(
-    refined.Surface, kept, refined.Surface.SourceCells, context.Part(0.3, 0.4));
+  status =
+    this->StartRoundOn(refined.Surface, kept, refined.Surface.SourceCells, context.Part(0.3, 0.4));
   if (!status.IsOk())
   {
     return status;
@@ -395,10 +394,8 @@ Status Refiner::StartRoundOn(const TriangleMesh& surface,
   AdvancingFrontTetrahedralizerInput boundary;
   boundary.Surface = &surface;
   boundary.MeshPoints = &points;
-  AdvancingFrontTetrahedralizerOptions threads;
-  threads.NumberOfThreads = this->Options.NumberOfThreads;
   AdvancingFrontTetrahedralizerOutput made;
-  Status status = TetrahedralizeByAdvancingFront(boundary, threads, context, made);
+  Status status = TetrahedralizeByAdvancingFront(boundary, {}, context, made);
   if (!status.IsOk())
   {
     return this->Translate(std::move(status), sourceCells);
@@ -443,14 +440,13 @@ Status Refiner::RestoreRound(const ExecutionContext& context)
 {
   this->IsStuck = true;
   this->IsBoundaryFinal = true;
-  this->Output.Report.BoundaryPoints -= static_cast<Id>(
-    this->Surface.Points.size() - this->Noted.Surface.Points.size());
+  this->Output.Report.BoundaryPoints -=
+    static_cast<Id>(this->Surface.Points.size() - this->Noted.Surface.Points.size());
   this->Surface.SourceCells = this->Noted.Surface.SourceCells;
   this->Edges = std::move(this->Noted.Edges);
   std::vector<Id> sources(this->Surface.SourceCells.size());
   std::iota(sources.begin(), sources.end(), 0);
-  return this->StartRoundOn(
-    this->Noted.Surface, this->Noted.Interior, sources, context);
+  return this->StartRoundOn(this->Noted.Surface, this->Noted.Interior, sources, context);
 }
 
 /** Whether there is little to be split, and facets are plane: curved ones may have to be tried. */
@@ -906,7 +902,7 @@ Status Refiner::MoveOrRequest(Outcome& outcome)
 
 Status Refiner::Run()
 {
-  Status status = CheckSteinerPointInput(this->Input, this->Options.NumberOfThreads);
+  Status status = CheckSteinerPointInput(this->Input, this->Context.GetNumberOfThreads());
   if (status.IsOk())
   {
     this->ExtractSurface();
@@ -930,7 +926,9 @@ Status Refiner::Run()
 }
 } // namespace
 
-Status RefineBySteinerPoints(const SteinerPointRefinerInput& input,
+namespace
+{
+Status RunRefineBySteinerPoints(const SteinerPointRefinerInput& input,
   const SteinerPointRefinerOptions& options, const ExecutionContext& context,
   SteinerPointRefinerOutput& output)
 {
@@ -954,5 +952,13 @@ Status RefineBySteinerPoints(const SteinerPointRefinerInput& input,
     output = SteinerPointRefinerOutput();
   }
   return status;
+}
+} // namespace
+
+Status RefineBySteinerPoints(const SteinerPointRefinerInput& input,
+  const SteinerPointRefinerOptions& options, const ExecutionContext& context,
+  SteinerPointRefinerOutput& output)
+{
+  return RunGuarded([&] { return RunRefineBySteinerPoints(input, options, context, output); });
 }
 } // namespace cdm

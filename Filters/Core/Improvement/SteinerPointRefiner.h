@@ -75,8 +75,6 @@ struct SteinerPointRefinerOptions
    * had.
    */
   Id MaximumNewPoints = 0;
-  /** Threads to use, at least 1; the result does not depend on it. */
-  int NumberOfThreads = 1;
 };
 
 struct SteinerPointRefinerInput

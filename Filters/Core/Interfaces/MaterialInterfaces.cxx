@@ -48,7 +48,8 @@ Status CheckGrid(const LabelledGrid& grid)
     corners *= size;
     if (size > std::numeric_limits<Id>::max() || corners > std::numeric_limits<Id>::max())
     {
-      return Status::InvalidInput("The grid has more than 2^31 - 1 corners: cut it into blocks.");
+      return Status::Failure(
+        StatusCode::LimitReached, "The grid has more than 2^31 - 1 corners: cut it into blocks.");
     }
   }
   if (static_cast<std::int64_t>(grid.Regions.size()) != cells)
@@ -267,8 +268,11 @@ double GetShortestEdge(const LabelledGrid& grid)
 }
 } // namespace
 
-Status ExtractMaterialInterfaces(const LabelledGrid& grid, const MaterialInterfacesOptions& options,
-  const ExecutionContext& context, TriangleMesh& surface, MaterialInterfacesReport& report)
+namespace
+{
+Status RunExtractMaterialInterfaces(const LabelledGrid& grid,
+  const MaterialInterfacesOptions& options, const ExecutionContext& context, TriangleMesh& surface,
+  MaterialInterfacesReport& report)
 {
   surface = {};
   report = {};
@@ -287,7 +291,8 @@ Status ExtractMaterialInterfaces(const LabelledGrid& grid, const MaterialInterfa
   }
   if (net.Faces.size() > static_cast<std::size_t>(std::numeric_limits<Id>::max()) / 12)
   {
-    return Status::InvalidInput("The interfaces have too many faces: cut the grid into blocks.");
+    return Status::Failure(
+      StatusCode::LimitReached, "The interfaces have too many faces: cut the grid into blocks.");
   }
   report.Faces = static_cast<Id>(net.Faces.size());
   TriangleMesh result;
@@ -325,5 +330,13 @@ Status ExtractMaterialInterfaces(const LabelledGrid& grid, const MaterialInterfa
   }
   surface = std::move(result);
   return {};
+}
+} // namespace
+
+Status ExtractMaterialInterfaces(const LabelledGrid& grid, const MaterialInterfacesOptions& options,
+  const ExecutionContext& context, TriangleMesh& surface, MaterialInterfacesReport& report)
+{
+  return RunGuarded(
+    [&] { return RunExtractMaterialInterfaces(grid, options, context, surface, report); });
 }
 } // namespace cdm

@@ -687,7 +687,9 @@ TriangleMesh MarkPatches(const TriangleMesh& surface, const std::vector<unsigned
 }
 } // namespace
 
-Status ReduceSurface(const SurfaceReductionOptions& options, const ExecutionContext& context,
+namespace
+{
+Status RunReduceSurface(const SurfaceReductionOptions& options, const ExecutionContext& context,
   TriangleMesh& surface, SurfaceReductionReport& report)
 {
   report = {};
@@ -710,5 +712,12 @@ Status ReduceSurface(const SurfaceReductionOptions& options, const ExecutionCont
   reduction.Finish(report);
   surface = std::move(reduced);
   return {};
+}
+} // namespace
+
+Status ReduceSurface(const SurfaceReductionOptions& options, const ExecutionContext& context,
+  TriangleMesh& surface, SurfaceReductionReport& report)
+{
+  return RunGuarded([&] { return RunReduceSurface(options, context, surface, report); });
 }
 } // namespace cdm

@@ -85,9 +85,9 @@ Status FindLayerFeet(const PointLayers& layers, const RegionLocator& locator,
   std::vector<LayerVertex> vertices;
   if (!MeasureVertices(layers, locator, refined, vertices))
   {
-    return Status::InvalidInput("There are to be layers in region " +
-      std::to_string(layers.Region) + " off region " + std::to_string(layers.Neighbor) +
-      ", but these have no interface.");
+    return Status::Failure(StatusCode::InvalidOption,
+      "There are to be layers in region " + std::to_string(layers.Region) + " off region " +
+        std::to_string(layers.Neighbor) + ", but these have no interface.");
   }
   const TriangleMesh& surface = refined.Surface;
   for (std::size_t v = 0; v < vertices.size(); ++v)
@@ -150,7 +150,7 @@ Status PlaceLayers(const PointLayers& layers, const std::vector<LayerFoot>& feet
       }
     };
     if (!ParallelLoop(
-          feet.size(), { options.NumberOfThreads, 64 }, context, "Placing layers", test))
+          feet.size(), { context.GetNumberOfThreads(), 64 }, context, "Placing layers", test))
     {
       return Status::Aborted();
     }
@@ -189,10 +189,8 @@ Status PlaceLayerPoints(const ExecutionContext& context, MeshPointPlacer& placer
   DelaunaySurfaceRefinerInput refinerInput;
   refinerInput.Surface = placer.GetInput().Surface;
   refinerInput.Sizing = placer.GetInput().Sizing;
-  DelaunaySurfaceRefinerOptions refinerOptions;
-  refinerOptions.NumberOfThreads = options.NumberOfThreads;
   DelaunaySurfaceRefinerOutput refined;
-  Status status = RefineDelaunaySurface(refinerInput, refinerOptions, context, refined);
+  Status status = RefineDelaunaySurface(refinerInput, {}, context, refined);
   for (auto layers = options.Layers.begin(); layers != options.Layers.end() && status.IsOk();
        ++layers)
   {

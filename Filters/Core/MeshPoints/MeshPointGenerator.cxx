@@ -9,7 +9,9 @@
 
 namespace cdm
 {
-Status GenerateMeshPoints(const MeshPointGeneratorInput& input,
+namespace
+{
+Status RunGenerateMeshPoints(const MeshPointGeneratorInput& input,
   const MeshPointGeneratorOptions& options, const ExecutionContext& context,
   MeshPointGeneratorOutput& output)
 {
@@ -36,5 +38,13 @@ Status GenerateMeshPoints(const MeshPointGeneratorInput& input,
     default:
       return {};
   }
+}
+} // namespace
+
+Status GenerateMeshPoints(const MeshPointGeneratorInput& input,
+  const MeshPointGeneratorOptions& options, const ExecutionContext& context,
+  MeshPointGeneratorOutput& output)
+{
+  return RunGuarded([&] { return RunGenerateMeshPoints(input, options, context, output); });
 }
 } // namespace cdm

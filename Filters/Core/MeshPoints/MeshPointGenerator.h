@@ -92,8 +92,6 @@ struct MeshPointGeneratorOptions
   /** Distance from the boundary in spacings of the point. >= 0. */
   double BoundaryClearance = 0.5;
   Id MaximumNumberOfPoints = 10000000;
-  /** 0: one for each processor core. */
-  int NumberOfThreads = 0;
 };
 
 struct MeshPointGeneratorInput

@@ -38,7 +38,6 @@ Status MeshPointPlacer::BuildOctree(
   options.MaximumRatio = ratio;
   options.MaximumLevelDifference = this->Options.MaximumLevelDifference;
   options.MaximumNumberOfLeaves = this->Options.MaximumNumberOfPoints;
-  options.NumberOfThreads = this->Options.NumberOfThreads;
   return octree.Build(this->Locator, this->Input.Sizing, options, context);
 }
 
@@ -84,7 +83,7 @@ Status MeshPointPlacer::PlaceAll(std::size_t count, const ExecutionContext& cont
     Vec3 Position;
     Id Region;
   };
-  const ParallelLoopOptions loop{ this->Options.NumberOfThreads, 1024 };
+  const ParallelLoopOptions loop{ context.GetNumberOfThreads(), 1024 };
   std::vector<std::vector<PlacedPoint>> blocks(GetNumberOfBlocks(count, loop));
   const auto placeBlock = [&](std::size_t begin, std::size_t end, std::size_t block)
   {

@@ -70,9 +70,9 @@ bool MakeEntries(const SizingOctree& octree, const MeshPointGeneratorOptions& op
     }
   };
   const char* const activity = "Placing points";
-  return ParallelLoop(leaves.size(), { options.NumberOfThreads, 1024 }, context.Part(0.0, 0.2),
+  return ParallelLoop(leaves.size(), { context.GetNumberOfThreads(), 1024 }, context.Part(0.0, 0.2),
            activity, makeEntries) &&
-    ParallelSort(entries, options.NumberOfThreads, context.Part(0.2, 1.0), activity,
+    ParallelSort(entries, context.GetNumberOfThreads(), context.Part(0.2, 1.0), activity,
       [](const Entry& a, const Entry& b) { return a.Key < b.Key; });
 }
 } // namespace

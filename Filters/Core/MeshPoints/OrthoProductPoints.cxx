@@ -128,8 +128,8 @@ Status FindPlanes(const ExecutionContext& context, const MeshPointPlacer& placer
       ticks[axis] = FindTicks(octree, placer, static_cast<int>(axis));
     }
   };
-  if (!ParallelLoop(
-        3, { options.NumberOfThreads, 1 }, context.Part(0.9, 1.0), "Placing planes", findTicks))
+  if (!ParallelLoop(3, { context.GetNumberOfThreads(), 1 }, context.Part(0.9, 1.0),
+        "Placing planes", findTicks))
   {
     return Status::Aborted();
   }

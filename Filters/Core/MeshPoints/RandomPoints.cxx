@@ -127,7 +127,7 @@ Status RandomPlacement::ThrowDarts(
         : this->Placer.FindRegion(dart.Position, dart.Spacing, getLeaf(i).Region);
     }
   };
-  if (!ParallelLoop(count, { this->Options.NumberOfThreads, 64 }, context, "Throwing darts", test))
+  if (!ParallelLoop(count, { context.GetNumberOfThreads(), 64 }, context, "Throwing darts", test))
   {
     return Status::Aborted();
   }
@@ -237,7 +237,7 @@ bool RandomPlacement::FindMoments(const std::vector<SmoothingCell>& cells,
       }
     };
     const double all = static_cast<double>(cells.size());
-    if (!ParallelLoop(count, { this->Options.NumberOfThreads, 64 },
+    if (!ParallelLoop(count, { context.GetNumberOfThreads(), 64 },
           context.Part(first / all, (first + count) / all), "Smoothing", findNearest))
     {
       return false;
@@ -282,7 +282,7 @@ bool RandomPlacement::MoveToCenters(
       }
     }
   };
-  return ParallelLoop(points.size(), { this->Options.NumberOfThreads, 256 }, context.Part(0.9, 1.0),
+  return ParallelLoop(points.size(), { context.GetNumberOfThreads(), 256 }, context.Part(0.9, 1.0),
     "Smoothing", move);
 }
 
@@ -305,7 +305,7 @@ Status RandomPlacement::Smooth(const ExecutionContext& context)
       cells[i] = this->MakeSmoothingCell(*leaves[i]);
     }
   };
-  bool isDone = ParallelLoop(cells.size(), { this->Options.NumberOfThreads, 256 },
+  bool isDone = ParallelLoop(cells.size(), { context.GetNumberOfThreads(), 256 },
     context.Part(0.0, 0.05), "Smoothing", makeCells);
   for (int i = 0; i < iterations && isDone; ++i)
   {

@@ -123,16 +123,16 @@ Status RegionLocator::FindRegions()
   wrong.erase(std::unique(wrong.begin(), wrong.end()), wrong.end());
   if (!wrong.empty())
   {
-    return Status::InvalidInput(
+    return Status::Failure(StatusCode::NotClosed,
       "BoundaryLabels contradict each other: triangles that look into the same space have "
       "different regions on that side. Correct them, or close the surface if it has openings.",
       std::move(wrong));
   }
   if (segments == 0)
   {
-    return Status::InvalidInput("The surface encloses nothing: it has " +
-        std::to_string(sides.OpenTriangles.size()) +
-        " triangles with an open edge. Close it (MaximumGapEdges of vtkBoundaryTriangulator "
+    return Status::Failure(StatusCode::NotClosed,
+      "The surface encloses nothing: it has " + std::to_string(sides.OpenTriangles.size()) +
+        " triangles with an open edge. Close it (MaximumGapEdges of the boundary triangulator "
         "patches gaps).",
       sides.OpenTriangles);
   }

@@ -62,7 +62,6 @@ public:
     const SizingCells& cells, const GradationOptions& options, const std::vector<double>& sizes)
     : Cells(cells), Gradation(options.Gradation), Sizes(sizes.size()), IsNear(sizes.size())
   {
-    this->LoopOptions.NumberOfThreads = options.NumberOfThreads;
     std::copy(sizes.begin(), sizes.end(), this->Sizes.begin());
   }
 
@@ -172,6 +171,7 @@ bool GradationBound::LowerNeighbors(double limit, const ExecutionContext& contex
 
 Status GradationBound::Run(const ExecutionContext& context, std::vector<double>& sizes)
 {
+  this->LoopOptions.NumberOfThreads = context.GetNumberOfThreads();
   // Points of so many cells in a row at a time; more if to look for them takes longer than to visit
   // them, as where sizes differ by far more than cells do.
   constexpr double cellsAtOnce = 4.0;
@@ -217,6 +217,7 @@ Status GradationBound::Run(const ExecutionContext& context, std::vector<double>&
 Status BoundGradation(const SizingCells& cells, const GradationOptions& options,
   const ExecutionContext& context, std::vector<double>& sizes)
 {
-  return GradationBound(cells, options, sizes).Run(context, sizes);
+  return RunGuarded(
+    [&]() -> Status { return GradationBound(cells, options, sizes).Run(context, sizes); });
 }
 } // namespace cdm

@@ -86,8 +86,6 @@ struct GradationOptions
 {
   /** How much larger sizes may be for each unit of distance. > 0. */
   double Gradation = 0.3;
-  /** 0: one for each processor core. The sizes do not depend on it. */
-  int NumberOfThreads = 0;
 };
 
 /** One size for each point. */

@@ -51,8 +51,9 @@ SizingOctree::Units FindRoots(const Vec3& extents)
 
 Status MakeTooManyPoints(Id limit)
 {
-  return Status::InvalidInput("The sizing asks for more than " + std::to_string(limit) +
-    " points, the limit (MaximumNumberOfPoints). Enlarge the spacing, or raise the limit.");
+  return Status::Failure(StatusCode::LimitReached,
+    "The sizing asks for more than " + std::to_string(limit) +
+      " points, the limit (MaximumNumberOfPoints). Enlarge the spacing, or raise the limit.");
 }
 
 int SizingOctree::CountChildren(const Node& node)
@@ -177,8 +178,9 @@ Status SizingOctree::Split(Id index, int axes)
       children *= 2;
       if (this->Nodes[index].Levels[axis] == MaximumLevel)
       {
-        return Status::InvalidInput("The sizing asks for edges shorter than the bounding box "
-                                    "divided by 2^19, which the octree cannot make.");
+        return Status::Failure(StatusCode::LimitReached,
+          "The sizing asks for edges shorter than the bounding box "
+          "divided by 2^19, which the octree cannot make.");
       }
     }
   }
@@ -463,7 +465,7 @@ Status SizingOctree::Build(const RegionLocator& locator, const SizingField& sizi
   this->Locator = &locator;
   this->Sizing = &sizing;
   this->Options = options;
-  this->LoopOptions = { options.NumberOfThreads, 64 };
+  this->LoopOptions = { context.GetNumberOfThreads(), 64 };
   this->Origin = locator.GetLow();
   const Vec3 extents = locator.GetHigh() - locator.GetLow();
   this->Roots = FindRoots(extents);

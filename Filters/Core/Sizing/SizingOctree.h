@@ -40,8 +40,6 @@ struct SizingOctreeOptions
   /** By how many levels neighbors may differ. 0: no bound. */
   int MaximumLevelDifference = 1;
   Id MaximumNumberOfLeaves = 10000000;
-  /** 0: one for each processor core. */
-  int NumberOfThreads = 0;
 };
 
 /** A sizing needs more points or leaves than allowed. */

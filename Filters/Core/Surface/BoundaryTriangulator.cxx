@@ -102,13 +102,14 @@ private:
     if (!(this->Options.MergeTolerance >= 0.0) || std::isinf(this->Options.MergeTolerance) ||
       this->Options.MaximumGapEdges < 0)
     {
-      return Status::InvalidInput(
+      return Status::Failure(StatusCode::InvalidOption,
         "The merge tolerance and the maximum number of gap edges must not be negative.");
     }
     constexpr std::size_t limit = std::numeric_limits<Id>::max();
     if (in.Points.size() > limit || in.Connectivity.size() > limit / 4)
     {
-      return Status::InvalidInput("The surface has more points or polygons than 32 bit ids allow.");
+      return Status::Failure(
+        StatusCode::LimitReached, "The surface has more points or polygons than 32 bit ids allow.");
     }
     if (in.Offsets.empty() || in.Offsets.front() != 0 ||
       in.Offsets.back() != static_cast<Id>(in.Connectivity.size()) ||
@@ -511,7 +512,8 @@ private:
     }
     SortUnique(cells);
     const Id found = this->Output.Report.SelfIntersections;
-    return Status::InvalidInput("The surface intersects itself: " + std::to_string(found) +
+    return Status::Failure(StatusCode::SelfIntersecting,
+      "The surface intersects itself: " + std::to_string(found) +
         (static_cast<std::size_t>(found) < MaximumNumberOfPairs ? "" : " or more") +
         " pairs of triangles cross, overlap or touch, for example cells " +
         std::to_string(example->Cell) + " and " + std::to_string(example->OtherCell) + " at " +
@@ -614,12 +616,16 @@ private:
 Status TriangulateBoundary(const PolygonSoup& input, const BoundaryTriangulatorOptions& options,
   const ExecutionContext& context, BoundaryTriangulatorOutput& output)
 {
-  output = {};
-  Status status = Triangulation(input, options, context, output).Run();
-  if (status.IsAborted())
-  {
-    output = {};
-  }
-  return status;
+  return RunGuarded(
+    [&]() -> Status
+    {
+      output = {};
+      Status status = Triangulation(input, options, context, output).Run();
+      if (status.IsAborted())
+      {
+        output = {};
+      }
+      return status;
+    });
 }
 } // namespace cdm

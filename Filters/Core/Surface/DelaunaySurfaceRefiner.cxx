@@ -46,8 +46,8 @@ public:
   }
 
 private:
-  Status Prepare();
-  std::vector<Vec3> CollectMeshPoints();
+  Status Prepare(int numberOfThreads);
+  std::vector<Vec3> CollectMeshPoints(int numberOfThreads);
   Status SplitRequested();
   Status Finish();
 
@@ -66,7 +66,7 @@ private:
 };
 
 /** Those that keep clear of the surface. */
-std::vector<Vec3> SurfaceRefiner::CollectMeshPoints()
+std::vector<Vec3> SurfaceRefiner::CollectMeshPoints(int numberOfThreads)
 {
   std::vector<Vec3> kept;
   if (this->Input.MeshPoints == nullptr || this->Input.MeshPoints->empty())
@@ -77,7 +77,7 @@ std::vector<Vec3> SurfaceRefiner::CollectMeshPoints()
   const std::vector<Vec3>& meshPoints = *this->Input.MeshPoints;
   this->Output.KeptMeshPoints = FindClearMeshPoints(surface, meshPoints,
     this->Options.MeshPointClearanceRatio * GetBoundingBoxDiagonal(surface.Points),
-    this->Options.NumberOfThreads);
+    numberOfThreads);
   for (const Id i : this->Output.KeptMeshPoints)
   {
     kept.push_back(meshPoints[i]);
@@ -86,7 +86,7 @@ std::vector<Vec3> SurfaceRefiner::CollectMeshPoints()
   return kept;
 }
 
-Status SurfaceRefiner::Prepare()
+Status SurfaceRefiner::Prepare(int numberOfThreads)
 {
   Status status = CheckRefinableSurface(
     *this->Input.Surface, this->Input.MeshPoints != nullptr ? this->Input.MeshPoints->size() : 0);
@@ -102,7 +102,7 @@ Status SurfaceRefiner::Prepare()
   {
     return status;
   }
-  const std::vector<Vec3> meshPoints = this->CollectMeshPoints();
+  const std::vector<Vec3> meshPoints = this->CollectMeshPoints(numberOfThreads);
   this->NumberOfSurfacePoints = static_cast<Id>(surface.Points.size());
   this->NumberOfGivenPoints = this->NumberOfSurfacePoints + static_cast<Id>(meshPoints.size());
   this->Refinement = std::make_unique<SurfaceRefinement>(
@@ -220,7 +220,7 @@ Status SurfaceRefiner::Finish()
     return Status::InvalidInput("Two sheets of the surface with the same points lie within "
                                 "FlatnessRatio of each other and have become one: lower "
                                 "FlatnessRatio, or unite the sheets with a MergeTolerance of "
-                                "vtkBoundaryTriangulator.",
+                                "the boundary triangulator.",
       this->Duplicates);
   }
   if (this->Input.Surface->Labels.empty())
@@ -276,7 +276,7 @@ Status SurfaceRefiner::Finish()
 
 Status SurfaceRefiner::Run()
 {
-  Status status = this->Prepare();
+  Status status = this->Prepare(this->Context.GetNumberOfThreads());
   status = status.IsOk() ? this->Refinement->Refine(this->Context.Part(0.1, 0.95)) : status;
   status = status.IsOk() ? this->SplitRequested() : status;
   return status.IsOk() ? this->Finish() : status;
@@ -405,12 +405,16 @@ Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,
   const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
   DelaunaySurfaceRefinerOutput& output)
 {
-  output = DelaunaySurfaceRefinerOutput();
-  const Status status = SurfaceAttempts(input, options, context, output).Run();
-  if (!status.IsOk())
-  {
-    output = DelaunaySurfaceRefinerOutput();
-  }
-  return status;
+  return RunGuarded(
+    [&]() -> Status
+    {
+      output = DelaunaySurfaceRefinerOutput();
+      const Status status = SurfaceAttempts(input, options, context, output).Run();
+      if (!status.IsOk())
+      {
+        output = DelaunaySurfaceRefinerOutput();
+      }
+      return status;
+    });
 }
 } // namespace cdm

@@ -85,8 +85,6 @@ struct DelaunaySurfaceRefinerOptions
    * run into each other.
    */
   Id MaximumNewPoints = 0;
-  /** Threads for the first test of all triangles, at least 1; the result does not depend on it. */
-  int NumberOfThreads = 1;
 };
 
 struct DelaunaySurfaceRefinerInput

@@ -247,9 +247,10 @@ private:
       }
     }
     SortUnique(cells);
-    return Status::InvalidInput("Self-intersections are left after " +
-        std::to_string(this->Report.Rounds) + " rounds of cutting, for example of cell " +
-        std::to_string(cells.front()) + ": repair the cells named, or use a merge tolerance.",
+    return Status::Failure(StatusCode::SelfIntersecting,
+      "Self-intersections are left after " + std::to_string(this->Report.Rounds) +
+        " rounds of cutting, for example of cell " + std::to_string(cells.front()) +
+        ": repair the cells named, or use a merge tolerance.",
       cells);
   }
 
@@ -473,7 +474,9 @@ private:
 };
 } // namespace
 
-Status ResolveIntersections(const IntersectionResolverOptions& options,
+namespace
+{
+Status RunResolveIntersections(const IntersectionResolverOptions& options,
   const ExecutionContext& context, TriangleMesh& surface, std::vector<PointParents>& newPoints,
   IntersectionResolverReport& report)
 {
@@ -481,7 +484,7 @@ Status ResolveIntersections(const IntersectionResolverOptions& options,
   report = {};
   if (options.MaximumRounds <= 0 || !(options.Tolerance >= 0.0) || std::isinf(options.Tolerance))
   {
-    return Status::InvalidInput(
+    return Status::Failure(StatusCode::InvalidOption,
       "The number of rounds must be positive and the tolerance not negative.");
   }
   Resolver resolver(options, context, surface, newPoints, report);
@@ -497,5 +500,14 @@ Status ResolveIntersections(const IntersectionResolverOptions& options,
   }
   resolver.Write(surface);
   return {};
+}
+} // namespace
+
+Status ResolveIntersections(const IntersectionResolverOptions& options,
+  const ExecutionContext& context, TriangleMesh& surface, std::vector<PointParents>& newPoints,
+  IntersectionResolverReport& report)
+{
+  return RunGuarded(
+    [&] { return RunResolveIntersections(options, context, surface, newPoints, report); });
 }
 } // namespace cdm

@@ -347,7 +347,9 @@ double GetBoundingBoxDiagonal(const std::vector<Vec3>& points)
   return Distance(lower, upper);
 }
 
-Status ExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeOptions& options,
+namespace
+{
+Status RunExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeOptions& options,
   const ExecutionContext& context, StructuralEdgesOutput& output)
 {
   output = {};
@@ -414,5 +416,12 @@ Status ExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeO
   TraceChains(surface.Points.size(), output);
   context.Continue(1.0, "Structural edges found");
   return {};
+}
+} // namespace
+
+Status ExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeOptions& options,
+  const ExecutionContext& context, StructuralEdgesOutput& output)
+{
+  return RunGuarded([&] { return RunExtractStructuralEdges(surface, options, context, output); });
 }
 } // namespace cdm

@@ -49,7 +49,7 @@ Status CheckRefinableSurface(const TriangleMesh& surface, std::size_t numberOfMe
   {
     SortUnique(coincident);
     return Status::InvalidInput("Points of the surface coincide; merge them with "
-                                "vtkBoundaryTriangulator first.",
+                                "the boundary triangulator first.",
       {}, std::move(coincident));
   }
   std::vector<Id> degenerate;
@@ -69,7 +69,7 @@ Status CheckRefinableSurface(const TriangleMesh& surface, std::size_t numberOfMe
   if (!degenerate.empty())
   {
     return Status::InvalidInput(
-      "Triangles without area; clean the surface with vtkBoundaryTriangulator first.",
+      "Triangles without area; clean the surface with the boundary triangulator first.",
       std::move(degenerate));
   }
   return Status();

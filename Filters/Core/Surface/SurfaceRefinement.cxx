@@ -410,7 +410,7 @@ bool SurfaceRefinement::TestAll(const ExecutionContext& context)
   const auto count = static_cast<std::size_t>(this->Surface->GetNumberOfTriangles());
   std::vector<char> isGood(count, 0);
   std::vector<std::pair<Vec3, double>> proofs(count);
-  const ParallelLoopOptions options{ this->Options.NumberOfThreads, 1024 };
+  const ParallelLoopOptions options{ context.GetNumberOfThreads(), 1024 };
   if (!ParallelLoop(count, options, context, "Testing the surface",
         [&](std::size_t begin, std::size_t end, std::size_t)
         {

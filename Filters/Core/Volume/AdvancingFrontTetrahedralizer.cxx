@@ -30,7 +30,7 @@ public:
     const AdvancingFrontTetrahedralizerOptions& options, const ExecutionContext& context,
     AdvancingFrontTetrahedralizerOutput& output)
     : Input(input), Options(options), Context(context), Output(output),
-      NumberOfThreads(std::max(1, options.NumberOfThreads)), Surface(output.Boundary),
+      NumberOfThreads(context.GetNumberOfThreads()), Surface(output.Boundary),
       Points(output.Mesh.Points)
   {
   }
@@ -173,7 +173,7 @@ Status AdvancingFront::CollectPoints()
     if (AreCollinear(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]))
     {
       return Status::InvalidInput("A triangle of the surface has no area; clean the surface with "
-                                  "vtkBoundaryTriangulator first.",
+                                  "the boundary triangulator first.",
         { t });
     }
   }
@@ -214,7 +214,7 @@ Status AdvancingFront::CollectPoints()
   {
     SortUnique(coincident);
     return Status::InvalidInput("Points of the surface coincide; merge them with "
-                                "vtkBoundaryTriangulator first.",
+                                "the boundary triangulator first.",
       {}, std::move(coincident));
   }
   return Status();
@@ -266,9 +266,10 @@ Status AdvancingFront::FindGivenSeeds()
 
 Status AdvancingFront::MakeNothingEnclosedError(const SurfaceSides& sides)
 {
-  return Status::InvalidInput("The surface encloses nothing: it has " +
-      std::to_string(sides.OpenTriangles.size()) +
-      " triangles with an open edge. Close it (MaximumGapEdges of vtkBoundaryTriangulator patches "
+  return Status::Failure(StatusCode::NotClosed,
+    "The surface encloses nothing: it has " + std::to_string(sides.OpenTriangles.size()) +
+      " triangles with an open edge. Close it (MaximumGapEdges of the boundary triangulator "
+      "patches "
       "gaps), or switch CloseOpenBoundary on to mesh up to the convex hull.",
     sides.OpenTriangles);
 }
@@ -325,7 +326,8 @@ Status AdvancingFront::CheckSideLabel(Id side, Id region)
 {
   if (this->HasLabels && !this->HasSeeds() && this->GetSideLabel(side) != region)
   {
-    return Status::InvalidInput("Region " + std::to_string(region) +
+    return Status::Failure(StatusCode::NotClosed,
+      "Region " + std::to_string(region) +
         " is not closed, or its BoundaryLabels contradict each other: it reaches a triangle whose "
         "label on that side is " +
         std::to_string(this->GetSideLabel(side)) + ".",
@@ -432,7 +434,8 @@ void AdvancingFront::TakeAll()
 
 Status AdvancingFront::MakeHullError(const Seed& seed, const TriangleIds& points) const
 {
-  return Status::InvalidInput("Region " + std::to_string(seed.Region) +
+  return Status::Failure(StatusCode::NotClosed,
+    "Region " + std::to_string(seed.Region) +
       " is not closed: the front reached the convex hull of the points. Close the surface, correct "
       "its BoundaryLabels, or switch CloseOpenBoundary on.",
     seed.Triangle == NoId ? std::vector<Id>() : std::vector<Id>{ seed.Triangle },
@@ -647,12 +650,16 @@ Status TetrahedralizeByAdvancingFront(const AdvancingFrontTetrahedralizerInput& 
   const AdvancingFrontTetrahedralizerOptions& options, const ExecutionContext& context,
   AdvancingFrontTetrahedralizerOutput& output)
 {
-  output = AdvancingFrontTetrahedralizerOutput();
-  const Status status = AdvancingFront(input, options, context, output).Run();
-  if (!status.IsOk() && !status.IsAborted())
-  {
-    output = AdvancingFrontTetrahedralizerOutput();
-  }
-  return status;
+  return RunGuarded(
+    [&]() -> Status
+    {
+      output = AdvancingFrontTetrahedralizerOutput();
+      const Status status = AdvancingFront(input, options, context, output).Run();
+      if (!status.IsOk() && !status.IsAborted())
+      {
+        output = AdvancingFrontTetrahedralizerOutput();
+      }
+      return status;
+    });
 }
 } // namespace cdm

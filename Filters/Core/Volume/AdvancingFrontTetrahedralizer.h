@@ -57,8 +57,6 @@ struct AdvancingFrontTetrahedralizerOptions
   bool CloseOpenBoundary = false;
   /** Stop after this many tetrahedra and leave the front as it is. 0: no limit. */
   Id MaximumNumberOfTetrahedra = 0;
-  /** Threads to use, at least 1; the result does not depend on it. */
-  int NumberOfThreads = 1;
 };
 
 struct AdvancingFrontTetrahedralizerInput

@@ -200,6 +200,12 @@ bool AssignRegions(const TriangleMesh& moved, const ExecutionContext& context, T
   return true;
 }
 
+/** Errors of a boundary whose parts have passed each other as a whole. */
+bool ContradictsItself(StatusCode code)
+{
+  return code == StatusCode::NotClosed || code == StatusCode::SelfIntersecting;
+}
+
 class Remeshing
 {
 public:
@@ -382,7 +388,7 @@ Status Remeshing::TakeStep(
   const ExecutionContext part = context.Part(begin, place);
   Status status = passage == Passage::Free ? this->Remesh(surface, moved, part)
                                            : this->ChangeTopology(surface, moved, part);
-  if (passage == Passage::Free && status.Code == StatusCode::InvalidInput)
+  if (passage == Passage::Free && ContradictsItself(status.Code))
   {
     // Parts of the boundary that have passed each other as a whole do not intersect.
     status = this->ChangeTopology(surface, moved, context.Part(place, place));
@@ -762,12 +768,16 @@ void Remeshing::FindTetrahedronSources()
 Status RemeshMovingBoundary(const MovingBoundaryInput& input, const MovingBoundaryOptions& options,
   const ExecutionContext& context, MovingBoundaryOutput& output)
 {
-  output = {};
-  const Status status = Remeshing(input, options, output).Run(context);
-  if (!status.IsOk())
-  {
-    output = {};
-  }
-  return status;
+  return RunGuarded(
+    [&]() -> Status
+    {
+      output = {};
+      const Status status = Remeshing(input, options, output).Run(context);
+      if (!status.IsOk())
+      {
+        output = {};
+      }
+      return status;
+    });
 }
 } // namespace cdm

@@ -63,7 +63,7 @@ Status SurfaceFacetFinder::Run()
   if (!duplicates.empty())
   {
     return Status::InvalidInput("Two triangles of the surface have the same points; clean the "
-                                "surface with vtkBoundaryTriangulator first.",
+                                "surface with the boundary triangulator first.",
       { duplicates.front().Triangle });
   }
   this->FindFacets();
@@ -140,8 +140,9 @@ Status SurfaceFacetFinder::TurnDiagonals(const std::vector<Id>& doubtful)
       MakePulledFan(this->Input.Points, this->Surface.Triangles[t], cocircular);
     if (fan.size() != polygonTriangles.size())
     {
-      return Status::InvalidInput("Triangles of a flat facet overlap; check the surface with "
-                                  "vtkBoundaryTriangulator.",
+      return Status::Failure(StatusCode::SelfIntersecting,
+        "Triangles of a flat facet overlap; check the surface with "
+        "the boundary triangulator.",
         polygonTriangles);
     }
     const RegionPair labels = hasLabels ? this->Surface.Labels[t] : RegionPair{};
@@ -164,9 +165,10 @@ Status SurfaceFacetFinder::TurnDiagonals(const std::vector<Id>& doubtful)
   if (!offending.empty())
   {
     const std::string count = std::to_string(offending.size());
-    return Status::InvalidInput(count +
+    return Status::Failure(StatusCode::NotDelaunay,
+      count +
         " triangles of the surface are not strongly Delaunay; refine the surface with "
-        "vtkDelaunaySurfaceRefiner first (mesh points on its second port, if there are any).",
+        "the surface refiner first (mesh points on its second port, if there are any).",
       std::move(offending));
   }
   return Status();

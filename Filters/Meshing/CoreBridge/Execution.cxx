@@ -12,8 +12,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <new>
-#include <stdexcept>
 #include <string>
 
 namespace vtkCoreBridge
@@ -43,25 +41,8 @@ cdm::ExecutionContext MakeContext(vtkAlgorithm* filter)
       filter->UpdateProgress(fraction);
     }
   };
-  return { progress,
-    [filter]() { return vtkConformingDelaunayCompatibility::CheckAbort(filter); } };
-}
-
-//--------------------------------------------------------------------------------------------------
-cdm::Status Guard(const std::function<cdm::Status()>& function)
-{
-  try
-  {
-    return function();
-  }
-  catch (const std::bad_alloc&)
-  {
-    return cdm::Status::InvalidInput("There is not enough memory for this input.");
-  }
-  catch (const std::length_error&)
-  {
-    return cdm::Status::InvalidInput("There is not enough memory for this input.");
-  }
+  return { progress, [filter]() { return vtkConformingDelaunayCompatibility::CheckAbort(filter); },
+    GetNumberOfThreads() };
 }
 
 //--------------------------------------------------------------------------------------------------

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Execution.h
- * @brief How filters run the engine: progress and abort, failures of memory, threads.
+ * @brief How filters run the engine: progress, abort and threads.
  */
 #ifndef CoreBridge_Execution_h
 #define CoreBridge_Execution_h
 
 #include "Core/Basics/ExecutionContext.h"
 #include "Core/Basics/ParallelLoop.h"
-#include "Core/Basics/Status.h"
 
 #include <cstddef>
-#include <functional>
 
 class vtkAlgorithm;
 class vtkDataSet;
@@ -19,13 +17,10 @@ class vtkInformationVector;
 
 namespace vtkCoreBridge
 {
-/** Progress and abort of a filter for the engine. */
+/** Progress and abort of a filter for the engine, and as many threads as vtkSMPTools may use. */
 cdm::ExecutionContext MakeContext(vtkAlgorithm* filter);
 
-/** Call an engine function; running out of memory becomes a Status. */
-cdm::Status Guard(const std::function<cdm::Status()>& function);
-
-/** For the engine: as many as vtkSMPTools is allowed. */
+/** As many as vtkSMPTools may use. */
 int GetNumberOfThreads();
 
 /** body(i) for all items, on so many threads; for short work, without progress. */
