@@ -46,7 +46,7 @@ cdm::Status DistributedSurface::Read(vtkPolyData* input)
   }
   cdm::Status status = vtkCoreBridge::ToTriangleMesh(input, this->Mesh);
   const vtkIdType first = vtkCoreBridge::GetFirstPolygon(input);
-  vtkCoreBridge::OffsetCells(status, first);
+  vtkCoreBridge::OffsetCells(status.Cells, first);
   vtkUnsignedCharArray* ghosts = input->GetCellGhostArray();
   std::size_t kept = 0;
   for (std::size_t t = 0; t < this->Mesh.Triangles.size() && status.IsOk(); ++t)

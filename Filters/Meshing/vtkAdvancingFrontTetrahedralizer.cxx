@@ -90,7 +90,7 @@ int vtkAdvancingFrontTetrahedralizer::RequestData(
         options.MaximumNumberOfTetrahedra = this->MaximumNumberOfTetrahedra;
         step = cdm::TetrahedralizeByAdvancingFront(
           { &surface, &meshPoints, &seeds }, options, vtkCoreBridge::MakeContext(this), result);
-        vtkCoreBridge::OffsetCells(step, vtkCoreBridge::GetFirstPolygon(input));
+        vtkCoreBridge::OffsetCells(step.Cells, vtkCoreBridge::GetFirstPolygon(input));
       }
       return step;
     });
@@ -119,20 +119,7 @@ int vtkAdvancingFrontTetrahedralizer::RequestData(
   {
     vtkConformingDelaunayCompatibility::KeepOutputsOfAbortedRun(this);
   }
-  // What an unfinished mesh does not use it may use yet.
-  else if (result.Front.empty())
-  {
-    if (this->NumberOfUnusedMeshPoints > 0)
-    {
-      vtkWarningMacro("Left out " << this->NumberOfUnusedMeshPoints
-                                  << " mesh points that lie in no meshed region.");
-    }
-    if (this->NumberOfUnusedTriangles > 0 && !seedInput)
-    {
-      vtkWarningMacro(<< this->NumberOfUnusedTriangles
-                      << " triangles of the surface bound no meshed region.");
-    }
-  }
+  vtkCoreBridge::ReportWarnings(this, result.Warnings);
   return 1;
 }
 

@@ -4,196 +4,19 @@
 #include "CoreBridge/Execution.h"
 #include "CoreBridge/Inputs.h"
 #include "CoreBridge/Outputs.h"
+#include "CoreBridge/Problems.h"
 #include "CoreBridge/Reports.h"
 #include "CoreBridge/Tuples.h"
 
 #include "Core/Surface/BoundaryTriangulator.h"
 
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
-#include <vtkIdTypeArray.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
-#include <vtkIntArray.h>
-#include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 
-#include <set>
-#include <string>
-#include <tuple>
-
 vtkStandardNewMacro(vtkBoundaryTriangulator);
-
-namespace
-{
-/**
- * Collects the cells of output port 1. vtkPolyData numbers vertices before lines before polygons,
- * so the values of the cell arrays are kept apart until the end.
- */
-class ProblemCollector
-{
-public:
-  ProblemCollector(const cdm::PolygonSoup& soup, const std::vector<vtkIdType>& cells)
-    : Soup(soup), SourceCells(cells)
-  {
-    this->Points->SetDataTypeToDouble();
-  }
-
-  void Add(const cdm::SurfaceProblem& problem)
-  {
-    if (problem.SegmentBegin == problem.SegmentEnd)
-    {
-      const vtkIdType id = this->AddPoint(problem.SegmentBegin);
-      this->AddCell(this->Vertices, 1, &id, problem.Kind, problem.Cell, problem.OtherCell);
-    }
-    else
-    {
-      const vtkIdType ids[2] = { this->AddPoint(problem.SegmentBegin),
-        this->AddPoint(problem.SegmentEnd) };
-      this->AddCell(this->Lines, 2, ids, problem.Kind, problem.Cell, problem.OtherCell);
-    }
-    this->AddPolygon(problem.Kind, problem.Cell, problem.OtherCell);
-    this->AddPolygon(problem.Kind, problem.OtherCell, problem.Cell);
-  }
-
-  void Finish(vtkPolyData* output)
-  {
-    vtkNew<vtkIntArray> kinds;
-    kinds->SetName("ProblemKind");
-    vtkNew<vtkIdTypeArray> cells;
-    cells->SetName("Cell");
-    vtkNew<vtkIdTypeArray> otherCells;
-    otherCells->SetName("OtherCell");
-    for (const CellGroup* group : { &this->Vertices, &this->Lines, &this->Polygons })
-    {
-      for (const Key& key : group->Keys)
-      {
-        kinds->InsertNextValue(std::get<0>(key));
-        cells->InsertNextValue(std::get<1>(key));
-        otherCells->InsertNextValue(std::get<2>(key));
-      }
-    }
-    output->SetPoints(this->Points);
-    output->SetVerts(this->Vertices.Cells);
-    output->SetLines(this->Lines.Cells);
-    output->SetPolys(this->Polygons.Cells);
-    output->GetCellData()->SetScalars(kinds);
-    output->GetCellData()->AddArray(cells);
-    output->GetCellData()->AddArray(otherCells);
-  }
-
-private:
-  /** Kind, cell and other cell. */
-  using Key = std::tuple<int, vtkIdType, vtkIdType>;
-  struct CellGroup
-  {
-    vtkNew<vtkCellArray> Cells;
-    std::vector<Key> Keys;
-  };
-
-  vtkIdType AddPoint(const cdm::Vec3& point)
-  {
-    return this->Points->InsertNextPoint(point.X, point.Y, point.Z);
-  }
-
-  Key MakeKey(cdm::SurfaceProblemKind kind, cdm::Id cell, cdm::Id otherCell) const
-  {
-    return { static_cast<int>(kind), cell == cdm::NoId ? -1 : this->SourceCells[cell],
-      otherCell == cdm::NoId ? -1 : this->SourceCells[otherCell] };
-  }
-
-  void AddCell(CellGroup& group, vtkIdType size, const vtkIdType* ids, cdm::SurfaceProblemKind kind,
-    cdm::Id cell, cdm::Id otherCell)
-  {
-    group.Cells->InsertNextCell(size, ids);
-    group.Keys.push_back(this->MakeKey(kind, cell, otherCell));
-  }
-
-  void AddPolygon(cdm::SurfaceProblemKind kind, cdm::Id cell, cdm::Id otherCell)
-  {
-    // A polygon has one cell for all the problems of a kind that it has with another one.
-    if (cell == cdm::NoId ||
-      !this->Known.insert({ static_cast<int>(kind), cell, otherCell }).second)
-    {
-      return;
-    }
-    std::vector<vtkIdType> ids;
-    for (cdm::Id i = 0; i < this->Soup.GetPolygonSize(cell); ++i)
-    {
-      ids.push_back(this->AddPoint(this->Soup.Points[this->Soup.GetPolygon(cell)[i]]));
-    }
-    this->AddCell(
-      this->Polygons, static_cast<vtkIdType>(ids.size()), ids.data(), kind, cell, otherCell);
-  }
-
-  const cdm::PolygonSoup& Soup;
-  const std::vector<vtkIdType>& SourceCells;
-  vtkNew<vtkPoints> Points;
-  CellGroup Vertices;
-  CellGroup Lines;
-  CellGroup Polygons;
-  std::set<std::tuple<int, cdm::Id, cdm::Id>> Known;
-};
-
-void WriteProblems(const cdm::PolygonSoup& soup, const std::vector<vtkIdType>& cells,
-  const std::vector<cdm::SurfaceProblem>& problems, vtkPolyData* output)
-{
-  ProblemCollector collector(soup, cells);
-  for (const cdm::SurfaceProblem& problem : problems)
-  {
-    collector.Add(problem);
-  }
-  collector.Finish(output);
-}
-
-/** One sentence for each kind of repair that dropped something, with its cells; empty for none. */
-std::string DescribeRepairs(const cdm::PolygonSoup& soup, const std::vector<vtkIdType>& cells,
-  const cdm::BoundaryTriangulatorOutput& result)
-{
-  std::vector<vtkIdType> repeating;
-  for (cdm::Id polygon = 0; polygon < soup.GetNumberOfPolygons(); ++polygon)
-  {
-    const cdm::Id* ids = soup.GetPolygon(polygon);
-    const cdm::Id size = soup.GetPolygonSize(polygon);
-    for (cdm::Id i = 0; i < size; ++i)
-    {
-      if (ids[i] == ids[(i + 1) % size])
-      {
-        repeating.push_back(cells[polygon]);
-      }
-    }
-  }
-  std::vector<vtkIdType> degenerate;
-  std::vector<vtkIdType> duplicate;
-  for (const cdm::SurfaceProblem& problem : result.Problems)
-  {
-    if (problem.Kind == cdm::SurfaceProblemKind::DegeneratePolygon)
-    {
-      degenerate.push_back(cells[problem.Cell]);
-    }
-    else if (problem.Kind == cdm::SurfaceProblemKind::DuplicatePolygon)
-    {
-      duplicate.push_back(cells[problem.Cell]);
-    }
-  }
-  std::string text;
-  if (!repeating.empty())
-  {
-    text += " Dropped repeated points of polygons." + vtkCoreBridge::ListCells(repeating);
-  }
-  if (!degenerate.empty())
-  {
-    text += " Dropped polygons without area." + vtkCoreBridge::ListCells(degenerate);
-  }
-  if (!duplicate.empty())
-  {
-    text += " Dropped polygons that repeat others." + vtkCoreBridge::ListCells(duplicate);
-  }
-  return text;
-}
-} // namespace
 
 //--------------------------------------------------------------------------------------------------
 vtkBoundaryTriangulator::vtkBoundaryTriangulator()
@@ -211,12 +34,7 @@ int vtkBoundaryTriangulator::RequestData(
   {
     return 1;
   }
-  if (vtkCoreBridge::GetFirstPolygon(input) > 0)
-  {
-    vtkWarningMacro("Ignored " << input->GetNumberOfVerts() << " vertex cells and "
-                               << input->GetNumberOfLines()
-                               << " lines of the input: only polygons and strips are used.");
-  }
+  vtkCoreBridge::WarnOfOtherCells(this, input);
 
   cdm::PolygonSoup soup;
   std::vector<vtkIdType> cells;
@@ -235,7 +53,7 @@ int vtkBoundaryTriangulator::RequestData(
         options.Pieces =
           this->KeepInternalPieces ? cdm::ResolvedPieces::All : cdm::ResolvedPieces::OutsideOnly;
         step = cdm::TriangulateBoundary(soup, options, vtkCoreBridge::MakeContext(this), result);
-        vtkCoreBridge::MapCells(step, cells);
+        vtkCoreBridge::MapCells(step.Cells, cells);
       }
       return step;
     });
@@ -254,11 +72,8 @@ int vtkBoundaryTriangulator::RequestData(
     vtkCoreBridge::InterpolateTuples(input->GetPointData(),
       { result.PointSources.begin(), result.PointSources.end() }, result.NewPoints,
       vtkCoreBridge::ParentIds::Input, output->GetPointData());
-    const std::string repairs = DescribeRepairs(soup, cells, result);
-    if (!repairs.empty())
-    {
-      vtkWarningMacro("Repaired the input:" << repairs);
-    }
+    vtkCoreBridge::MapCells(result.Warnings, cells);
+    vtkCoreBridge::ReportWarnings(this, result.Warnings);
   }
   else
   {
@@ -266,7 +81,8 @@ int vtkBoundaryTriangulator::RequestData(
   }
   if (!status.IsAborted())
   {
-    WriteProblems(soup, cells, result.Problems, vtkPolyData::GetData(outputVector, 1));
+    vtkCoreBridge::FromProblems(
+      soup, cells, result.Problems, vtkPolyData::GetData(outputVector, 1));
   }
   return success;
 }

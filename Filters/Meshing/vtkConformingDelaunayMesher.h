@@ -3,7 +3,8 @@
  * @class   vtkConformingDelaunayMesher
  * @brief   Everything at once: polygons in, boundary-conforming Delaunay tetrahedra out.
  *
- * Method (Fleischmann 1999, chapters 3, 5 and 6): the stages as a pipeline inside of this filter,
+ * Method (Fleischmann 1999, chapters 3, 5 and 6): the engines of the stages, one after the other
+ * (Core/Pipeline/ConformingMesher.h),
  *  1. vtkBoundaryTriangulator: one clean triangulated surface (3.5, 6.3); vtkMeshPointGenerator, if
  *     GenerateMeshPoints is on (3.6, 6.2);
  *  2. vtkDelaunaySurfaceRefiner: structural edges, flips and new points until the surface is part
@@ -66,8 +67,9 @@ class vtkPolyData;
 class vtkUnstructuredGrid;
 namespace cdm
 {
+struct ConformingMesherOptions;
 struct Status;
-}
+} // namespace cdm
 
 class CDMMESHING_EXPORT vtkConformingDelaunayMesher : public vtkUnstructuredGridAlgorithm
 {
@@ -304,7 +306,8 @@ protected:
 private:
   int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   int MeshBlocks(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
-  /** The stages; prefix comes before the text of warnings. */
+  cdm::Status MakeOptions(cdm::ConformingMesherOptions& options) const;
+  /** All stages; prefix comes before the text of warnings. */
   cdm::Status MeshPolygons(const std::string& prefix, vtkPolyData* input, vtkPointSet* givenPoints,
     vtkDataSet* sizing, vtkUnstructuredGrid* mesh, vtkPolyData* boundary, vtkPolyData* problems);
 

@@ -20,12 +20,8 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
-#include <vtkUnsignedCharArray.h>
 
-#include <iterator>
 #include <numeric>
-#include <set>
-#include <string>
 
 vtkStandardNewMacro(vtkDelaunaySurfaceRefiner);
 
@@ -44,40 +40,6 @@ cdm::DelaunaySurfaceRefinerOptions MakeOptions(vtkDelaunaySurfaceRefiner* filter
   options.MinimumEdgeRatio = filter->GetMinimumEdgeRatio();
   options.MaximumNewPoints = filter->GetMaximumNewPoints();
   return options;
-}
-
-/** Some of the input cells that the triangles come from. */
-std::string ListCells(const cdm::TriangleMesh& surface, const std::vector<cdm::Id>& triangles)
-{
-  std::set<cdm::Id> cells;
-  for (cdm::Id triangle : triangles)
-  {
-    cells.insert(surface.SourceCells[triangle]);
-  }
-  constexpr std::size_t largestNumber = 5;
-  std::string list;
-  for (auto cell = cells.begin(); cell != cells.end(); ++cell)
-  {
-    if (static_cast<std::size_t>(std::distance(cells.begin(), cell)) == largestNumber)
-    {
-      return list + " and " + std::to_string(cells.size() - largestNumber) + " others";
-    }
-    list += (list.empty() ? "" : ", ") + std::to_string(*cell);
-  }
-  return list;
-}
-
-void AddUnresolvedArray(const std::vector<cdm::Id>& triangles, vtkPolyData* output)
-{
-  vtkNew<vtkUnsignedCharArray> unresolved;
-  unresolved->SetName("Unresolved");
-  unresolved->SetNumberOfTuples(output->GetNumberOfPolys());
-  unresolved->FillValue(0);
-  for (cdm::Id triangle : triangles)
-  {
-    unresolved->SetValue(triangle, 1);
-  }
-  output->GetCellData()->AddArray(unresolved);
 }
 } // namespace
 
@@ -137,7 +99,7 @@ int vtkDelaunaySurfaceRefiner::RequestData(
       {
         step = cdm::RefineDelaunaySurface(
           engineInput, options, vtkCoreBridge::MakeContext(this), result);
-        vtkCoreBridge::OffsetCells(step, vtkCoreBridge::GetFirstPolygon(input));
+        vtkCoreBridge::OffsetCells(step.Cells, vtkCoreBridge::GetFirstPolygon(input));
       }
       return step;
     });
@@ -175,25 +137,10 @@ int vtkDelaunaySurfaceRefiner::RequestData(
     pointInput, result.KeptMeshPoints, vtkPolyData::GetData(outputVector, 2));
   if (this->NumberOfUnresolvedTriangles > 0)
   {
-    AddUnresolvedArray(result.UnresolvedTriangles, output);
-    vtkWarningMacro(<< this->NumberOfUnresolvedTriangles
-                    << " triangles do not fulfil the criterion within the limits "
-                       "(MinimumEdgeRatio, MaximumNewPoints): see the cell array Unresolved. "
-                    << (result.NonDelaunayTriangles.empty()
-                           ? "They are strongly Delaunay all the same, and can be meshed. "
-                           : std::to_string(result.NonDelaunayTriangles.size()) +
-                             " of them are not even Delaunay: no mesh can be made with them. ")
-                    << "They come from the input cells "
-                    << ListCells(result.Surface, result.UnresolvedTriangles)
-                    << ". Sheets that lie a hair apart can be united with a MergeTolerance of "
-                       "vtkBoundaryTriangulator.");
+    vtkCoreBridge::FromUnresolved(result.UnresolvedTriangles, output);
   }
-  if (this->NumberOfDroppedMeshPoints > 0)
-  {
-    vtkWarningMacro("Dropped " << this->NumberOfDroppedMeshPoints
-                               << " mesh points that lie on the surface or closer to it than "
-                                  "MeshPointClearanceRatio, or repeat others.");
-  }
+  vtkCoreBridge::OffsetCells(result.Warnings, vtkCoreBridge::GetFirstPolygon(input));
+  vtkCoreBridge::ReportWarnings(this, result.Warnings);
   return 1;
 }
 

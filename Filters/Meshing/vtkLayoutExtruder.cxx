@@ -252,7 +252,7 @@ int vtkLayoutExtruder::RequestData(
       {
         step = cdm::Status::InvalidInput("The process steps leave nothing.");
       }
-      vtkCoreBridge::MapCells(step, cells);
+      vtkCoreBridge::MapCells(step.Cells, cells);
       return step;
     });
   if (!status.IsOk())

@@ -21,7 +21,6 @@
 #include <vtkPolyData.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <string>
 
@@ -29,67 +28,6 @@ vtkStandardNewMacro(vtkMeshPointGenerator);
 
 namespace
 {
-constexpr double MaximumNumberOfLayers = 1000.0;
-
-bool IsWhole(double value, double smallest, double largest)
-{
-  return value >= smallest && value <= largest && value == std::floor(value);
-}
-
-cdm::Status ToLayers(
-  const std::vector<std::array<double, 5>>& rows, std::vector<cdm::PointLayers>& layers)
-{
-  for (const std::array<double, 5>& row : rows)
-  {
-    if (!IsWhole(row[0], 0.0, VTK_INT_MAX) || !IsWhole(row[1], -1.0, VTK_INT_MAX) ||
-      !IsWhole(row[2], 1.0, MaximumNumberOfLayers) || !(row[3] > 0.0 && std::isfinite(row[3])) ||
-      !(row[4] > 0.0 && std::isfinite(row[4])))
-    {
-      return cdm::Status::InvalidInput("Layers " + std::to_string(layers.size()) +
-        " are not right: they need a region from 0 on, a neighbor from -1 on, 1 to 1000 layers, a "
-        "first distance and a growth ratio above 0.");
-    }
-    layers.push_back({ static_cast<cdm::Id>(row[0]), static_cast<cdm::Id>(row[1]),
-      static_cast<cdm::Id>(row[2]), row[3], row[4] });
-  }
-  return {};
-}
-
-cdm::Status CheckTicks(const std::array<std::vector<double>, 3>& ticks)
-{
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (!std::all_of(
-          ticks[axis].begin(), ticks[axis].end(), [](double t) { return std::isfinite(t); }))
-    {
-      return cdm::Status::InvalidInput(
-        std::string("A tick of the ") + "xyz"[axis] + " axis is not finite: correct it.");
-    }
-  }
-  return {};
-}
-
-/** The lengths that hold without a sizing input; 0 is a tenth of the longest side. */
-cdm::Status ToSpacing(const double (&spacing)[3], vtkPolyData* surface, cdm::SizingField& sizing)
-{
-  double bounds[6];
-  surface->GetBounds(bounds);
-  const double side =
-    std::max({ bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4] });
-  cdm::Vec3 lengths;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (!(spacing[axis] >= 0.0 && std::isfinite(spacing[axis])))
-    {
-      return cdm::Status::InvalidInput("Spacing must not be negative, and finite.");
-    }
-    lengths[axis] = spacing[axis] > 0.0 ? spacing[axis] : 0.1 * side;
-  }
-  const cdm::LocalSpacing constant(lengths);
-  sizing = [constant](const cdm::Vec3&) { return constant; };
-  return {};
-}
-
 void AddIntArray(const char* name, const std::vector<cdm::Id>& values, vtkPolyData* output)
 {
   output->GetPointData()->AddArray(vtkCoreBridge::MakeArray<vtkIntArray>(
@@ -163,6 +101,7 @@ int vtkMeshPointGenerator::RequestData(
   options.Template = static_cast<cdm::PointTemplate>(this->Template);
   options.MaximumLevelDifference = this->MaximumLevelDifference;
   options.Ticks = this->Ticks;
+  options.Spacing = { this->Spacing[0], this->Spacing[1], this->Spacing[2] };
   options.SmoothingIterations = this->SmoothingIterations;
   options.Seed = static_cast<std::uint64_t>(this->Seed);
   options.BoundaryClearance = this->BoundaryClearance;
@@ -172,24 +111,19 @@ int vtkMeshPointGenerator::RequestData(
     [&]
     {
       cdm::Status step = vtkCoreBridge::ToTriangleMesh(input, surface);
-      if (step.IsOk())
+      if (step.IsOk() && sizingInput)
       {
-        step = sizingInput ? vtkCoreBridge::ToSizing(sizingInput, engineInput.Sizing)
-                           : ToSpacing(this->Spacing, input, engineInput.Sizing);
+        step = vtkCoreBridge::ToSizing(sizingInput, engineInput.Sizing);
       }
       if (step.IsOk())
       {
-        step = ToLayers(this->Layers, options.Layers);
-      }
-      if (step.IsOk())
-      {
-        step = CheckTicks(options.Ticks);
+        step = vtkCoreBridge::ToLayers(this->Layers, options.Layers);
       }
       if (step.IsOk())
       {
         step =
           cdm::GenerateMeshPoints(engineInput, options, vtkCoreBridge::MakeContext(this), result);
-        vtkCoreBridge::OffsetCells(step, vtkCoreBridge::GetFirstPolygon(input));
+        vtkCoreBridge::OffsetCells(step.Cells, vtkCoreBridge::GetFirstPolygon(input));
       }
       return step;
     });
@@ -207,15 +141,7 @@ int vtkMeshPointGenerator::RequestData(
     result.Points.size(), 1, [](std::size_t i, int) { return static_cast<vtkIdType>(i); }));
   AddIntArray(vtkCoreBridge::RegionIdName, result.Regions, output);
   AddIntArray("Layer", result.Layers, output);
-  if (result.Points.empty())
-  {
-    vtkWarningMacro("No point has place inside: the spacing is too large for the regions.");
-  }
-  else if (!options.Layers.empty() && this->NumberOfLayerPoints == 0)
-  {
-    vtkWarningMacro("The layers have no points: the surface has no vertices inside of their "
-                    "interfaces at this spacing, or the layers do not fit into the regions.");
-  }
+  vtkCoreBridge::ReportWarnings(this, result.Warnings);
   return 1;
 }
 

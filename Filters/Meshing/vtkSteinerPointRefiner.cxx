@@ -11,55 +11,18 @@
 
 #include "Core/Improvement/SteinerPointRefiner.h"
 
-#include <vtkCellData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
-#include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
-#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
-
-#include <algorithm>
-#include <string>
 
 vtkStandardNewMacro(vtkSteinerPointRefiner);
 
 namespace
 {
 constexpr const char* RemovePointName = "RemovePoint";
-constexpr const char* FaultName = "RefinementFault";
-
-template <typename T>
-void AddFlags(vtkDataSetAttributes* data, const char* name, const std::vector<T>& flags)
-{
-  vtkNew<vtkUnsignedCharArray> array;
-  array->SetName(name);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(flags.size()));
-  for (std::size_t i = 0; i < flags.size(); ++i)
-  {
-    array->SetValue(static_cast<vtkIdType>(i), static_cast<unsigned char>(flags[i]));
-  }
-  data->AddArray(array);
-}
-
-/** "3 are too large", for what there is. */
-std::string ListFaults(const cdm::SteinerPointRefinerReport& report)
-{
-  std::string text;
-  const auto add = [&](cdm::Id count, const char* what)
-  {
-    if (count > 0)
-    {
-      text += (text.empty() ? "" : ", ") + std::to_string(count) + what;
-    }
-  };
-  add(report.TooLarge, " are too large");
-  add(report.BadlyShaped, " have a larger radius-edge ratio");
-  add(report.Slivers, " have a smaller dihedral angle");
-  return text;
-}
 } // namespace
 
 //--------------------------------------------------------------------------------------------------
@@ -158,7 +121,7 @@ int vtkSteinerPointRefiner::RequestData(
         cdm::RefineBySteinerPoints(engineInput, options, vtkCoreBridge::MakeContext(this), result);
       if (boundaryInput)
       {
-        vtkCoreBridge::OffsetCells(step, vtkCoreBridge::GetFirstPolygon(boundaryInput));
+        vtkCoreBridge::OffsetCells(step.Cells, vtkCoreBridge::GetFirstPolygon(boundaryInput));
       }
       return step;
     });
@@ -182,7 +145,7 @@ int vtkSteinerPointRefiner::RequestData(
   vtkCoreBridge::FromTetMesh(result.Mesh, output);
   vtkCoreBridge::InterpolateTuplesInCells(input, result.PointSources, output);
   output->GetPointData()->RemoveArray(RemovePointName);
-  AddFlags(output->GetPointData(), vtkCoreBridge::FreePointName, result.IsFree);
+  vtkCoreBridge::FromFlags(vtkCoreBridge::FreePointName, result.IsFree, output->GetPointData());
   vtkPolyData* boundaryOutput = vtkPolyData::GetData(outputVector, 1);
   vtkCoreBridge::FromTriangleMesh(result.Boundary, boundaryOutput);
   boundaryOutput->GetPointData()->PassData(output->GetPointData());
@@ -191,36 +154,8 @@ int vtkSteinerPointRefiner::RequestData(
     vtkCoreBridge::CopyTriangleTuples(boundaryInput, result.Boundary.SourceCells, boundaryOutput);
   }
 
-  const std::string faults = ListFaults(report);
-  if (!faults.empty() || report.Inevitable > 0)
-  {
-    AddFlags(output->GetCellData(), FaultName, result.Faults);
-  }
-  if (!faults.empty())
-  {
-    vtkWarningMacro(<< "Of " << result.Mesh.Tetrahedra.size() << " tetrahedra " << faults
-                    << " than asked for: see the cell array " << FaultName
-                    << ". Ask for less, or allow more points.");
-  }
-  if (report.WeakTriangles > 0)
-  {
-    vtkWarningMacro(
-      << report.WeakTriangles
-      << " triangles of the boundary cannot have empty smallest spheres: sheets lie too "
-         "close to each other there. The mesh is Delaunay, but no Steiner points are "
-         "made. Unite the sheets with a MergeTolerance of vtkBoundaryTriangulator.");
-  }
-  else if (report.UnresolvedTriangles > 0)
-  {
-    vtkWarningMacro(<< report.UnresolvedTriangles
-                    << " triangles of the boundary do not fulfil the criterion.");
-  }
-  if (report.NegativeCouplings > 0)
-  {
-    vtkWarningMacro(<< report.NegativeCouplings
-                    << " edges of the boundary have a negative coupling: allow more points, or use "
-                       "the criterion SmallestSphereAndEdges.");
-  }
+  vtkCoreBridge::FromFaults(result.Faults, output);
+  vtkCoreBridge::ReportWarnings(this, result.Warnings);
   return 1;
 }
 

@@ -43,7 +43,7 @@ int vtkStructuralEdgeExtractor::RequestData(
         options.AccuracyAngle = this->AccuracyAngle;
         step =
           cdm::ExtractStructuralEdges(surface, options, vtkCoreBridge::MakeContext(this), result);
-        vtkCoreBridge::OffsetCells(step, vtkCoreBridge::GetFirstPolygon(input));
+        vtkCoreBridge::OffsetCells(step.Cells, vtkCoreBridge::GetFirstPolygon(input));
       }
       return step;
     });

@@ -3,7 +3,7 @@
 # only those before it.
 #   cmake -D SOURCE_DIR=<folder of the project> -P CheckLayers.cmake
 set(folders Basics Geometry Search Meshes Sizing Delaunay Certificate Surface MeshPoints Volume
-  Improvement Interfaces)
+  Improvement Interfaces Pipeline)
 file(GLOB core "${SOURCE_DIR}/Filters/Core/*/*.h" "${SOURCE_DIR}/Filters/Core/*/*.cxx")
 file(GLOB meshing "${SOURCE_DIR}/Filters/Meshing/*.h" "${SOURCE_DIR}/Filters/Meshing/*.cxx"
   "${SOURCE_DIR}/Filters/Meshing/Devices/*.h" "${SOURCE_DIR}/Filters/Meshing/Devices/*.cxx")

@@ -325,7 +325,7 @@ TEST(DelaunaySurfaceRefinerFilter, ReportsUnresolvedTriangles)
   EXPECT_GT(unresolved, 0);
   EXPECT_TRUE(Contains(run.Recorder->Warnings, std::to_string(unresolved) + " triangles"))
     << run.Recorder->Warnings;
-  EXPECT_TRUE(Contains(run.Recorder->Warnings, "come from the input cells "))
+  EXPECT_TRUE(Contains(run.Recorder->Warnings, "come from these cells of the input. Cells: "))
     << run.Recorder->Warnings;
   vtkDataArray* array =
     FindArray(run.GetOutput(0)->GetCellData(), "Unresolved", 1, VTK_UNSIGNED_CHAR);

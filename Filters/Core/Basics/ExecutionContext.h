@@ -9,6 +9,7 @@
 #include "Core/Basics/Threads.h"
 
 #include <functional>
+#include <string>
 #include <utility>
 
 namespace cdm
@@ -56,6 +57,18 @@ public:
     part.Begin = this->Begin + (this->End - this->Begin) * begin;
     part.End = this->Begin + (this->End - this->Begin) * end;
     return part;
+  }
+
+  /** The same context, which says "name: activity". */
+  ExecutionContext Named(const std::string& name) const
+  {
+    ExecutionContext named(*this);
+    if (this->Progress)
+    {
+      named.Progress = [progress = this->Progress, name](double fraction, const char* activity)
+      { progress(fraction, *activity == 0 ? name.c_str() : (name + ": " + activity).c_str()); };
+    }
+    return named;
   }
 
 private:

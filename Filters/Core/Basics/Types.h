@@ -53,6 +53,6 @@ struct PointParents
   std::array<Id, 3> Ids{ NoId, NoId, NoId };
   std::array<double, 3> Weights{ 0.0, 0.0, 0.0 };
 };
-}
+} // namespace cdm
 
 #endif

@@ -69,6 +69,6 @@ inline bool IsFinite(const Vec3& a)
 {
   return std::isfinite(a.X) && std::isfinite(a.Y) && std::isfinite(a.Z);
 }
-}
+} // namespace cdm
 
 #endif

@@ -79,7 +79,7 @@ Status PartRegions::FindFacets()
     return Status::Failure(StatusCode::NotDelaunay,
       count +
         " triangles of the surface are not Delaunay; refine the surface with "
-        "the surface refiner first (mesh points on its second port, if there are any).",
+        "the surface refiner first (together with the mesh points, if there are any).",
       std::move(missing));
   }
   return {};

@@ -928,6 +928,55 @@ Status Refiner::Run()
 
 namespace
 {
+/** "3 are too large", for what there is. */
+std::string ListFaults(const SteinerPointRefinerReport& report)
+{
+  std::string text;
+  const auto add = [&](Id count, const char* what)
+  {
+    if (count > 0)
+    {
+      text += (text.empty() ? "" : ", ") + std::to_string(count) + what;
+    }
+  };
+  add(report.TooLarge, " are too large");
+  add(report.BadlyShaped, " have a larger radius-edge ratio");
+  add(report.Slivers, " have a smaller dihedral angle");
+  return text;
+}
+
+std::vector<Warning> MakeWarnings(const SteinerPointRefinerOutput& output)
+{
+  std::vector<Warning> warnings;
+  const SteinerPointRefinerReport& report = output.Report;
+  const std::string faults = ListFaults(report);
+  if (!faults.empty())
+  {
+    warnings.push_back(
+      { "Of " + std::to_string(output.Mesh.Tetrahedra.size()) + " tetrahedra " + faults +
+        " than asked for: see the array RefinementFault. Ask for less, or allow more points." });
+  }
+  if (report.WeakTriangles > 0)
+  {
+    warnings.push_back({ std::to_string(report.WeakTriangles) +
+      " triangles of the boundary cannot have empty smallest spheres: sheets lie too close to each "
+      "other there. The mesh is Delaunay, but no Steiner points are made. Unite the sheets with a "
+      "MergeTolerance of the boundary triangulator." });
+  }
+  else if (report.UnresolvedTriangles > 0)
+  {
+    warnings.push_back({ std::to_string(report.UnresolvedTriangles) +
+      " triangles of the boundary do not fulfil the criterion." });
+  }
+  if (report.NegativeCouplings > 0)
+  {
+    warnings.push_back({ std::to_string(report.NegativeCouplings) +
+      " edges of the boundary have a negative coupling: allow more points, or use the criterion "
+      "SmallestSphereAndEdges." });
+  }
+  return warnings;
+}
+
 Status RunRefineBySteinerPoints(const SteinerPointRefinerInput& input,
   const SteinerPointRefinerOptions& options, const ExecutionContext& context,
   SteinerPointRefinerOutput& output)
@@ -945,12 +994,14 @@ Status RunRefineBySteinerPoints(const SteinerPointRefinerInput& input,
         std::string(activity) + ", round " + std::to_string(output.Report.Rounds + 1);
       isGoingOn = context.Continue(largest, text.c_str());
     },
-    [&] { return !isGoingOn; });
+    [&] { return !isGoingOn; }, context.GetNumberOfThreads());
   const Status status = Refiner(input, options, ascending, output).Run();
   if (!status.IsOk())
   {
     output = SteinerPointRefinerOutput();
+    return status;
   }
+  output.Warnings = MakeWarnings(output);
   return status;
 }
 } // namespace

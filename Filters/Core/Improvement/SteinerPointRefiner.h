@@ -47,6 +47,7 @@
 
 #include "Core/Basics/ExecutionContext.h"
 #include "Core/Basics/Status.h"
+#include "Core/Basics/Warning.h"
 #include "Core/Meshes/TetMesh.h"
 #include "Core/Sizing/TetrahedronLimits.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
@@ -151,6 +152,7 @@ struct SteinerPointRefinerOutput
   /** One for each tetrahedron. */
   std::vector<SteinerFault> Faults;
   SteinerPointRefinerReport Report;
+  std::vector<Warning> Warnings;
 };
 
 Status RefineBySteinerPoints(const SteinerPointRefinerInput& input,

@@ -7,37 +7,129 @@
 #include "Core/MeshPoints/OrthoProductPoints.h"
 #include "Core/MeshPoints/RandomPoints.h"
 
+#include <algorithm>
+#include <cmath>
+#include <string>
+
 namespace cdm
 {
 namespace
 {
+constexpr Id MaximumNumberOfLayers = 1000;
+
+bool IsPositive(double value)
+{
+  return value > 0.0 && std::isfinite(value);
+}
+
+Status CheckOptions(const MeshPointGeneratorOptions& options)
+{
+  for (std::size_t i = 0; i < options.Layers.size(); ++i)
+  {
+    const PointLayers& layers = options.Layers[i];
+    if (layers.Region < 0 || layers.Neighbor < OutsideRegion || layers.NumberOfLayers < 1 ||
+      layers.NumberOfLayers > MaximumNumberOfLayers || !IsPositive(layers.FirstDistance) ||
+      !IsPositive(layers.GrowthRatio))
+    {
+      return Status::Failure(StatusCode::InvalidOption,
+        "Layers " + std::to_string(i) +
+          " are not right: they need a region from 0 on, a neighbor from -1 on, 1 to 1000 layers, "
+          "a "
+          "first distance and a growth ratio above 0.");
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const std::vector<double>& ticks = options.Ticks[axis];
+    if (!std::all_of(ticks.begin(), ticks.end(), [](double t) { return std::isfinite(t); }))
+    {
+      return Status::Failure(StatusCode::InvalidOption,
+        std::string("A tick of the ") + "xyz"[axis] + " axis is not finite: correct it.");
+    }
+    if (!(options.Spacing[axis] >= 0.0 && std::isfinite(options.Spacing[axis])))
+    {
+      return Status::Failure(
+        StatusCode::InvalidOption, "Spacing must not be negative, and finite.");
+    }
+  }
+  return {};
+}
+
+/** The spacing that holds without a sizing. */
+SizingField MakeConstantSizing(const Vec3& spacing, const std::vector<Vec3>& points)
+{
+  Vec3 low = points.front();
+  Vec3 high = low;
+  for (const Vec3& point : points)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      low[axis] = std::min(low[axis], point[axis]);
+      high[axis] = std::max(high[axis], point[axis]);
+    }
+  }
+  const Vec3 sides = high - low;
+  const double side = std::max({ sides.X, sides.Y, sides.Z });
+  Vec3 lengths;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    lengths[axis] = spacing[axis] > 0.0 ? spacing[axis] : 0.1 * side;
+  }
+  const LocalSpacing constant(lengths);
+  return [constant](const Vec3&) { return constant; };
+}
+
+Status PlacePoints(const ExecutionContext& context, MeshPointPlacer& placer)
+{
+  switch (placer.GetOptions().Placement)
+  {
+    case PointPlacement::Octree:
+      return PlaceOctreePoints(context, placer);
+    case PointPlacement::OrthoProduct:
+      return PlaceOrthoProductPoints(context, placer);
+    case PointPlacement::Random:
+      return PlaceRandomPoints(context, placer);
+    default:
+      return {};
+  }
+}
+
+std::vector<Warning> MakeWarnings(bool hasLayers, const MeshPointGeneratorOutput& output)
+{
+  if (output.Points.empty())
+  {
+    return { { "No point has place inside: the spacing is too large for the regions." } };
+  }
+  const bool areThere =
+    std::any_of(output.Layers.begin(), output.Layers.end(), [](Id layer) { return layer != 0; });
+  if (hasLayers && !areThere)
+  {
+    return { { "The layers have no points: the surface has no vertices inside of their interfaces "
+               "at this spacing, or the layers do not fit into the regions." } };
+  }
+  return {};
+}
+
 Status RunGenerateMeshPoints(const MeshPointGeneratorInput& input,
   const MeshPointGeneratorOptions& options, const ExecutionContext& context,
   MeshPointGeneratorOutput& output)
 {
   output = {};
-  MeshPointPlacer placer(input, options, output);
-  Status status = placer.Build();
+  MeshPointGeneratorInput sized = input;
+  if (!sized.Sizing && !input.Surface->Points.empty())
+  {
+    sized.Sizing = MakeConstantSizing(options.Spacing, input.Surface->Points);
+  }
+  MeshPointPlacer placer(sized, options, output);
+  Status status = CheckOptions(options)
+                    .Then([&] { return placer.Build(); })
+                    .Then([&] { return PlaceLayerPoints(context.Part(0.05, 0.25), placer); })
+                    .Then([&] { return PlacePoints(context.Part(0.25, 1.0), placer); });
   if (status.IsOk())
   {
-    status = PlaceLayerPoints(context.Part(0.05, 0.25), placer);
+    output.Warnings = MakeWarnings(!options.Layers.empty(), output);
   }
-  if (!status.IsOk())
-  {
-    return status;
-  }
-  const ExecutionContext rest = context.Part(0.25, 1.0);
-  switch (options.Placement)
-  {
-    case PointPlacement::Octree:
-      return PlaceOctreePoints(rest, placer);
-    case PointPlacement::OrthoProduct:
-      return PlaceOrthoProductPoints(rest, placer);
-    case PointPlacement::Random:
-      return PlaceRandomPoints(rest, placer);
-    default:
-      return {};
-  }
+  return status;
 }
 } // namespace
 

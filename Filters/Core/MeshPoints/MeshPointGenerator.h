@@ -25,8 +25,9 @@
  * Guarantees: each point is strictly inside of its region, exactly; no triangle is nearer than
  * BoundaryClearance spacings of the point; a layer has its distance from the interface, to
  * rounding. Deterministic for any number of threads, all of which evaluate the sizing.
- * Failure: InvalidInput for labels that contradict each other, a surface that encloses nothing,
- * layers at an interface that is not there, or a sizing that needs too many points.
+ * Failure: NotClosed for labels that contradict each other and a surface that encloses nothing,
+ * InvalidOption for numbers out of range and layers at an interface that is not there, LimitReached
+ * for a sizing that needs too many points.
  * Cost: O(n log n) for n points and leaves; 150 bytes for each point; a random point
  * takes about a millisecond, one of the octree some microseconds.
  *
@@ -38,6 +39,7 @@
 
 #include "Core/Basics/ExecutionContext.h"
 #include "Core/Basics/Status.h"
+#include "Core/Basics/Warning.h"
 #include "Core/Meshes/TriangleMesh.h"
 #include "Core/Sizing/SizingField.h"
 
@@ -80,6 +82,11 @@ struct PointLayers
 
 struct MeshPointGeneratorOptions
 {
+  /**
+   * Without a sizing: the spacing along x, y and z. Model units, >= 0; 0: a tenth of the longest
+   * side of the bounding box.
+   */
+  Vec3 Spacing;
   PointPlacement Placement = PointPlacement::Octree;
   PointTemplate Template = PointTemplate::BodyCentered;
   /** Octree, random: by how many levels neighboring leaves may differ. 0: no bound. */
@@ -97,6 +104,7 @@ struct MeshPointGeneratorOptions
 struct MeshPointGeneratorInput
 {
   const TriangleMesh* Surface = nullptr;
+  /** May be empty: Spacing then holds everywhere. */
   SizingField Sizing;
 };
 
@@ -112,6 +120,7 @@ struct MeshPointGeneratorOutput
    * an interface they are not expected, and not counted.
    */
   Id DroppedLayerPoints = 0;
+  std::vector<Warning> Warnings;
 };
 
 Status GenerateMeshPoints(const MeshPointGeneratorInput& input,

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Meshes/MeshBoundary.h"
 
+#include "Core/Basics/SortedIds.h"
+
+#include <map>
+
 namespace cdm
 {
 TriangleMesh ExtractBoundary(const TetMesh& mesh)
@@ -75,5 +79,70 @@ std::vector<Id> FindPointsInside(const TetMesh& mesh, const std::vector<Id>& bou
     }
   }
   return points;
+}
+namespace
+{
+EdgeIds GetSide(const TriangleIds& triangle, int i)
+{
+  return MakeEdge(triangle[i], triangle[(i + 1) % 3]);
+}
+
+/** Whether it is the same interface, whichever side is in front. */
+bool AreSameRegions(const RegionPair& a, const RegionPair& b)
+{
+  return a == b || (a.Front == b.Back && a.Back == b.Front);
+}
+} // namespace
+
+TriangleMesh UpdateBoundary(const TetMesh& mesh, const TriangleMesh& before)
+{
+  const TriangleMesh facets = ExtractBoundary(mesh);
+  std::map<TriangleIds, std::size_t> interfaces;
+  for (std::size_t i = 0; i < facets.Triangles.size(); ++i)
+  {
+    interfaces[Sorted(facets.Triangles[i])] = i;
+  }
+
+  TriangleMesh after;
+  after.Points = mesh.Points;
+  std::map<EdgeIds, std::vector<Id>> goneByEdge;
+  for (std::size_t i = 0; i < before.Triangles.size(); ++i)
+  {
+    const TriangleIds& ids = before.Triangles[i];
+    const auto found = interfaces.find(Sorted(ids));
+    // A sheet inside of one region is no interface, and nothing is peeled off at it.
+    if (found != interfaces.end() || before.Labels[i].Front == before.Labels[i].Back)
+    {
+      after.Triangles.push_back(ids);
+      after.Labels.push_back(before.Labels[i]);
+      after.SourceCells.push_back(static_cast<Id>(i));
+      if (found != interfaces.end())
+      {
+        interfaces.erase(found);
+      }
+      continue;
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      goneByEdge[GetSide(ids, k)].push_back(static_cast<Id>(i));
+    }
+  }
+  for (const auto& item : interfaces)
+  {
+    const TriangleIds& added = facets.Triangles[item.second];
+    const RegionPair& labels = facets.Labels[item.second];
+    Id source = NoId;
+    for (int k = 0; k < 3 && source == NoId; ++k)
+    {
+      const std::vector<Id>& gone = goneByEdge[GetSide(added, k)];
+      const auto found = std::find_if(
+        gone.begin(), gone.end(), [&](Id i) { return AreSameRegions(before.Labels[i], labels); });
+      source = found == gone.end() ? NoId : *found;
+    }
+    after.Triangles.push_back(added);
+    after.Labels.push_back(labels);
+    after.SourceCells.push_back(source);
+  }
+  return after;
 }
 } // namespace cdm

@@ -20,6 +20,13 @@ namespace cdm
  */
 TriangleMesh ExtractBoundary(const TetMesh& mesh);
 
+/**
+ * The boundary of a mesh from which flat tetrahedra were peeled off: triangles of the boundary
+ * before that are still there, then the new ones, with an old triangle of the same patch as their
+ * source.
+ */
+TriangleMesh UpdateBoundary(const TetMesh& mesh, const TriangleMesh& before);
+
 /** Drops the points that no triangle uses; the others' ids before, ascending. */
 std::vector<Id> RemoveUnusedPoints(TriangleMesh& surface);
 

@@ -611,6 +611,47 @@ private:
   std::vector<Vec3> NewPoints;
   std::vector<PointParents> Parents;
 };
+
+/** What was dropped, and of which polygons. */
+std::vector<Warning> DescribeRepairs(
+  const PolygonSoup& soup, const std::vector<SurfaceProblem>& problems)
+{
+  Warning repeating{ "Dropped repeated points of polygons." };
+  for (Id polygon = 0; polygon < soup.GetNumberOfPolygons(); ++polygon)
+  {
+    const Id* const ids = soup.GetPolygon(polygon);
+    const Id size = soup.GetPolygonSize(polygon);
+    for (Id i = 0; i < size; ++i)
+    {
+      if (ids[i] == ids[(i + 1) % size])
+      {
+        repeating.Cells.push_back(polygon);
+      }
+    }
+  }
+  Warning degenerate{ "Dropped polygons without area." };
+  Warning duplicate{ "Dropped polygons that repeat others." };
+  for (const SurfaceProblem& problem : problems)
+  {
+    if (problem.Kind == SurfaceProblemKind::DegeneratePolygon)
+    {
+      degenerate.Cells.push_back(problem.Cell);
+    }
+    else if (problem.Kind == SurfaceProblemKind::DuplicatePolygon)
+    {
+      duplicate.Cells.push_back(problem.Cell);
+    }
+  }
+  std::vector<Warning> warnings;
+  for (Warning* warning : { &repeating, &degenerate, &duplicate })
+  {
+    if (!warning->Cells.empty())
+    {
+      warnings.push_back(std::move(*warning));
+    }
+  }
+  return warnings;
+}
 } // namespace
 
 Status TriangulateBoundary(const PolygonSoup& input, const BoundaryTriangulatorOptions& options,
@@ -624,6 +665,10 @@ Status TriangulateBoundary(const PolygonSoup& input, const BoundaryTriangulatorO
       if (status.IsAborted())
       {
         output = {};
+      }
+      if (status.IsOk())
+      {
+        output.Warnings = DescribeRepairs(input, output.Problems);
       }
       return status;
     });

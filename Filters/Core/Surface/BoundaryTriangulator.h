@@ -43,6 +43,7 @@
 
 #include "Core/Basics/ExecutionContext.h"
 #include "Core/Basics/Status.h"
+#include "Core/Basics/Warning.h"
 #include "Core/Meshes/PolygonSoup.h"
 #include "Core/Meshes/TriangleMesh.h"
 #include "Core/Surface/IntersectionResolver.h"
@@ -133,6 +134,8 @@ struct BoundaryTriangulatorOutput
   /** For each of the other points of Surface: parents, as ids of points of the input. */
   std::vector<PointParents> NewPoints;
   std::vector<SurfaceProblem> Problems;
+  /** What was dropped. */
+  std::vector<Warning> Warnings;
   BoundaryTriangulatorReport Report;
 };
 

@@ -255,6 +255,7 @@ Status SurfaceRefiner::Finish()
     { return x.Points[0] != y.Points[0] ? x.Points[0] < y.Points[0] : x.Points[1] < y.Points[1]; });
   this->Refinement->JudgeRelaxed();
   const bool isStrong = this->Options.Criterion != SurfaceCriterion::Delaunay;
+  const bool mayBeTooCoarse = this->Refinement->MayBeTooCoarse();
   for (Id t = 0; t < refined.GetNumberOfTriangles(); ++t)
   {
     if (this->Refinement->IsUnresolved(t))
@@ -270,6 +271,7 @@ Status SurfaceRefiner::Finish()
     {
       this->Output.WeakTriangles.push_back(t);
     }
+    this->Output.Report.TooCoarse += mayBeTooCoarse && this->Refinement->IsTooLarge(t);
   }
   return Status();
 }
@@ -399,6 +401,50 @@ Status SurfaceAttempts::Run()
   }
   return status.IsAborted() ? status : this->HasBest ? Status() : first;
 }
+
+/** What the result does not fulfil, with the triangles of the input that it comes from. */
+std::vector<Warning> MakeWarnings(
+  const DelaunaySurfaceRefinerOptions& options, const DelaunaySurfaceRefinerOutput& output)
+{
+  std::vector<Warning> warnings;
+  if (!output.UnresolvedTriangles.empty())
+  {
+    Warning warning;
+    warning.Message = std::to_string(output.UnresolvedTriangles.size()) +
+      " triangles do not fulfil the criterion within the limits (MinimumEdgeRatio, "
+      "MaximumNewPoints): see the array Unresolved. " +
+      (output.NonDelaunayTriangles.empty()
+          ? "They are strongly Delaunay all the same, and can be meshed. "
+          : std::to_string(output.NonDelaunayTriangles.size()) +
+            " of them are not even Delaunay: no mesh can be made with them. ") +
+      "Sheets that lie a hair apart can be united with a MergeTolerance of the boundary "
+      "triangulator. The triangles come from these cells of the input.";
+    for (const Id triangle : output.UnresolvedTriangles)
+    {
+      warning.Cells.push_back(output.Surface.SourceCells[triangle]);
+    }
+    warnings.push_back(std::move(warning));
+  }
+  if (output.Report.TooCoarse > 0)
+  {
+    const bool isFull = options.MaximumNewPoints > 0
+      ? static_cast<Id>(output.NewPoints.size()) >= options.MaximumNewPoints
+      : output.NewPoints.size() >= 1000000;
+    warnings.push_back({ std::to_string(output.Report.TooCoarse) +
+      " triangles of the surface are larger than asked for: " +
+      (isFull ? "the refinement ended after " + std::to_string(output.NewPoints.size()) +
+            " new points. Ask for less, or raise MaximumNewPoints."
+              : "no edge is made shorter than MinimumEdgeRatio allows. Ask for less, or lower "
+                "MinimumEdgeRatio.") });
+  }
+  if (output.Report.DroppedMeshPoints > 0)
+  {
+    warnings.push_back({ "Dropped " + std::to_string(output.Report.DroppedMeshPoints) +
+      " mesh points that lie on the surface or closer to it than MeshPointClearanceRatio, or "
+      "repeat others." });
+  }
+  return warnings;
+}
 } // namespace
 
 Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,
@@ -413,7 +459,9 @@ Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,
       if (!status.IsOk())
       {
         output = DelaunaySurfaceRefinerOutput();
+        return status;
       }
+      output.Warnings = MakeWarnings(options, output);
       return status;
     });
 }

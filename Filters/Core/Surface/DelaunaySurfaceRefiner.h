@@ -44,6 +44,7 @@
 
 #include "Core/Basics/ExecutionContext.h"
 #include "Core/Basics/Status.h"
+#include "Core/Basics/Warning.h"
 #include "Core/Meshes/TriangleMesh.h"
 #include "Core/Sizing/SizingField.h"
 #include "Core/Surface/StructuralEdges.h"
@@ -111,6 +112,8 @@ struct DelaunaySurfaceRefinerReport
   Id FacetPoints = 0;
   Id Flips = 0;
   Id DroppedMeshPoints = 0;
+  /** Triangles that are larger than asked for, as a limit has ended the refinement. */
+  Id TooCoarse = 0;
 };
 
 struct DelaunaySurfaceRefinerOutput
@@ -130,6 +133,7 @@ struct DelaunaySurfaceRefinerOutput
   /** Those that are not strongly Delaunay: no mesh can be made with them. */
   std::vector<Id> NonDelaunayTriangles;
   DelaunaySurfaceRefinerReport Report;
+  std::vector<Warning> Warnings;
 };
 
 Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,

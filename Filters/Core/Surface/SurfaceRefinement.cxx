@@ -278,6 +278,21 @@ bool SurfaceRefinement::IsDelaunay(Id triangle) const
   return this->IsGood(triangle, found, false);
 }
 
+bool SurfaceRefinement::IsTooLarge(Id triangle) const
+{
+  TriangleLimits sizes = this->Limits;
+  sizes.MinimumAngle = 0.0;
+  const TriangleIds& ids = this->Surface->GetTriangle(triangle).Points;
+  std::array<bool, 3> isStructural;
+  for (int i = 0; i < 3; ++i)
+  {
+    isStructural[i] = this->Surface->GetSegmentAt(triangle, i) != NoId;
+  }
+  Id edge = NoId;
+  return sizes.IsTooCoarse(
+    { this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]] }, isStructural, edge);
+}
+
 bool SurfaceRefinement::IsUnresolved(Id triangle) const
 {
   if (this->IsBadTriangle(triangle) || this->IsWeak(triangle))
@@ -831,6 +846,10 @@ void SurfaceRefinement::Process(Id t, QueueState state)
       if (isRefined)
       {
         this->Enqueue(t);
+      }
+      else
+      {
+        this->HasLeftTooCoarse = true;
       }
     }
     return;

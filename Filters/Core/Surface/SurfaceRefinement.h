@@ -109,6 +109,13 @@ public:
   /** How many triangles and edges are not as they are to be, whatever the plan has relaxed. */
   Id GetNumberOfFailures() const { return this->NumberOfFailures; }
   bool IsDelaunay(Id triangle) const;
+  /** Whether limits may have left triangles that are larger than asked for. */
+  bool MayBeTooCoarse() const
+  {
+    return this->Limits.HasAny() && (this->HasLeftTooCoarse || this->IsFull());
+  }
+  /** Whether a triangle is larger than asked for, whatever its angles. */
+  bool IsTooLarge(Id triangle) const;
   /** Whether nothing could be done for a triangle that is to be better. */
   bool IsBadTriangle(Id triangle) const
   {
@@ -240,6 +247,7 @@ private:
   const double Flatness;
   const double MinimumEdge;
   Id MaximumNewPoints = 0;
+  bool HasLeftTooCoarse = false;
   /** As many as without a limit of the user's; and so many in all, from when that is reached. */
   Id UsualMaximum = 0;
   Id MaximumRescuePoints = 0;

@@ -644,6 +644,22 @@ Status AdvancingFront::Run()
   }
   return status;
 }
+
+std::vector<Warning> MakeWarnings(const AdvancingFrontTetrahedralizerReport& report, bool hasSeeds)
+{
+  std::vector<Warning> warnings;
+  if (report.UnusedMeshPoints > 0)
+  {
+    warnings.push_back({ "Left out " + std::to_string(report.UnusedMeshPoints) +
+      " mesh points that lie in no meshed region." });
+  }
+  if (report.UnusedTriangles > 0 && !hasSeeds)
+  {
+    warnings.push_back({ std::to_string(report.UnusedTriangles) +
+      " triangles of the surface bound no meshed region." });
+  }
+  return warnings;
+}
 } // namespace
 
 Status TetrahedralizeByAdvancingFront(const AdvancingFrontTetrahedralizerInput& input,
@@ -658,6 +674,12 @@ Status TetrahedralizeByAdvancingFront(const AdvancingFrontTetrahedralizerInput& 
       if (!status.IsOk() && !status.IsAborted())
       {
         output = AdvancingFrontTetrahedralizerOutput();
+      }
+      // What an unfinished mesh does not use it may use yet.
+      if (status.IsOk() && output.Front.empty())
+      {
+        const bool hasSeeds = input.Seeds != nullptr && !input.Seeds->empty();
+        output.Warnings = MakeWarnings(output.Report, hasSeeds);
       }
       return status;
     });

@@ -36,6 +36,7 @@
 
 #include "Core/Basics/ExecutionContext.h"
 #include "Core/Basics/Status.h"
+#include "Core/Basics/Warning.h"
 #include "Core/Meshes/TetMesh.h"
 #include "Core/Meshes/TriangleMesh.h"
 
@@ -93,6 +94,7 @@ struct AdvancingFrontTetrahedralizerOutput
   /** Triangles of the front left by an abort or the limit, fronts to the unmeshed side. */
   std::vector<TriangleIds> Front;
   AdvancingFrontTetrahedralizerReport Report;
+  std::vector<Warning> Warnings;
 };
 
 Status TetrahedralizeByAdvancingFront(const AdvancingFrontTetrahedralizerInput& input,

@@ -168,7 +168,7 @@ Status SurfaceFacetFinder::TurnDiagonals(const std::vector<Id>& doubtful)
     return Status::Failure(StatusCode::NotDelaunay,
       count +
         " triangles of the surface are not strongly Delaunay; refine the surface with "
-        "the surface refiner first (mesh points on its second port, if there are any).",
+        "the surface refiner first (together with the mesh points, if there are any).",
       std::move(offending));
   }
   return Status();

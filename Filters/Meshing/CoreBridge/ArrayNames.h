@@ -20,11 +20,6 @@ constexpr const char* StructuralFacetIdName = "StructuralFacetId";
 constexpr const char* FreePointName = "FreePoint";
 /** Point array of structural edges: ids of the surface's points. */
 constexpr const char* SurfacePointIdName = "SurfacePointId";
-/**
- * Cell array that vtkConformingDelaunayMesher adds inside of its pipeline: the cell of the user's
- * input. Where a surface carries it, error messages name those cells.
- */
-constexpr const char* InputCellName = "ConformingDelaunayInputCell";
 } // namespace vtkCoreBridge
 
 #endif

@@ -317,7 +317,7 @@ cdm::Status ToPoints(vtkPointSet* input, const char* name, std::vector<cdm::Vec3
 }
 
 //--------------------------------------------------------------------------------------------------
-cdm::Status ToFlags(vtkUnstructuredGrid* input, const char* name, std::vector<char>& flags)
+cdm::Status ToFlags(vtkPointSet* input, const char* name, std::vector<char>& flags)
 {
   vtkDataArray* array = nullptr;
   const cdm::Status status =
@@ -341,6 +341,40 @@ cdm::Status ToFacets(vtkPolyData* input, std::vector<cdm::Id>& facets)
     facets.push_back(static_cast<cdm::Id>(array->GetComponent(first + i, 0)));
   }
   return status;
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToFacets(
+  vtkPolyData* input, const std::vector<vtkIdType>& cells, std::vector<cdm::Id>& facets)
+{
+  vtkDataArray* array = nullptr;
+  const cdm::Status status = FindScalars(
+    input->GetCellData(), StructuralFacetIdName, "cell", input->GetNumberOfCells(), array);
+  for (const vtkIdType cell : array ? cells : std::vector<vtkIdType>())
+  {
+    facets.push_back(static_cast<cdm::Id>(array->GetComponent(cell, 0)));
+  }
+  return status;
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToLayers(
+  const std::vector<std::array<double, 5>>& rows, std::vector<cdm::PointLayers>& layers)
+{
+  const auto isWhole = [](double value)
+  { return std::abs(value) <= VTK_INT_MAX && value == std::floor(value); };
+  for (const std::array<double, 5>& row : rows)
+  {
+    if (!isWhole(row[0]) || !isWhole(row[1]) || !isWhole(row[2]))
+    {
+      return cdm::Status::Failure(cdm::StatusCode::InvalidOption,
+        "Layers " + std::to_string(layers.size()) +
+          " are not right: region, neighbor and number of layers are whole numbers.");
+    }
+    layers.push_back({ static_cast<cdm::Id>(row[0]), static_cast<cdm::Id>(row[1]),
+      static_cast<cdm::Id>(row[2]), row[3], row[4] });
+  }
+  return {};
 }
 
 //--------------------------------------------------------------------------------------------------

@@ -10,6 +10,7 @@
 #define CoreBridge_Inputs_h
 
 #include "Core/Basics/Status.h"
+#include "Core/MeshPoints/MeshPointGenerator.h"
 #include "Core/Meshes/PolygonSoup.h"
 #include "Core/Meshes/TetMesh.h"
 #include "Core/Meshes/TriangleMesh.h"
@@ -17,6 +18,7 @@
 
 #include <vtkType.h>
 
+#include <array>
 #include <vector>
 
 class vtkDataSet;
@@ -36,11 +38,19 @@ cdm::Status ToTriangleMesh(vtkPolyData* input, cdm::TriangleMesh& surface);
 /** Structural facet of each triangle, from the cell array; empty without the array. */
 cdm::Status ToFacets(vtkPolyData* input, std::vector<cdm::Id>& facets);
 
+/** The same for polygons, by their cells. */
+cdm::Status ToFacets(
+  vtkPolyData* input, const std::vector<vtkIdType>& cells, std::vector<cdm::Id>& facets);
+
+/** Rows of region, neighbor, number of layers, first distance and growth ratio. */
+cdm::Status ToLayers(
+  const std::vector<std::array<double, 5>>& rows, std::vector<cdm::PointLayers>& layers);
+
 /** Finite points; name says in messages which input they are. */
 cdm::Status ToPoints(vtkPointSet* input, const char* name, std::vector<cdm::Vec3>& points);
 
 /** Where a point array is not zero; empty without the array. */
-cdm::Status ToFlags(vtkUnstructuredGrid* input, const char* name, std::vector<char>& flags);
+cdm::Status ToFlags(vtkPointSet* input, const char* name, std::vector<char>& flags);
 
 /** Points as seeds; regions from the point array RegionId, or from 0 on by order. */
 cdm::Status ToSeeds(vtkPointSet* input, std::vector<cdm::RegionSeed>& seeds);

@@ -17,7 +17,10 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
+
+#include <algorithm>
 
 namespace
 {
@@ -101,6 +104,35 @@ void FromFacets(const std::vector<cdm::Id>& facets, vtkPolyData* output)
 {
   output->GetCellData()->AddArray(MakeArray<vtkIntArray>(
     StructuralFacetIdName, facets.size(), [&](std::size_t i) { return facets[i]; }));
+}
+
+//--------------------------------------------------------------------------------------------------
+void FromUnresolved(const std::vector<cdm::Id>& triangles, vtkPolyData* output)
+{
+  std::vector<char> flags(static_cast<std::size_t>(output->GetNumberOfPolys()), 0);
+  for (const cdm::Id triangle : triangles)
+  {
+    flags[triangle] = 1;
+  }
+  FromFlags("Unresolved", flags, output->GetCellData());
+}
+
+//--------------------------------------------------------------------------------------------------
+void FromFlags(const char* name, const std::vector<char>& flags, vtkDataSetAttributes* output)
+{
+  output->AddArray(MakeArray<vtkUnsignedCharArray>(
+    name, flags.size(), [&](std::size_t i) { return static_cast<unsigned char>(flags[i]); }));
+}
+
+//--------------------------------------------------------------------------------------------------
+void FromFaults(const std::vector<cdm::SteinerFault>& faults, vtkUnstructuredGrid* output)
+{
+  if (std::any_of(faults.begin(), faults.end(),
+        [](cdm::SteinerFault fault) { return fault != cdm::SteinerFault::None; }))
+  {
+    output->GetCellData()->AddArray(MakeArray<vtkUnsignedCharArray>("RefinementFault",
+      faults.size(), [&](std::size_t i) { return static_cast<unsigned char>(faults[i]); }));
+  }
 }
 
 //--------------------------------------------------------------------------------------------------

@@ -8,6 +8,7 @@
 
 #include "CoreBridge/Execution.h"
 
+#include "Core/Improvement/SteinerPointRefiner.h"
 #include "Core/Meshes/TetMesh.h"
 #include "Core/Meshes/TriangleMesh.h"
 #include "Core/Surface/StructuralEdges.h"
@@ -19,6 +20,7 @@
 
 #include <vector>
 
+class vtkDataSetAttributes;
 class vtkPoints;
 class vtkPointSet;
 class vtkPolyData;
@@ -71,13 +73,22 @@ void FromTriangleMesh(const cdm::TriangleMesh& surface, vtkPolyData* output);
 /** Points, tetrahedra and RegionId. */
 void FromTetMesh(const cdm::TetMesh& mesh, vtkUnstructuredGrid* output);
 
+/** One value for each triangle: see StructuralFacetIdName. */
+void FromFacets(const std::vector<cdm::Id>& facets, vtkPolyData* output);
+
+/** Cell array Unresolved: 1 for the triangles given, 0 for the others. */
+void FromUnresolved(const std::vector<cdm::Id>& triangles, vtkPolyData* output);
+
+/** An array of 0 and 1. */
+void FromFlags(const char* name, const std::vector<char>& flags, vtkDataSetAttributes* output);
+
+/** Cell array RefinementFault, if there are any faults. */
+void FromFaults(const std::vector<cdm::SteinerFault>& faults, vtkUnstructuredGrid* output);
+
 /**
  * Lines with Kind, DihedralAngle and ChainId on those points of the surface that they use, with
  * their point data and SurfacePointId.
  */
-/** One value for each triangle: see StructuralFacetIdName. */
-void FromFacets(const std::vector<cdm::Id>& facets, vtkPolyData* output);
-
 void FromStructuralEdges(
   const std::vector<cdm::StructuralEdge>& edges, vtkPolyData* surface, vtkPolyData* output);
 

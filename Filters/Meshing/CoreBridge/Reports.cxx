@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CoreBridge/Reports.h"
 
-#include "CoreBridge/ArrayNames.h"
-
 #include <vtkAlgorithm.h>
-#include <vtkCellData.h>
-#include <vtkDataArray.h>
 #include <vtkDataObject.h>
 #include <vtkDataSet.h>
 #include <vtkInformationVector.h>
@@ -45,31 +41,14 @@ std::string ListIds(const char* what, const std::vector<vtkIdType>& ids,
   return text.str();
 }
 
-std::string Describe(const cdm::Status& status, vtkDataSet* input)
+/** " Cells: 1, 2, ... (n in all).": the first ten, ascending; empty without cells. */
+std::string ListCells(const std::vector<cdm::Id>& cells)
 {
-  std::vector<vtkIdType> cells(status.Cells.begin(), status.Cells.end());
-  vtkDataArray* names =
-    input ? input->GetCellData()->GetArray(vtkCoreBridge::InputCellName) : nullptr;
-  if (names)
-  {
-    for (vtkIdType& cell : cells)
-    {
-      cell = static_cast<vtkIdType>(names->GetComponent(cell, 0));
-    }
-  }
-  const std::vector<vtkIdType> points(status.Points.begin(), status.Points.end());
-  auto writePosition = [input](std::ostream& text, vtkIdType point)
-  {
-    if (input && point < input->GetNumberOfPoints())
-    {
-      double x[3];
-      input->GetPoint(point, x);
-      text << " (" << x[0] << ", " << x[1] << ", " << x[2] << ')';
-    }
-  };
-  const bool isBug = status.Code == cdm::StatusCode::InternalError;
-  return (isBug ? "Internal error, please report it: " : "") + status.Message +
-    vtkCoreBridge::ListCells(std::move(cells)) + ListIds("Points", points, writePosition);
+  std::vector<vtkIdType> ids(cells.begin(), cells.end());
+  std::sort(ids.begin(), ids.end());
+  // The triangles of one strip are one cell.
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ListIds("Cells", ids, [](std::ostream&, vtkIdType) {});
 }
 } // namespace
 
@@ -95,40 +74,91 @@ int ReportFailure(
 }
 
 //--------------------------------------------------------------------------------------------------
+cdm::Status SpellOut(cdm::Status status, vtkDataSet* input)
+{
+  const auto writePosition = [input](std::ostream& text, vtkIdType point)
+  {
+    if (input && point < input->GetNumberOfPoints())
+    {
+      double x[3];
+      input->GetPoint(point, x);
+      text << " (" << x[0] << ", " << x[1] << ", " << x[2] << ')';
+    }
+  };
+  const std::vector<vtkIdType> points(status.Points.begin(), status.Points.end());
+  status.Message += ListCells(status.Cells) + ListIds("Points", points, writePosition);
+  status.Cells.clear();
+  status.Points.clear();
+  return status;
+}
+
+//--------------------------------------------------------------------------------------------------
 void ReportError(vtkAlgorithm* filter, const cdm::Status& status, vtkDataSet* input)
 {
-  const std::string text = Describe(status, input);
+  const bool isBug = status.Code == cdm::StatusCode::InternalError;
+  const std::string text =
+    (isBug ? "Internal error, please report it: " : "") + SpellOut(status, input).Message;
   vtkErrorWithObjectMacro(filter, << text);
 }
 
 //--------------------------------------------------------------------------------------------------
-std::string ListCells(std::vector<vtkIdType> cells)
+void ReportWarnings(
+  vtkAlgorithm* filter, const std::vector<cdm::Warning>& warnings, const std::string& prefix)
 {
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  return ListIds("Cells", cells, [](std::ostream&, vtkIdType) {});
+  for (const cdm::Warning& warning : warnings)
+  {
+    const std::string text = prefix + warning.Message + ListCells(warning.Cells);
+    vtkWarningWithObjectMacro(filter, << text);
+  }
 }
 
 //--------------------------------------------------------------------------------------------------
-void OffsetCells(cdm::Status& status, vtkIdType offset)
+void OffsetCells(std::vector<cdm::Id>& cells, vtkIdType offset)
 {
-  DropNoId(status.Cells);
-  for (cdm::Id& cell : status.Cells)
+  DropNoId(cells);
+  for (cdm::Id& cell : cells)
   {
     cell = static_cast<cdm::Id>(cell + offset);
   }
 }
 
 //--------------------------------------------------------------------------------------------------
-void MapCells(cdm::Status& status, const std::vector<vtkIdType>& cells)
+void MapCells(std::vector<cdm::Id>& cells, const std::vector<vtkIdType>& names)
 {
-  DropNoId(status.Cells);
-  for (cdm::Id& cell : status.Cells)
+  DropNoId(cells);
+  for (cdm::Id& cell : cells)
   {
-    cell = static_cast<cdm::Id>(cells[cell]);
+    cell = static_cast<cdm::Id>(names[cell]);
   }
-  // The triangles of one strip are one cell.
-  status.Cells.erase(std::unique(status.Cells.begin(), status.Cells.end()), status.Cells.end());
+}
+
+//--------------------------------------------------------------------------------------------------
+void OffsetCells(std::vector<cdm::Warning>& warnings, vtkIdType offset)
+{
+  for (cdm::Warning& warning : warnings)
+  {
+    OffsetCells(warning.Cells, offset);
+  }
+}
+
+//--------------------------------------------------------------------------------------------------
+void MapCells(std::vector<cdm::Warning>& warnings, const std::vector<vtkIdType>& names)
+{
+  for (cdm::Warning& warning : warnings)
+  {
+    MapCells(warning.Cells, names);
+  }
+}
+
+//--------------------------------------------------------------------------------------------------
+void WarnOfOtherCells(vtkAlgorithm* filter, vtkPolyData* input)
+{
+  if (GetFirstPolygon(input) > 0)
+  {
+    vtkWarningWithObjectMacro(filter,
+      "Ignored " << input->GetNumberOfVerts() << " vertex cells and " << input->GetNumberOfLines()
+                 << " lines of the input: only polygons and strips are used.");
+  }
 }
 
 //--------------------------------------------------------------------------------------------------

@@ -1,0 +1,436 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Pipeline/ConformingMesher.h"
+
+#include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Improvement/SliverRemover.h"
+#include "Core/Meshes/EdgeUses.h"
+#include "Core/Meshes/MeshBoundary.h"
+#include "Core/Surface/StructuralEdges.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+constexpr double LargestSteinerAngle = 40.0;
+
+/** from[via[i]] for all i; NoId stays. */
+template <typename T>
+std::vector<T> Compose(const std::vector<T>& from, const std::vector<Id>& via, T none)
+{
+  std::vector<T> composed;
+  composed.reserve(via.size());
+  for (const Id i : via)
+  {
+    composed.push_back(i == NoId ? none : from[i]);
+  }
+  return composed;
+}
+
+/** How much of a region peeling may take, at most: a layer as thin as what counts as flat. */
+double GetPeeledVolumeRatio(
+  const TriangleMesh& boundary, const MeshCheckReport& report, double flatnessRatio)
+{
+  double area = 0.0;
+  for (const TriangleIds& ids : boundary.Triangles)
+  {
+    area +=
+      GetTriangleArea(boundary.Points[ids[0]], boundary.Points[ids[1]], boundary.Points[ids[2]]);
+  }
+  double smallest = std::numeric_limits<double>::max();
+  for (const RegionVolume& region : report.Regions)
+  {
+    smallest = std::min(smallest, region.Volume);
+  }
+  return flatnessRatio * GetBoundingBoxDiagonal(boundary.Points) * area / smallest;
+}
+
+/** The run: each stage takes what the one before has left in the members. */
+class ConformingMesher
+{
+public:
+  ConformingMesher(const ConformingMesherInput& input, const ConformingMesherOptions& options,
+    const ExecutionContext& context, ConformingMesherOutput& output)
+    : Input(input), Options(options), Context(context), Output(output)
+  {
+  }
+
+  Status Run();
+
+private:
+  Status TriangulateSurface();
+  Status PlaceMeshPoints();
+  Status RefineSurface();
+  Status Tetrahedralize();
+  Status AddSteinerPoints();
+  Status RemoveFlatTetrahedra();
+  Status Check();
+  Status CheckPeeled(const ExecutionContext& context);
+
+  /** A share of the progress, under the name of a stage. */
+  ExecutionContext GetPart(const char* stage, double begin, double end) const
+  {
+    return this->Context.Part(begin, end).Named(stage);
+  }
+  /** In ids of the input. */
+  Status Name(Status status, const std::vector<Id>& cellSources) const;
+  void TakeWarnings(std::vector<Warning>&& warnings, const std::vector<Id>& cellSources);
+  /** Follows the triangles of the boundary to those that they were, sources[i]. */
+  void FollowBoundary(const std::vector<Id>& sources);
+  void FindFreePoints();
+
+  const ConformingMesherInput& Input;
+  const ConformingMesherOptions& Options;
+  const ExecutionContext& Context;
+  ConformingMesherOutput& Output;
+  /** The surface as it is now; its source cells are polygons of the input. */
+  TriangleMesh Surface;
+  /** Given mesh points, then generated ones, as far as they are still there, and their numbers. */
+  std::vector<Vec3> MeshPoints;
+  std::vector<Id> MeshPointSources;
+  /** Structural facet of each triangle; marks of those that miss the criterion. */
+  std::vector<Id> Facets;
+  std::vector<char> IsUnresolved;
+  std::vector<char> IsFree;
+  Id PeeledTetrahedra = 0;
+  double FlatnessRatio = 0.0;
+};
+
+Status ConformingMesher::Name(Status status, const std::vector<Id>& cellSources) const
+{
+  const auto rename = [](std::vector<Id>& ids, const std::vector<Id>& sources)
+  {
+    for (Id& id : ids)
+    {
+      id = id >= 0 && static_cast<std::size_t>(id) < sources.size() ? sources[id] : NoId;
+    }
+    SortUnique(ids);
+    if (!ids.empty() && ids.front() == NoId)
+    {
+      ids.erase(ids.begin());
+    }
+  };
+  rename(status.Cells, cellSources);
+  rename(status.Points, this->Output.Points.SurfaceSources);
+  return status;
+}
+
+void ConformingMesher::TakeWarnings(
+  std::vector<Warning>&& warnings, const std::vector<Id>& cellSources)
+{
+  for (Warning& warning : warnings)
+  {
+    warning.Cells = Compose(cellSources, warning.Cells, NoId);
+    this->Output.Warnings.push_back(std::move(warning));
+  }
+}
+
+Status ConformingMesher::TriangulateSurface()
+{
+  BoundaryTriangulatorOutput clean;
+  Status status = TriangulateBoundary(*this->Input.Polygons, this->Options.Boundary,
+    this->GetPart("Boundary triangulation", 0.0, 0.1), clean);
+  this->Output.Problems = std::move(clean.Problems);
+  std::move(
+    clean.Warnings.begin(), clean.Warnings.end(), std::back_inserter(this->Output.Warnings));
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  this->Surface = std::move(clean.Surface);
+  this->Output.Points.SurfaceSources = std::move(clean.PointSources);
+  this->Output.Points.SurfacePoints = std::move(clean.NewPoints);
+  if (this->Input.MeshPoints != nullptr)
+  {
+    this->MeshPoints = *this->Input.MeshPoints;
+  }
+  return status;
+}
+
+Status ConformingMesher::PlaceMeshPoints()
+{
+  if (!this->Options.GeneratesMeshPoints)
+  {
+    return {};
+  }
+  MeshPointGeneratorOptions options = this->Options.MeshPoints;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    options.Spacing[axis] = options.Spacing[axis] == 0.0 ? this->Options.Surface.MaximumEdgeLength
+                                                         : options.Spacing[axis];
+  }
+  MeshPointGeneratorOutput generated;
+  Status status = GenerateMeshPoints({ &this->Surface, this->Input.Sizing }, options,
+    this->GetPart("Mesh points", 0.1, 0.2), generated);
+  if (!status.IsOk())
+  {
+    return this->Name(std::move(status), this->Surface.SourceCells);
+  }
+  this->TakeWarnings(std::move(generated.Warnings), this->Surface.SourceCells);
+  this->MeshPoints.insert(this->MeshPoints.end(), generated.Points.begin(), generated.Points.end());
+  return status;
+}
+
+Status ConformingMesher::RefineSurface()
+{
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &this->Surface;
+  input.MeshPoints = &this->MeshPoints;
+  input.Sizing = this->Input.Sizing;
+  DelaunaySurfaceRefinerOptions options = this->Options.Surface;
+  if (!this->Input.Facets.empty())
+  {
+    options.StructuralEdges.Facets = Compose(this->Input.Facets, this->Surface.SourceCells, Id(0));
+  }
+  DelaunaySurfaceRefinerOutput refined;
+  Status status = RefineDelaunaySurface(input, options,
+    this->GetPart("Surface refinement", this->Options.GeneratesMeshPoints ? 0.2 : 0.1, 0.5),
+    refined);
+  if (!status.IsOk())
+  {
+    return this->Name(std::move(status), this->Surface.SourceCells);
+  }
+  this->TakeWarnings(std::move(refined.Warnings), this->Surface.SourceCells);
+  refined.Surface.SourceCells =
+    Compose(this->Surface.SourceCells, refined.Surface.SourceCells, NoId);
+  this->Surface = std::move(refined.Surface);
+  this->Facets = NumberFacets(
+    SortEdgeUses(this->Surface.Triangles, this->Surface.Points.size()), refined.StructuralEdges);
+  this->IsUnresolved.assign(this->Surface.Triangles.size(), 0);
+  for (const Id triangle : refined.UnresolvedTriangles)
+  {
+    this->IsUnresolved[triangle] = 1;
+  }
+  this->Output.Points.RefinedPoints = std::move(refined.NewPoints);
+  std::vector<Vec3> kept;
+  for (const Id point : refined.KeptMeshPoints)
+  {
+    kept.push_back(this->MeshPoints[point]);
+  }
+  this->MeshPoints = std::move(kept);
+  this->MeshPointSources = std::move(refined.KeptMeshPoints);
+  return status;
+}
+
+void ConformingMesher::FollowBoundary(const std::vector<Id>& sources)
+{
+  this->Facets = Compose(this->Facets, sources, Id(0));
+  this->IsUnresolved = Compose(this->IsUnresolved, sources, char(0));
+  this->Output.Boundary.SourceCells = Compose(this->Surface.SourceCells, sources, NoId);
+}
+
+Status ConformingMesher::Tetrahedralize()
+{
+  AdvancingFrontTetrahedralizerInput input;
+  input.Surface = &this->Surface;
+  input.MeshPoints = &this->MeshPoints;
+  AdvancingFrontTetrahedralizerOptions options;
+  options.CloseOpenBoundary = this->Options.CloseOpenBoundary;
+  AdvancingFrontTetrahedralizerOutput made;
+  Status status = TetrahedralizeByAdvancingFront(input, options,
+    this->GetPart("Tetrahedralization", 0.5, this->Options.AddsSteinerPoints ? 0.6 : 0.85), made);
+  if (!status.IsOk())
+  {
+    return this->Name(std::move(status), this->Surface.SourceCells);
+  }
+  this->TakeWarnings(std::move(made.Warnings), this->Surface.SourceCells);
+  this->Output.Mesh = std::move(made.Mesh);
+  this->Output.Points.MeshPointSources =
+    Compose(this->MeshPointSources, made.MeshPointSources, NoId);
+  const std::vector<Id> sources = std::move(made.Boundary.SourceCells);
+  this->Output.Boundary = std::move(made.Boundary);
+  this->FollowBoundary(sources);
+  this->FindFreePoints();
+  return status;
+}
+
+/**
+ * With Steiner points those that stages have made; otherwise given mesh points that the input calls
+ * free.
+ */
+void ConformingMesher::FindFreePoints()
+{
+  const PointHistory& history = this->Output.Points;
+  const std::size_t numberOfGiven =
+    this->Input.MeshPoints != nullptr ? this->Input.MeshPoints->size() : 0;
+  const bool hasFlags = !this->Input.AreMeshPointsFree.empty();
+  if (!this->Options.AddsSteinerPoints && (!hasFlags || this->Options.GeneratesMeshPoints))
+  {
+    return;
+  }
+  this->IsFree.assign(history.SurfaceSources.size() + history.SurfacePoints.size(), 0);
+  this->IsFree.insert(
+    this->IsFree.end(), history.RefinedPoints.size(), this->Options.AddsSteinerPoints);
+  for (const Id source : history.MeshPointSources)
+  {
+    const bool isGiven = static_cast<std::size_t>(source) < numberOfGiven;
+    this->IsFree.push_back(
+      this->Options.AddsSteinerPoints ? !isGiven : this->Input.AreMeshPointsFree[source] != 0);
+  }
+}
+
+Status ConformingMesher::AddSteinerPoints()
+{
+  SteinerPointRefinerInput input;
+  input.Mesh = &this->Output.Mesh;
+  input.Boundary = &this->Output.Boundary;
+  input.Sizing = this->Input.Sizing;
+  input.IsFree = this->IsFree;
+  SteinerPointRefinerOptions options;
+  options.Criterion = std::max(this->Options.Surface.Criterion, SurfaceCriterion::SmallestSphere);
+  options.StructuralEdges.AccuracyAngle = this->Options.Surface.StructuralEdges.AccuracyAngle;
+  options.StructuralEdges.Facets = this->Facets;
+  options.RadiusEdgeRatio = this->Options.RadiusEdgeRatio;
+  options.DihedralAngleTarget = this->Options.RemovesSlivers
+    ? std::min(this->Options.DihedralAngleTarget, LargestSteinerAngle)
+    : 0.0;
+  options.MaximumVolume = this->Options.MaximumVolume;
+  options.MaximumEdgeLength = this->Options.Surface.MaximumEdgeLength;
+  SteinerPointRefinerOutput refined;
+  Status status =
+    RefineBySteinerPoints(input, options, this->GetPart("Steiner points", 0.6, 0.95), refined);
+  if (!status.IsOk())
+  {
+    return this->Name(std::move(status), this->Output.Boundary.SourceCells);
+  }
+  this->TakeWarnings(std::move(refined.Warnings), this->Output.Boundary.SourceCells);
+  this->Surface.SourceCells = std::move(this->Output.Boundary.SourceCells);
+  const std::vector<Id> sources = std::move(refined.Boundary.SourceCells);
+  this->Output.Boundary = std::move(refined.Boundary);
+  this->FollowBoundary(sources);
+  this->Output.Points.HasBefore = true;
+  this->Output.Points.Before = std::exchange(this->Output.Mesh, std::move(refined.Mesh));
+  this->Output.Points.Sources = std::move(refined.PointSources);
+  this->Output.IsFree = std::move(refined.IsFree);
+  if (std::any_of(refined.Faults.begin(), refined.Faults.end(),
+        [](SteinerFault fault) { return fault != SteinerFault::None; }))
+  {
+    this->Output.Faults = std::move(refined.Faults);
+  }
+  return status;
+}
+
+Status ConformingMesher::RemoveFlatTetrahedra()
+{
+  SliverRemoverOptions options;
+  options.DihedralAngleTarget = this->Options.DihedralAngleTarget;
+  if (this->Options.Surface.Criterion != SurfaceCriterion::Delaunay)
+  {
+    // Peeling turns a diagonal of the boundary, which the stronger criteria do not allow.
+    options.FlatnessRatio = 0.0;
+  }
+  options.IsFree = this->IsFree;
+  this->FlatnessRatio = options.FlatnessRatio;
+  TetMesh before;
+  if (!options.IsFree.empty())
+  {
+    before = this->Output.Mesh;
+  }
+  SliverRemoverReport report;
+  Status status =
+    RemoveSlivers(this->Output.Mesh, options, this->GetPart("Sliver removal", 0.85, 0.95), report);
+  this->PeeledTetrahedra = report.PeeledTetrahedra;
+  if (status.IsOk() && report.MovedPoints > 0)
+  {
+    PointHistory& history = this->Output.Points;
+    history.HasBefore = true;
+    history.Sources.resize(before.Points.size());
+    for (std::size_t i = 0; i < before.Points.size(); ++i)
+    {
+      history.Sources[i] =
+        before.Points[i] == this->Output.Mesh.Points[i] ? static_cast<Id>(i) : NoId;
+    }
+    history.Before = std::move(before);
+  }
+  return status;
+}
+
+/** The new facets are the mesh's own: only those before tell whether more is missing. */
+Status ConformingMesher::CheckPeeled(const ExecutionContext& context)
+{
+  MeshCheckReport before;
+  Status status =
+    CheckTetMesh(this->Output.Mesh, &this->Output.Boundary, context.Part(0.0, 0.5), before);
+  const double allowed = GetPeeledVolumeRatio(this->Output.Boundary, before, this->FlatnessRatio);
+  TriangleMesh boundary = UpdateBoundary(this->Output.Mesh, this->Output.Boundary);
+  this->Surface.SourceCells = std::move(this->Output.Boundary.SourceCells);
+  const std::vector<Id> sources = std::move(boundary.SourceCells);
+  this->Output.Boundary = std::move(boundary);
+  this->FollowBoundary(sources);
+  if (status.IsOk())
+  {
+    status = CheckTetMesh(
+      this->Output.Mesh, &this->Output.Boundary, context.Part(0.5, 1.0), this->Output.Check);
+  }
+  if (before.LargestVolumeError > allowed)
+  {
+    this->Output.Check.Regions = before.Regions;
+    this->Output.Check.LargestVolumeError = before.LargestVolumeError;
+  }
+  return status;
+}
+
+Status ConformingMesher::Check()
+{
+  const ExecutionContext context = this->Context.Part(0.95, 1.0);
+  Status status = this->PeeledTetrahedra > 0
+    ? this->CheckPeeled(context)
+    : CheckTetMesh(this->Output.Mesh, &this->Output.Boundary, context, this->Output.Check);
+  if (status.IsOk() && !this->Output.Check.IsValid())
+  {
+    this->Output.Warnings.push_back(
+      { "The check finds fault with the mesh: " + this->Output.Check.GetSummary() });
+  }
+  this->Output.Facets = std::move(this->Facets);
+  for (std::size_t i = 0; i < this->IsUnresolved.size(); ++i)
+  {
+    if (this->IsUnresolved[i] != 0)
+    {
+      this->Output.UnresolvedTriangles.push_back(static_cast<Id>(i));
+    }
+  }
+  return status;
+}
+
+Status ConformingMesher::Run()
+{
+  return this->TriangulateSurface()
+    .Then([this] { return this->PlaceMeshPoints(); })
+    .Then([this] { return this->RefineSurface(); })
+    .Then([this] { return this->Tetrahedralize(); })
+    .Then(
+      [this]
+      {
+        return this->Options.AddsSteinerPoints ? this->AddSteinerPoints()
+          : this->Options.RemovesSlivers       ? this->RemoveFlatTetrahedra()
+                                               : Status();
+      })
+    .Then([this] { return this->Check(); });
+}
+} // namespace
+
+Status MeshPolygons(const ConformingMesherInput& input, const ConformingMesherOptions& options,
+  const ExecutionContext& context, ConformingMesherOutput& output)
+{
+  output = {};
+  Status status =
+    RunGuarded([&] { return ConformingMesher(input, options, context, output).Run(); });
+  if (!status.IsOk())
+  {
+    ConformingMesherOutput kept;
+    if (!status.IsAborted())
+    {
+      kept.Problems = std::move(output.Problems);
+      kept.Warnings = std::move(output.Warnings);
+    }
+    output = std::move(kept);
+  }
+  return status;
+}
+} // namespace cdm

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file ConformingMesher.h
+ * @brief All stages in one run: polygons in, boundary-conforming Delaunay tetrahedra out.
+ *
+ * Method (thesis chapters 3, 5 and 6):
+ *  1. BoundaryTriangulator.h: one clean triangulated surface; MeshPointGenerator.h, if points are
+ *     to be generated;
+ *  2. DelaunaySurfaceRefiner.h: flips and new points until the surface is part of its Delaunay
+ *     mesh;
+ *  3. AdvancingFrontTetrahedralizer.h: tetrahedra for every enclosed region;
+ *  4. SteinerPointRefiner.h, if Steiner points are to be added, otherwise SliverRemover.h, if
+ *     slivers are to be removed;
+ *  5. MeshChecks.h: a check of the result, from the mesh and its boundary alone.
+ *
+ * Guarantees: those of the stages. Deterministic, for any number of threads.
+ * Failure: the Status of the stage that failed, with polygons and points of this input; the output
+ * then has only Problems and Warnings, after an abort nothing.
+ * Cost: that of the stages.
+ */
+#ifndef cdmConformingMesher_h
+#define cdmConformingMesher_h
+
+#include "Core/Basics/ExecutionContext.h"
+#include "Core/Basics/Status.h"
+#include "Core/Basics/Warning.h"
+#include "Core/Certificate/MeshChecks.h"
+#include "Core/Improvement/SteinerPointRefiner.h"
+#include "Core/MeshPoints/MeshPointGenerator.h"
+#include "Core/Meshes/PolygonSoup.h"
+#include "Core/Meshes/TetMesh.h"
+#include "Core/Meshes/TriangleMesh.h"
+#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Surface/DelaunaySurfaceRefiner.h"
+
+#include <vector>
+
+namespace cdm
+{
+/** Each option is that of the stage that has it, see there. */
+struct ConformingMesherOptions
+{
+  /** What counts as one point, and what is repaired. */
+  BoundaryTriangulatorOptions Boundary;
+  /** The criterion, sizes and limits of the surface; MaximumEdgeLength is that of the volume too. */
+  DelaunaySurfaceRefinerOptions Surface;
+  bool GeneratesMeshPoints = false;
+  /** Where they are. A Spacing of 0 is Surface.MaximumEdgeLength, if there is one. */
+  MeshPointGeneratorOptions MeshPoints;
+  /** Where the surface is open, close the mesh by the convex hull of the points. */
+  bool CloseOpenBoundary = false;
+  /** Whether tetrahedra with a dihedral angle below the target are to be removed. */
+  bool RemovesSlivers = true;
+  /** Degrees, 0 to 70; with Steiner points more than 40 count as 40. */
+  double DihedralAngleTarget = 15.0;
+  bool AddsSteinerPoints = false;
+  /** Circumradius to shortest edge, with Steiner points. 0 (off) or at least 1. */
+  double RadiusEdgeRatio = 1.4;
+  /** With Steiner points. Cubic model units; 0: off. */
+  double MaximumVolume = 0.0;
+};
+
+struct ConformingMesherInput
+{
+  const PolygonSoup* Polygons = nullptr;
+  /** Empty, or the structural facet of each polygon: edges between different ones are structural. */
+  std::vector<Id> Facets;
+  /** Given points for the inside; may be null. */
+  const std::vector<Vec3>* MeshPoints = nullptr;
+  /**
+   * Empty, or one for each given mesh point: whether the removal of slivers may move it. With
+   * Steiner points and generated ones no given point is moved.
+   */
+  std::vector<char> AreMeshPointsFree;
+  /** Target edge length; may be empty. */
+  SizingField Sizing;
+};
+
+/**
+ * How the points of the mesh came about, stage by stage: what carries point data of the input
+ * along.
+ *  1. The clean surface has the input's points SurfaceSources, then SurfacePoints, whose parents
+ *     are points of the input.
+ *  2. The refined surface has these, then RefinedPoints, whose parents are points of the refined
+ *     surface itself.
+ *  3. The first mesh has these, then mesh points: MeshPointSources counts the given ones, then the
+ *     generated ones.
+ *  4. If a later stage has made or moved points, Before is the first mesh, and point i of the mesh
+ *     is its point Sources[i]; or NoId: it is somewhere in Before.
+ */
+struct PointHistory
+{
+  std::vector<Id> SurfaceSources;
+  std::vector<PointParents> SurfacePoints;
+  std::vector<PointParents> RefinedPoints;
+  std::vector<Id> MeshPointSources;
+  bool HasBefore = false;
+  TetMesh Before;
+  std::vector<Id> Sources;
+};
+
+struct ConformingMesherOutput
+{
+  TetMesh Mesh;
+  /** On the points of Mesh, with labels. SourceCells: polygons of the input; NoId: the hull. */
+  TriangleMesh Boundary;
+  /** Structural facet of each triangle of the boundary. */
+  std::vector<Id> Facets;
+  /** Triangles of the boundary that come from ones which miss the criterion, ascending. */
+  std::vector<Id> UnresolvedTriangles;
+  /** With Steiner points: one for each point, whether it may be moved and taken out. */
+  std::vector<char> IsFree;
+  /** With Steiner points, if there are any: one for each tetrahedron. */
+  std::vector<SteinerFault> Faults;
+  PointHistory Points;
+  MeshCheckReport Check;
+  /** Findings about the polygons, also of a run that failed. */
+  std::vector<SurfaceProblem> Problems;
+  /** Those of all stages; cells are polygons of the input. */
+  std::vector<Warning> Warnings;
+};
+
+Status MeshPolygons(const ConformingMesherInput& input, const ConformingMesherOptions& options,
+  const ExecutionContext& context, ConformingMesherOutput& output);
+} // namespace cdm
+
+#endif

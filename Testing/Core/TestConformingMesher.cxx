@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All stages in one run: the same as the stages one after the other, errors and warnings in cells of
+// the input, limits that are said.
+#include "ComplexKinds.h"
+#include "Core/Pipeline/ConformingMesher.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+using namespace cdm;
+
+namespace
+{
+/** The unit cube; face i is polygon i. */
+PolygonSoup MakeCube()
+{
+  PolygonSoup soup;
+  for (int i = 0; i < 8; ++i)
+  {
+    soup.Points.push_back({ double(i & 1), double(i >> 1 & 1), double(i >> 2) });
+  }
+  for (const std::vector<Id>& face : std::vector<std::vector<Id>>{ { 0, 2, 3, 1 }, { 4, 5, 7, 6 },
+         { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 4, 6, 2 }, { 1, 3, 7, 5 } })
+  {
+    soup.Connectivity.insert(soup.Connectivity.end(), face.begin(), face.end());
+    soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+  }
+  return soup;
+}
+
+ConformingMesherOutput Mesh(const PolygonSoup& soup, const ConformingMesherOptions& options)
+{
+  ConformingMesherInput input;
+  input.Polygons = &soup;
+  ConformingMesherOutput output;
+  const Status status = MeshPolygons(input, options, {}, output);
+  EXPECT_TRUE(status.IsOk()) << status.Message;
+  return output;
+}
+
+bool Warns(const ConformingMesherOutput& output, const std::string& part)
+{
+  return std::any_of(output.Warnings.begin(), output.Warnings.end(),
+    [&](const Warning& warning) { return warning.Message.find(part) != std::string::npos; });
+}
+
+/** Stages 0 to 3, or to 5 with Steiner points, by hand. */
+TetMesh RunStages(const PolygonSoup& soup, const ConformingMesherOptions& options)
+{
+  BoundaryTriangulatorOutput clean;
+  EXPECT_TRUE(TriangulateBoundary(soup, options.Boundary, {}, clean).IsOk());
+  DelaunaySurfaceRefinerInput refinerInput;
+  refinerInput.Surface = &clean.Surface;
+  DelaunaySurfaceRefinerOutput refined;
+  EXPECT_TRUE(RefineDelaunaySurface(refinerInput, options.Surface, {}, refined).IsOk());
+  AdvancingFrontTetrahedralizerInput input;
+  input.Surface = &refined.Surface;
+  AdvancingFrontTetrahedralizerOutput made;
+  EXPECT_TRUE(TetrahedralizeByAdvancingFront(input, {}, {}, made).IsOk());
+  if (!options.AddsSteinerPoints)
+  {
+    return made.Mesh;
+  }
+  SteinerPointRefinerInput steinerInput;
+  steinerInput.Mesh = &made.Mesh;
+  steinerInput.Boundary = &made.Boundary;
+  steinerInput.IsFree.assign(made.Mesh.Points.size(), 1);
+  std::fill_n(steinerInput.IsFree.begin(), clean.Surface.Points.size(), 0);
+  SteinerPointRefinerOptions steinerOptions;
+  steinerOptions.Criterion = options.Surface.Criterion;
+  const std::vector<Id> facets =
+    NumberFacets(SortEdgeUses(refined.Surface.Triangles, refined.Surface.Points.size()),
+      refined.StructuralEdges);
+  for (const Id source : made.Boundary.SourceCells)
+  {
+    steinerOptions.StructuralEdges.Facets.push_back(facets[source]);
+  }
+  SteinerPointRefinerOutput steiner;
+  EXPECT_TRUE(RefineBySteinerPoints(steinerInput, steinerOptions, {}, steiner).IsOk());
+  return steiner.Mesh;
+}
+} // namespace
+
+TEST(ConformingMesher, EqualsItsStages)
+{
+  for (const ComplexKind kind : { ComplexKind::GridTetrahedra, ComplexKind::Boxes })
+  {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed)
+    {
+      SCOPED_TRACE(std::to_string(static_cast<int>(kind)) + ", seed " + std::to_string(seed));
+      const PolygonSoup soup = ComplexMaker(kind, seed).Make();
+      if (soup.GetNumberOfPolygons() == 0)
+      {
+        continue;
+      }
+      ConformingMesherOptions options;
+      options.RemovesSlivers = false;
+      EXPECT_EQ(Mesh(soup, options).Mesh.Tetrahedra, RunStages(soup, options).Tetrahedra);
+      options.RemovesSlivers = true;
+      options.AddsSteinerPoints = true;
+      options.Surface.Criterion = SurfaceCriterion::SmallestSphere;
+      const ConformingMesherOutput output = Mesh(soup, options);
+      EXPECT_TRUE(output.Check.IsValid(1e-6)) << output.Check.GetSummary();
+      const TetMesh expected = RunStages(soup, options);
+      EXPECT_EQ(output.Mesh.Tetrahedra, expected.Tetrahedra);
+      EXPECT_EQ(output.Mesh.Points, expected.Points);
+    }
+  }
+}
+
+TEST(ConformingMesher, ErrorsNamePolygonsAndPointsOfTheInput)
+{
+  // Open at face 4; a point that is not used comes first.
+  PolygonSoup soup = MakeCube();
+  soup.Points.insert(soup.Points.begin(), Vec3{ 0.5, 0.5, 0.5 });
+  for (Id& id : soup.Connectivity)
+  {
+    ++id;
+  }
+  const PolygonSoup closed = soup;
+  soup.Connectivity.resize(20);
+  soup.Offsets.pop_back();
+  ConformingMesherInput input;
+  input.Polygons = &soup;
+  ConformingMesherOutput output;
+  Status status = MeshPolygons(input, {}, {}, output);
+  EXPECT_EQ(status.Code, StatusCode::NotClosed) << status.Message;
+  EXPECT_FALSE(status.Cells.empty());
+  EXPECT_TRUE(std::all_of(
+    status.Cells.begin(), status.Cells.end(), [](Id cell) { return cell >= 0 && cell < 5; }));
+  EXPECT_FALSE(output.Problems.empty());
+  EXPECT_TRUE(output.Mesh.Points.empty());
+
+  input.Polygons = &closed;
+  ConformingMesherOptions options;
+  options.GeneratesMeshPoints = true;
+  options.MeshPoints.Layers = { { 0, 5, 1, 0.1, 1.0 } };
+  EXPECT_EQ(MeshPolygons(input, options, {}, output).Code, StatusCode::InvalidOption);
+}
+
+/** What has ended a stage before the sizes are reached is said. */
+TEST(ConformingMesher, LimitsAreSaid)
+{
+  const PolygonSoup cube = MakeCube();
+  ConformingMesherOptions options;
+  options.Surface.MaximumEdgeLength = 0.1;
+  EXPECT_TRUE(Mesh(cube, options).Warnings.empty());
+  options.Surface.MaximumNewPoints = 20;
+  ConformingMesherOutput output = Mesh(cube, options);
+  EXPECT_TRUE(Warns(output, "larger than asked for"));
+  EXPECT_TRUE(Warns(output, "MaximumNewPoints"));
+  EXPECT_TRUE(output.Check.IsValid());
+  options.Surface.MaximumNewPoints = 0;
+  options.Surface.MinimumEdgeRatio = 0.2;
+  output = Mesh(cube, options);
+  EXPECT_TRUE(Warns(output, "MinimumEdgeRatio"));
+  EXPECT_TRUE(output.Check.IsValid());
+}
+
+TEST(ConformingMesher, AbortsAtAnyTimeAndNamesItsStages)
+{
+  const PolygonSoup cube = MakeCube();
+  ConformingMesherInput input;
+  input.Polygons = &cube;
+  ConformingMesherOptions options;
+  options.Surface.MaximumEdgeLength = 0.2;
+  options.GeneratesMeshPoints = true;
+  options.AddsSteinerPoints = true;
+  double last = 0.0;
+  double end = 2.0;
+  std::string text;
+  const ExecutionContext context(
+    [&](double fraction, const char* activity)
+    {
+      EXPECT_GE(fraction, last);
+      last = fraction;
+      text += activity + std::string("\n");
+    },
+    [&] { return last >= end; });
+  ConformingMesherOutput output;
+  ASSERT_TRUE(MeshPolygons(input, options, context, output).IsOk());
+  EXPECT_GT(last, 0.95);
+  for (const char* const stage : { "Boundary triangulation: ", "Mesh points: ",
+         "Surface refinement: ", "Tetrahedralization: ", "Steiner points: " })
+  {
+    EXPECT_NE(text.find(stage), std::string::npos) << stage;
+  }
+  for (const double at : { 0.0, 0.15, 0.3, 0.55, 0.7, 0.96 })
+  {
+    last = 0.0;
+    end = at;
+    EXPECT_TRUE(MeshPolygons(input, options, context, output).IsAborted()) << at;
+    EXPECT_TRUE(output.Mesh.Points.empty());
+    EXPECT_TRUE(output.Warnings.empty());
+  }
+}
+
+/** Points of the input stay; others have a history that leads back to it. */
+TEST(ConformingMesher, PointsHaveAHistory)
+{
+  const PolygonSoup cube = MakeCube();
+  ConformingMesherOptions options;
+  options.Surface.MaximumEdgeLength = 0.3;
+  options.AddsSteinerPoints = true;
+  const ConformingMesherOutput output = Mesh(cube, options);
+  const PointHistory& history = output.Points;
+  ASSERT_TRUE(history.HasBefore);
+  EXPECT_EQ(history.SurfaceSources.size(), 8u);
+  EXPECT_EQ(history.Before.Points.size(),
+    8 + history.SurfacePoints.size() + history.RefinedPoints.size() +
+      history.MeshPointSources.size());
+  ASSERT_EQ(history.Sources.size(), output.Mesh.Points.size());
+  for (std::size_t i = 0; i < history.Sources.size(); ++i)
+  {
+    if (history.Sources[i] != NoId)
+    {
+      EXPECT_EQ(output.Mesh.Points[i], history.Before.Points[history.Sources[i]]);
+    }
+  }
+  for (std::size_t i = 0; i < history.RefinedPoints.size(); ++i)
+  {
+    const PointParents& parents = history.RefinedPoints[i];
+    Vec3 sum;
+    for (int k = 0; k < 3 && parents.Ids[k] != NoId; ++k)
+    {
+      EXPECT_LT(parents.Ids[k], static_cast<Id>(8 + i));
+      sum = sum + parents.Weights[k] * history.Before.Points[parents.Ids[k]];
+    }
+    EXPECT_LT(Distance(sum, history.Before.Points[8 + i]), 1e-12);
+  }
+  EXPECT_EQ(output.Facets.size(), output.Boundary.Triangles.size());
+  EXPECT_TRUE(std::all_of(output.Boundary.SourceCells.begin(), output.Boundary.SourceCells.end(),
+    [](Id cell) { return cell >= 0 && cell < 6; }));
+}
