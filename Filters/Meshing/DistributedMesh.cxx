@@ -6,8 +6,8 @@
 #include "CoreBridge/Tuples.h"
 
 #include "Core/Basics/IdLimits.h"
-#include "Core/Certificate/MeshChecks.h"
 #include "Core/Delaunay/PartRegions.h"
+#include "Core/Meshes/MeshInvariants.h"
 
 #include <vtkCellData.h>
 #include <vtkDataSetAttributes.h>

@@ -3,6 +3,7 @@
 
 #include "BlockDistribution.h"
 #include "CoreBridge/ArrayNames.h"
+#include "CoreBridge/Certificates.h"
 #include "CoreBridge/Execution.h"
 #include "CoreBridge/Inputs.h"
 #include "CoreBridge/Outputs.h"
@@ -20,7 +21,6 @@
 #include <vtkDataObjectTypes.h>
 #include <vtkDataSet.h>
 #include <vtkDemandDrivenPipeline.h>
-#include <vtkFieldData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkMultiProcessController.h>
@@ -29,7 +29,6 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
-#include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
@@ -39,17 +38,6 @@ vtkStandardNewMacro(vtkConformingDelaunayMesher);
 
 namespace
 {
-/** What the check found, the verdict last: scripts look for it there. */
-void AddCertificate(int criterion, const cdm::MeshCheckReport& report, vtkUnstructuredGrid* output)
-{
-  const bool isStrong = criterion != vtkConformingDelaunayMesher::Delaunay;
-  vtkNew<vtkStringArray> certificate;
-  certificate->SetName("Certificate");
-  certificate->InsertNextValue(
-    (isStrong ? report.GetSphereSummary() + "; " : std::string()) + report.GetSummary());
-  output->GetFieldData()->AddArray(certificate);
-}
-
 /** Mesh and boundary with the data of the input. */
 void MakeOutputs(const cdm::ConformingMesherOutput& result, vtkPolyData* input,
   const std::vector<vtkIdType>& cells, vtkPointSet* meshPoints, vtkUnstructuredGrid* mesh,
@@ -359,7 +347,7 @@ cdm::Status vtkConformingDelaunayMesher::MeshPolygons(const std::string& prefix,
     [&]() -> cdm::Status
     {
       MakeOutputs(result, input, cells, givenPoints, mesh, boundary);
-      AddCertificate(this->Criterion, result.Check, mesh);
+      vtkCoreBridge::AddCertificate(result.Certificate, mesh->GetFieldData());
       WarnOfLostArrays(this, prefix, input, mesh);
       return {};
     });

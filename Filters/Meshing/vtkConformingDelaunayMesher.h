@@ -29,9 +29,8 @@
  * others.
  *
  * Outputs: port 0: vtkUnstructuredGrid of VTK_TETRA with the cell array RegionId (int), the point
- * data of the input, interpolated at new points, and the string array Certificate in the field
- * data: one line that says what the check found, with a stronger criterion also between which
- * regions it is missed. Port 1: the boundary of the mesh and its regions
+ * data of the input, interpolated at new points, and in the field data the certificate with the arrays
+ * of vtkDelaunayMeshCriteria: couplings are looked at with the two stronger criteria only. Port 1: the boundary of the mesh and its regions
  * as triangles, with BoundaryLabels (int, 2 components), StructuralFacetId (int: see
  * vtkDelaunaySurfaceRefiner) and the cell data of the input polygons; where the criterion is missed
  * also Unresolved (unsigned char), 1 for triangles that miss it.

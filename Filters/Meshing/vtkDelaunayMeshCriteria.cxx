@@ -2,13 +2,14 @@
 #include "vtkDelaunayMeshCriteria.h"
 
 #include "CoreBridge/ArrayNames.h"
+#include "CoreBridge/Certificates.h"
 #include "CoreBridge/Execution.h"
 #include "CoreBridge/Inputs.h"
 #include "CoreBridge/Outputs.h"
 #include "CoreBridge/Reports.h"
 #include "CoreBridge/Tuples.h"
 
-#include "Core/Certificate/MeshCriteria.h"
+#include "Core/Certificate/MeshCertificate.h"
 
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
@@ -20,7 +21,6 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
-#include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
@@ -28,12 +28,6 @@ vtkStandardNewMacro(vtkDelaunayMeshCriteria);
 
 namespace
 {
-/** Names of the counts in the field data, by cdm::MeshFault. */
-constexpr const char* FaultNames[cdm::NumberOfMeshFaults] = { "InvertedTetrahedra",
-  "FlatTetrahedra", "OverfullFacets", "NonDelaunayTetrahedra", "NonDelaunayFacets",
-  "FacetSphereViolations", "EdgeSphereViolations", "OpenControlVolumes", "NegativeCouplings",
-  "NegativeCotangentSums" };
-
 /** Polygons as fans: the volume that they enclose is the same, convex or not. */
 cdm::Status ToFans(vtkPolyData* input, cdm::TriangleMesh& boundary)
 {
@@ -69,7 +63,7 @@ void AddArray(vtkFieldData* data, const char* name, std::size_t count, const Fun
   data->AddArray(vtkCoreBridge::MakeArray<Array>(name, count, getValue));
 }
 
-void AddQualities(const cdm::MeshCriteriaReport& report, vtkCellData* data)
+void AddQualities(const cdm::MeshCertificate& report, vtkCellData* data)
 {
   const auto& qualities = report.Qualities;
   const auto add = [&](const char* name, auto&& getValue)
@@ -110,42 +104,8 @@ void AddQualities(const cdm::MeshCriteriaReport& report, vtkCellData* data)
     data, "IsOpen", isOpen.size(), [&](std::size_t i) { return isOpen[i]; });
 }
 
-void AddCertificate(const cdm::MeshCriteriaReport& report, vtkFieldData* data)
-{
-  vtkNew<vtkStringArray> certificate;
-  certificate->SetName("Certificate");
-  certificate->InsertNextValue(report.GetCertificate());
-  data->AddArray(certificate);
-  const auto addCount = [data](const char* name, vtkIdType count)
-  { AddArray<vtkIdTypeArray>(data, name, 1, [count](std::size_t) { return count; }); };
-  addCount("IsClean", report.IsClean());
-  for (int fault = 0; fault < cdm::NumberOfMeshFaults; ++fault)
-  {
-    addCount(FaultNames[fault], report.Faults[fault]);
-  }
-  addCount("Facets", report.Facets);
-  addCount("BorderFacets", report.BorderFacets);
-  addCount("StructuralEdges", report.StructuralEdges);
-  addCount("Edges", report.Edges);
-  addCount("Couplings", report.Couplings);
-  addCount("CoincidentPoints", report.CoincidentPoints);
-  addCount("TetrahedraUnder5Degrees", report.Under5Degrees);
-  addCount("TetrahedraUnder10Degrees", report.Under10Degrees);
-  const auto addAngle = [data](const char* name, double angle)
-  { AddArray<vtkDoubleArray>(data, name, 1, [angle](std::size_t) { return angle; }); };
-  addAngle("MeshSmallestDihedralAngle", report.SmallestDihedralAngle);
-  addAngle("MeshLargestDihedralAngle", report.LargestDihedralAngle);
-  const auto& regions = report.Regions;
-  AddArray<vtkIntArray>(
-    data, "RegionIds", regions.size(), [&](std::size_t i) { return regions[i].Region; });
-  AddArray<vtkDoubleArray>(
-    data, "RegionVolumes", regions.size(), [&](std::size_t i) { return regions[i].Volume; });
-  AddArray<vtkDoubleArray>(data, "RegionVolumeErrors", regions.size(),
-    [&](std::size_t i) { return regions[i].GetRelativeError(); });
-}
-
 /** Lines, triangles and tetrahedra on the points that they use. */
-void MakeViolations(const cdm::MeshCriteriaReport& report, const std::vector<cdm::Vec3>& points,
+void MakeViolations(const cdm::MeshCertificate& report, const std::vector<cdm::Vec3>& points,
   const std::vector<vtkIdType>& cells, vtkUnstructuredGrid* output)
 {
   vtkNew<vtkPoints> usedPoints;
@@ -220,7 +180,7 @@ int vtkDelaunayMeshCriteria::RequestData(
   cdm::TetMesh mesh;
   std::vector<vtkIdType> cells;
   cdm::TriangleMesh boundary;
-  cdm::MeshCriteriaReport report;
+  cdm::MeshCertificate report;
   vtkDataSet* faulty = input;
   const cdm::Status status = cdm::RunGuarded(
     [&]
@@ -233,8 +193,8 @@ int vtkDelaunayMeshCriteria::RequestData(
       }
       if (step.IsOk())
       {
-        step = cdm::EvaluateMeshCriteria(
-          mesh, surface ? &boundary : nullptr, vtkCoreBridge::MakeContext(this), report);
+        step = cdm::CertifyMesh(mesh, surface ? &boundary : nullptr,
+          vtkCoreBridge::MakeContext(this), report, cdm::FullCertificate);
       }
       return step;
     });
@@ -242,7 +202,7 @@ int vtkDelaunayMeshCriteria::RequestData(
   {
     return vtkCoreBridge::ReportFailure(this, outputVector, status, faulty);
   }
-  this->Certificate = report.GetCertificate();
+  this->Certificate = report.GetText();
   this->IsClean = report.IsClean();
 
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector, 0);
@@ -259,7 +219,7 @@ int vtkDelaunayMeshCriteria::RequestData(
   }
   output->GetPointData()->PassData(input->GetPointData());
   AddQualities(report, output->GetCellData());
-  AddCertificate(report, output->GetFieldData());
+  vtkCoreBridge::AddCertificate(report, output->GetFieldData());
   MakeViolations(report, mesh.Points, cells, vtkUnstructuredGrid::GetData(outputVector, 1));
   return 1;
 }

@@ -28,12 +28,12 @@
  *    (R/r, 1/Q3), RadiusEdgeRatio (1/Q1), SmallestDihedralAngle, LargestDihedralAngle (double,
  *    degrees), IsDelaunay (unsigned char, Crit. 5.3) and IsOpen (unsigned char: an open control
  *    volume).
- *    Field data: Certificate (one line of text), IsClean (0 or 1), one count for each kind of
+ *    Field data: Certificate (three lines: verdict, reasons, numbers), IsClean (0 or 1), one count for each kind of
  *    fault (InvertedTetrahedra, FlatTetrahedra, OverfullFacets, NonDelaunayTetrahedra,
  *    NonDelaunayFacets, FacetSphereViolations, EdgeSphereViolations, OpenControlVolumes,
  *    NegativeCouplings, NegativeCotangentSums), what they are counted among (Facets, BorderFacets,
  *    StructuralEdges, Edges, Couplings), CoincidentPoints, TetrahedraUnder5Degrees,
- *    TetrahedraUnder10Degrees, MeshSmallestDihedralAngle, MeshLargestDihedralAngle, and for each
+ *    TetrahedraUnder10Degrees, TetrahedraUnder15Degrees, MeshSmallestDihedralAngle, MeshLargestDihedralAngle, and for each
  *    region RegionIds, RegionVolumes and RegionVolumeErrors (relative).
  *  - port 1: vtkUnstructuredGrid, a copy of everything at fault: VTK_LINE, VTK_TRIANGLE
  *    and VTK_TETRA with the cell arrays Fault (int, in the order of the counts above, from 0),
@@ -49,7 +49,7 @@
  * processor time; 160 bytes per tetrahedron, outputs included.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
- * 1999: the criteria. Filters/Core/Certificate/MeshCriteria.h is the engine.
+ * 1999: the criteria. Filters/Core/Certificate/MeshCertificate.h is the engine.
  */
 #ifndef vtkDelaunayMeshCriteria_h
 #define vtkDelaunayMeshCriteria_h

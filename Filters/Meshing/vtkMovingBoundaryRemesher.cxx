@@ -2,6 +2,7 @@
 #include "vtkMovingBoundaryRemesher.h"
 
 #include "CoreBridge/ArrayNames.h"
+#include "CoreBridge/Certificates.h"
 #include "CoreBridge/Execution.h"
 #include "CoreBridge/Inputs.h"
 #include "CoreBridge/Outputs.h"
@@ -139,6 +140,7 @@ int vtkMovingBoundaryRemesher::RequestData(
   }
 
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector, 0);
+  vtkCoreBridge::RemoveCertificate(output->GetFieldData());
   vtkCoreBridge::CopyTuples(input->GetCellData(),
     { result.TetrahedronSources.begin(), result.TetrahedronSources.end() }, output->GetCellData(),
     { vtkCoreBridge::RegionIdName });

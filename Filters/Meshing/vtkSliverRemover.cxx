@@ -2,6 +2,7 @@
 #include "vtkSliverRemover.h"
 
 #include "CoreBridge/ArrayNames.h"
+#include "CoreBridge/Certificates.h"
 #include "CoreBridge/Execution.h"
 #include "CoreBridge/Inputs.h"
 #include "CoreBridge/Outputs.h"
@@ -140,6 +141,7 @@ int vtkSliverRemover::RequestData(
   }
 
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector, 0);
+  vtkCoreBridge::RemoveCertificate(output->GetFieldData());
   vtkCellData* const cellData = input->GetCellData();
   if (cellData->GetNumberOfArrays() > (cellData->HasArray(vtkCoreBridge::RegionIdName) ? 1 : 0))
   {

@@ -2,6 +2,7 @@
 #include "vtkSteinerPointRefiner.h"
 
 #include "CoreBridge/ArrayNames.h"
+#include "CoreBridge/Certificates.h"
 #include "CoreBridge/Execution.h"
 #include "CoreBridge/Inputs.h"
 #include "CoreBridge/Outputs.h"
@@ -142,6 +143,7 @@ int vtkSteinerPointRefiner::RequestData(
   }
 
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector, 0);
+  vtkCoreBridge::RemoveCertificate(output->GetFieldData());
   vtkCoreBridge::FromTetMesh(result.Mesh, output);
   vtkCoreBridge::InterpolateTuplesInCells(input, result.PointSources, output);
   output->GetPointData()->RemoveArray(RemovePointName);

@@ -140,7 +140,7 @@ def Report(title, mesh, thesis):
           "tetrahedra)" % (angles[~inevitable].min(), angles.min(), inevitable.sum()))
     if angles[~inevitable].min() < TARGET:
         wrong.append("%d slivers" % (angles[~inevitable] < TARGET).sum())
-    print("  certificate:", summary.GetAbstractArray("Certificate").GetValue(0))
+    print("  certificate:", summary.GetAbstractArray("Certificate").GetValue(0).replace("\n", "\n    "))
     if wrong:
         print("  wrong:", "; ".join(wrong))
     return wrong
@@ -152,7 +152,7 @@ def Compare(title, mesh, faults, limit=None):
     summary = mesh.GetFieldData()
     print("%-44s %12s %12s" % (title, "tetrahedra", "thesis"))
     print("  %-42s %12d %12s" % ("all", number, "-" if limit is None else limit))
-    print("  certificate:", summary.GetAbstractArray("Certificate").GetValue(0))
+    print("  certificate:", summary.GetAbstractArray("Certificate").GetValue(0).replace("\n", "\n    "))
     wrong = ["%d %s" % (summary.GetArray(name).GetValue(0), name) for name in faults
              if summary.GetArray(name).GetValue(0)]
     if limit is not None and number > limit:

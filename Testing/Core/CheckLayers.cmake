@@ -2,7 +2,7 @@
 # Core knows no VTK, Meshing knows no ParaView, CGAL is seen by one file only; a folder of Core knows
 # only those before it.
 #   cmake -D SOURCE_DIR=<folder of the project> -P CheckLayers.cmake
-set(folders Basics Geometry Search Meshes Sizing Delaunay Certificate Surface MeshPoints Volume
+set(folders Basics Geometry Search Meshes Certificate Sizing Delaunay Surface MeshPoints Volume
   Improvement Interfaces Pipeline)
 file(GLOB core "${SOURCE_DIR}/Filters/Core/*/*.h" "${SOURCE_DIR}/Filters/Core/*/*.cxx")
 file(GLOB meshing "${SOURCE_DIR}/Filters/Meshing/*.h" "${SOURCE_DIR}/Filters/Meshing/*.cxx"
@@ -37,6 +37,22 @@ foreach (folder IN LISTS folders)
   endif ()
   foreach (other IN LISTS later)
     forbid("Core/${other}/" "${folder} does not know ${other}" ${sources})
+  endforeach ()
+endforeach ()
+
+# The certificate judges the stages: it shares with them the exact predicates, containers, formulas and
+# incidences, and nothing that searches or decides.
+file(GLOB certificate "${SOURCE_DIR}/Filters/Core/Certificate/*.h"
+  "${SOURCE_DIR}/Filters/Core/Certificate/*.cxx")
+forbid("Core/Search/" "the certificate has a search of its own" ${certificate})
+foreach (path IN LISTS certificate)
+  file(STRINGS "${path}" lines REGEX "^#include \"Core/Meshes/")
+  foreach (line IN LISTS lines)
+    if (NOT line MATCHES
+        "/(TetMesh|TriangleMesh|MeshInvariants|SimplexIncidence|VolumeSums|VoronoiMeasures)\\.h")
+      message("${path}: ${line}: the certificate is independent of the stages")
+      math(EXPR problems "${problems} + 1")
+    endif ()
   endforeach ()
 endforeach ()
 

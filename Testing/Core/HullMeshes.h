@@ -6,7 +6,7 @@
 #ifndef HullMeshes_h
 #define HullMeshes_h
 
-#include "Core/Certificate/MeshChecks.h"
+#include "Core/Meshes/MeshInvariants.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 
 #include <gtest/gtest.h>

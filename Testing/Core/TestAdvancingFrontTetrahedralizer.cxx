@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 
-#include "Core/Certificate/MeshChecks.h"
+#include "Core/Certificate/MeshCertificate.h"
 #include "Core/Geometry/Predicates.h"
 
 #include <gtest/gtest.h>
@@ -103,9 +103,9 @@ Status MeshPointSet(const PointSet& points, AdvancingFrontTetrahedralizerOutput&
 void CheckHullMesh(const PointSet& points, const AdvancingFrontTetrahedralizerOutput& output,
   double volumeTolerance = 1e-9)
 {
-  MeshCheckReport report;
-  ASSERT_TRUE(CheckTetMesh(output.Mesh, &output.Boundary, {}, report).IsOk());
-  EXPECT_TRUE(report.IsValid(volumeTolerance)) << report.GetSummary();
+  MeshCertificate report;
+  ASSERT_TRUE(CertifyMesh(output.Mesh, &output.Boundary, {}, report).IsOk());
+  EXPECT_TRUE(report.IsDelaunay(volumeTolerance)) << report.GetText();
   const std::set<std::array<double, 3>> distinct = [&points]()
   {
     std::set<std::array<double, 3>> result;
@@ -165,9 +165,9 @@ PointSet MakeInnerPoints(Random& random, int count, const Vec3& center, double s
 
 void CheckSurfaceMesh(const AdvancingFrontTetrahedralizerOutput& output)
 {
-  MeshCheckReport report;
-  ASSERT_TRUE(CheckTetMesh(output.Mesh, &output.Boundary, {}, report).IsOk());
-  EXPECT_TRUE(report.IsValid()) << report.GetSummary();
+  MeshCertificate report;
+  ASSERT_TRUE(CertifyMesh(output.Mesh, &output.Boundary, {}, report).IsOk());
+  EXPECT_TRUE(report.IsDelaunay()) << report.GetText();
 }
 
 bool AreEqual(
@@ -627,8 +627,8 @@ TEST(AdvancingFront, LeavesCavitiesAndMeshesNestedRegions)
   ASSERT_TRUE(
     TetrahedralizeByAdvancingFront({ &surface, nullptr, nullptr }, {}, {}, output).IsOk());
   CheckSurfaceMesh(output);
-  MeshCheckReport report;
-  ASSERT_TRUE(CheckTetMesh(output.Mesh, &output.Boundary, {}, report).IsOk());
+  MeshCertificate report;
+  ASSERT_TRUE(CertifyMesh(output.Mesh, &output.Boundary, {}, report).IsOk());
   ASSERT_EQ(report.Regions.size(), 1u);
   EXPECT_EQ(report.Regions[0].Region, 7);
   EXPECT_NEAR(report.Regions[0].Volume, 1.0 - 0.008, 1e-12);
@@ -637,7 +637,7 @@ TEST(AdvancingFront, LeavesCavitiesAndMeshesNestedRegions)
   surface.Labels.clear();
   const std::vector<RegionSeed> seeds{ { { 0.5, 0.5, 0.5 }, 3 } };
   ASSERT_TRUE(TetrahedralizeByAdvancingFront({ &surface, nullptr, &seeds }, {}, {}, output).IsOk());
-  ASSERT_TRUE(CheckTetMesh(output.Mesh, nullptr, {}, report).IsOk());
+  ASSERT_TRUE(CertifyMesh(output.Mesh, nullptr, {}, report).IsOk());
   ASSERT_EQ(report.Regions.size(), 1u);
   EXPECT_EQ(report.Regions[0].Region, 3);
   EXPECT_NEAR(report.Regions[0].Volume, 0.008, 1e-14);
@@ -741,9 +741,10 @@ TEST(AdvancingFront, StopsAtSnapshotsAndAborts)
   }
   const auto checkPartial = [&](const AdvancingFrontTetrahedralizerOutput& part)
   {
-    MeshCheckReport report;
-    ASSERT_TRUE(CheckTetMesh(part.Mesh, nullptr, {}, report).IsOk());
-    EXPECT_EQ(report.InvertedTetrahedra + report.FlatTetrahedra + report.OverfullFacets +
+    MeshCertificate report;
+    ASSERT_TRUE(CertifyMesh(part.Mesh, nullptr, {}, report).IsOk());
+    EXPECT_EQ(report.GetCount(MeshFault::InvertedTetrahedron) +
+        report.GetCount(MeshFault::FlatTetrahedron) + report.GetCount(MeshFault::OverfullFacet) +
         report.WrongNeighbors,
       0);
     for (const TetrahedronIds& ids : part.Mesh.Tetrahedra)

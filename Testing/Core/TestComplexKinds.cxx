@@ -5,7 +5,7 @@
 // CDM_COMPLEXES=12500 build/bin/TestComplexKinds makes so many of each kind, CDM_FIRST_SEED other
 // ones, CDM_STEINER_COMPLEXES=1000 so many with Steiner points.
 #include "ComplexKinds.h"
-#include "Core/Certificate/MeshChecks.h"
+#include "Core/Certificate/MeshCertificate.h"
 #include "Core/Improvement/SteinerPointRefiner.h"
 #include "Core/Surface/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
@@ -65,16 +65,17 @@ std::size_t MeshComplex(const TriangleMesh& surface, SurfaceCriterion criterion,
   AdvancingFrontTetrahedralizerOutput mesh;
   const Status meshed = TetrahedralizeByAdvancingFront(mesherInput, {}, {}, mesh);
   EXPECT_TRUE(meshed.IsOk()) << meshed.Message;
-  MeshCheckReport report;
-  EXPECT_TRUE(CheckTetMesh(mesh.Mesh, &mesh.Boundary, {}, report).IsOk());
-  EXPECT_TRUE(report.IsValid(VolumeTolerance)) << report.GetSummary();
+  MeshCertificate report;
+  EXPECT_TRUE(CertifyMesh(mesh.Mesh, &mesh.Boundary, {}, report).IsOk());
+  EXPECT_TRUE(report.IsDelaunay(VolumeTolerance)) << report.GetText();
   if (isFulfilled && criterion != SurfaceCriterion::Delaunay)
   {
-    EXPECT_EQ(report.SmallestSphereViolations, 0);
+    EXPECT_EQ(report.GetCount(MeshFault::FacetSphere), 0);
   }
   if (!isFulfilled)
   {
-    EXPECT_LE(report.SmallestSphereViolations, static_cast<Id>(refined.WeakTriangles.size()));
+    EXPECT_LE(
+      report.GetCount(MeshFault::FacetSphere), static_cast<Id>(refined.WeakTriangles.size()));
   }
   return refined.Surface.Points.size();
 }
@@ -170,11 +171,11 @@ void RefineComplex(const TriangleMesh& surface, const SteinerPointRefinerOptions
   SteinerPointRefinerOutput output;
   const Status status = RefineBySteinerPoints(steinerInput, options, {}, output);
   ASSERT_TRUE(status.IsOk()) << status.Message;
-  MeshCheckReport check;
-  EXPECT_TRUE(CheckTetMesh(output.Mesh, &output.Boundary, {}, check).IsOk());
-  EXPECT_TRUE(check.IsValid(VolumeTolerance)) << check.GetSummary();
+  MeshCertificate check;
+  EXPECT_TRUE(CertifyMesh(output.Mesh, &output.Boundary, {}, check).IsOk());
+  EXPECT_TRUE(check.IsDelaunay(VolumeTolerance)) << check.GetText();
   const SteinerPointRefinerReport& report = output.Report;
-  EXPECT_LE(check.SmallestSphereViolations, report.WeakTriangles) << check.GetSphereSummary();
+  EXPECT_LE(check.GetCount(MeshFault::FacetSphere), report.WeakTriangles) << check.GetReasons();
   ++counts.Complexes;
   if (report.UnresolvedTriangles == 0)
   {

@@ -104,7 +104,7 @@ TEST(ConformingMesher, EqualsItsStages)
       options.AddsSteinerPoints = true;
       options.Surface.Criterion = SurfaceCriterion::SmallestSphere;
       const ConformingMesherOutput output = Mesh(soup, options);
-      EXPECT_TRUE(output.Check.IsValid(1e-6)) << output.Check.GetSummary();
+      EXPECT_TRUE(output.Certificate.IsDelaunay(1e-6)) << output.Certificate.GetText();
       const TetMesh expected = RunStages(soup, options);
       EXPECT_EQ(output.Mesh.Tetrahedra, expected.Tetrahedra);
       EXPECT_EQ(output.Mesh.Points, expected.Points);
@@ -153,12 +153,12 @@ TEST(ConformingMesher, LimitsAreSaid)
   ConformingMesherOutput output = Mesh(cube, options);
   EXPECT_TRUE(Warns(output, "larger than asked for"));
   EXPECT_TRUE(Warns(output, "MaximumNewPoints"));
-  EXPECT_TRUE(output.Check.IsValid());
+  EXPECT_TRUE(output.Certificate.IsDelaunay());
   options.Surface.MaximumNewPoints = 0;
   options.Surface.MinimumEdgeRatio = 0.2;
   output = Mesh(cube, options);
   EXPECT_TRUE(Warns(output, "MinimumEdgeRatio"));
-  EXPECT_TRUE(output.Check.IsValid());
+  EXPECT_TRUE(output.Certificate.IsDelaunay());
 }
 
 TEST(ConformingMesher, AbortsAtAnyTimeAndNamesItsStages)

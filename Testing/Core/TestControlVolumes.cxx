@@ -2,9 +2,9 @@
 #include "HullMeshes.h"
 
 #include "Core/Certificate/ControlPolyhedra.h"
-#include "Core/Certificate/MeshChecks.h"
-#include "Core/Certificate/MeshCriteria.h"
+#include "Core/Certificate/MeshCertificate.h"
 #include "Core/Geometry/Measures.h"
+#include "Core/Meshes/MeshInvariants.h"
 #include "Core/Meshes/VoronoiMeasures.h"
 
 #include <gtest/gtest.h>
@@ -288,8 +288,8 @@ TEST(ControlVolumes, CertificateCountsTheSameNegativeCouplings)
     }
     SplitAt(mesh, jitter > 0.0 ? 3.0 : 0.5);
     const ControlVolumes volumes = Compute(mesh);
-    MeshCriteriaReport report;
-    ASSERT_TRUE(EvaluateMeshCriteria(mesh, nullptr, {}, report).IsOk());
+    MeshCertificate report;
+    ASSERT_TRUE(CertifyMesh(mesh, nullptr, {}, report, FullCertificate).IsOk());
     EXPECT_EQ(jitter > 0.0, report.GetCount(MeshFault::NonDelaunayTetrahedron) > 0);
     EXPECT_GT(volumes.NegativeCouplings, 0);
     EXPECT_EQ(volumes.NegativeCouplings, report.GetCount(MeshFault::NegativeCoupling));

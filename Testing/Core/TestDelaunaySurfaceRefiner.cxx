@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Certificate/MeshChecks.h"
+#include "Core/Certificate/MeshCertificate.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Surface/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
@@ -39,7 +39,7 @@ DelaunaySurfaceRefinerOutput Refine(const TriangleMesh& surface,
 }
 
 /** Meshes a refined surface and lets the checker judge it. */
-MeshCheckReport MeshAndCheck(const DelaunaySurfaceRefinerOutput& refined,
+MeshCertificate MeshAndCheck(const DelaunaySurfaceRefinerOutput& refined,
   const std::vector<Vec3>& meshPoints = {}, double volumeTolerance = 1e-10)
 {
   AdvancingFrontTetrahedralizerInput input;
@@ -48,9 +48,9 @@ MeshCheckReport MeshAndCheck(const DelaunaySurfaceRefinerOutput& refined,
   AdvancingFrontTetrahedralizerOutput output;
   const Status status = TetrahedralizeByAdvancingFront(input, {}, {}, output);
   EXPECT_TRUE(status.IsOk()) << status.Message;
-  MeshCheckReport report;
-  EXPECT_TRUE(CheckTetMesh(output.Mesh, &output.Boundary, {}, report).IsOk());
-  EXPECT_TRUE(report.IsValid(volumeTolerance)) << report.GetSummary();
+  MeshCertificate report;
+  EXPECT_TRUE(CertifyMesh(output.Mesh, &output.Boundary, {}, report).IsOk());
+  EXPECT_TRUE(report.IsDelaunay(volumeTolerance)) << report.GetText();
   return report;
 }
 
@@ -224,9 +224,9 @@ TEST(DelaunaySurfaceRefiner, KeepsMeshPointsAndDropsThoseTooClose)
   EXPECT_EQ(refined.KeptMeshPoints, (std::vector<Id>{ 0, 4 }));
   EXPECT_EQ(refined.Report.DroppedMeshPoints, 4);
   EXPECT_FALSE(refined.NewPoints.empty());
-  const MeshCheckReport report = MeshAndCheck(refined, { meshPoints[0], meshPoints[4] }, 1e-12);
+  const MeshCertificate report = MeshAndCheck(refined, { meshPoints[0], meshPoints[4] }, 1e-12);
   EXPECT_EQ(report.UnusedPoints, 0);
-  EXPECT_EQ(report.SmallestSphereViolations, 0);
+  EXPECT_EQ(report.GetCount(MeshFault::FacetSphere), 0);
 }
 
 TEST(DelaunaySurfaceRefiner, MirrorsPointsThroughThinLayers)
@@ -243,8 +243,8 @@ TEST(DelaunaySurfaceRefiner, MirrorsPointsThroughThinLayers)
       const DelaunaySurfaceRefinerOutput refined = Refine(layers, options);
       // Six faces of 25 squares and three layers: the count must not know the thickness.
       EXPECT_LT(refined.NewPoints.size(), 900u) << thickness << " " << angle;
-      const MeshCheckReport report = MeshAndCheck(refined);
-      EXPECT_EQ(report.SmallestSphereViolations, 0);
+      const MeshCertificate report = MeshAndCheck(refined);
+      EXPECT_EQ(report.GetCount(MeshFault::FacetSphere), 0);
     }
   }
 }
@@ -262,10 +262,10 @@ TEST(DelaunaySurfaceRefiner, EndsAtSharpAngles)
       const DelaunaySurfaceRefinerOutput refined =
         Refine(Triangulate(MakeWedge(degrees, 0.7)), options);
       EXPECT_LT(refined.NewPoints.size(), 500u) << degrees;
-      const MeshCheckReport report = MeshAndCheck(refined);
+      const MeshCertificate report = MeshAndCheck(refined);
       if (criterion != SurfaceCriterion::Delaunay)
       {
-        EXPECT_EQ(report.SmallestSphereViolations, 0);
+        EXPECT_EQ(report.GetCount(MeshFault::FacetSphere), 0);
       }
     }
   }
@@ -338,10 +338,10 @@ TEST(DelaunaySurfaceRefiner, EndsOnRandomComplexes)
       DelaunaySurfaceRefinerOptions options;
       options.Criterion = criterion;
       options.MaximumNewPoints = 20000;
-      const MeshCheckReport report = MeshAndCheck(Refine(surface, options));
+      const MeshCertificate report = MeshAndCheck(Refine(surface, options));
       if (criterion != SurfaceCriterion::Delaunay)
       {
-        EXPECT_EQ(report.SmallestSphereViolations, 0);
+        EXPECT_EQ(report.GetCount(MeshFault::FacetSphere), 0);
       }
     }
   }

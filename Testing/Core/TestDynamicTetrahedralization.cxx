@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Certificate/MeshChecks.h"
+#include "Core/Certificate/MeshCertificate.h"
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Improvement/BoundarySpheres.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Certificate/MeshChecks.h"
+#include "Core/Certificate/MeshCertificate.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/MeshPoints/MeshPointGenerator.h"
@@ -440,9 +440,9 @@ TEST(MeshPointGenerator, ThinLayersAreMeshedWithoutRefinement)
   frontInput.MeshPoints = &output.Points;
   AdvancingFrontTetrahedralizerOutput mesh;
   ASSERT_TRUE(TetrahedralizeByAdvancingFront(frontInput, {}, {}, mesh).IsOk());
-  MeshCheckReport report;
-  ASSERT_TRUE(CheckTetMesh(mesh.Mesh, &mesh.Boundary, {}, report).IsOk());
-  EXPECT_TRUE(report.IsValid(1e-10)) << report.GetSummary();
+  MeshCertificate report;
+  ASSERT_TRUE(CertifyMesh(mesh.Mesh, &mesh.Boundary, {}, report).IsOk());
+  EXPECT_TRUE(report.IsDelaunay(1e-10)) << report.GetText();
 }
 
 TEST(MeshPointGenerator, RefusesWhatCannotBe)

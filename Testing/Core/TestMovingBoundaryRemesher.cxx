@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Certificate/MeshChecks.h"
+#include "Core/Certificate/MeshCertificate.h"
 #include "Core/Meshes/MeshBoundary.h"
 #include "Core/Volume/MovingBoundaryRemesher.h"
 #include "EnclosedVolumes.h"
@@ -73,9 +73,9 @@ MovingBoundaryOutput Move(
 std::map<Id, double> CheckAll(const TetMesh& before, const MovingBoundaryOutput& output)
 {
   const TriangleMesh boundary = ExtractBoundary(output.Mesh);
-  MeshCheckReport report;
-  EXPECT_TRUE(CheckTetMesh(output.Mesh, &boundary, {}, report).IsOk());
-  EXPECT_TRUE(report.IsValid()) << report.GetSummary();
+  MeshCertificate report;
+  EXPECT_TRUE(CertifyMesh(output.Mesh, &boundary, {}, report).IsOk());
+  EXPECT_TRUE(report.IsDelaunay()) << report.GetText();
   EXPECT_EQ(report.UnusedPoints, 0);
   EXPECT_EQ(output.Report.UnresolvedTriangles, 0);
 
@@ -263,9 +263,9 @@ TEST(MovingBoundaryRemesher, CriteriaAreKept)
     const MovingBoundaryOutput output = Move(mesh, displacements, options);
     CheckAll(mesh, output);
     const TriangleMesh boundary = ExtractBoundary(output.Mesh);
-    MeshCheckReport report;
-    ASSERT_TRUE(CheckTetMesh(output.Mesh, &boundary, {}, report).IsOk());
-    EXPECT_EQ(report.SmallestSphereViolations, 0);
+    MeshCertificate report;
+    ASSERT_TRUE(CertifyMesh(output.Mesh, &boundary, {}, report).IsOk());
+    EXPECT_EQ(report.GetCount(MeshFault::FacetSphere), 0);
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Basics/SortedIds.h"
-#include "Core/Certificate/MeshCriteria.h"
+#include "Core/Certificate/MeshCertificate.h"
 #include "Core/Improvement/NegativeCouplings.h"
 #include "Core/Surface/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
@@ -20,8 +20,8 @@ namespace
 /** Edges that the certificate finds at fault. */
 std::vector<EdgeIds> FindByCertificate(const TetMesh& mesh, const TriangleMesh& boundary)
 {
-  MeshCriteriaReport report;
-  EXPECT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, report).IsOk());
+  MeshCertificate report;
+  EXPECT_TRUE(CertifyMesh(mesh, &boundary, {}, report, FullCertificate).IsOk());
   std::vector<EdgeIds> edges;
   for (const MeshViolation& violation : report.Violations)
   {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Certificate/MeshChecks.h"
 #include "Core/Delaunay/PartRegions.h"
+#include "Core/Meshes/MeshInvariants.h"
 
 #include <gtest/gtest.h>
 

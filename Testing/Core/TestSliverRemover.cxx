@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Certificate/MeshChecks.h"
+#include "Core/Certificate/MeshCertificate.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Improvement/SliverRemover.h"
 #include "Core/Meshes/MeshBoundary.h"
+#include "Core/Meshes/MeshInvariants.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "HullMeshes.h"
@@ -102,10 +103,10 @@ TetMesh MakeGrid(int size, Numbering numbering)
   return mesh;
 }
 
-MeshCheckReport Check(const TetMesh& mesh, const TriangleMesh* boundary = nullptr)
+MeshCertificate Check(const TetMesh& mesh, const TriangleMesh* boundary = nullptr)
 {
-  MeshCheckReport report;
-  EXPECT_TRUE(CheckTetMesh(mesh, boundary, {}, report).IsOk());
+  MeshCertificate report;
+  EXPECT_TRUE(CertifyMesh(mesh, boundary, {}, report).IsOk());
   return report;
 }
 
@@ -210,8 +211,8 @@ TEST(SliverRemover, GridOfT6BecomesT5)
   {
     TetMesh mesh = MakeGrid(size, Numbering::Parity);
     const TriangleMesh boundary = ExtractBoundary(mesh);
-    const MeshCheckReport before = Check(mesh, &boundary);
-    ASSERT_TRUE(before.IsValid()) << before.GetSummary();
+    const MeshCertificate before = Check(mesh, &boundary);
+    ASSERT_TRUE(before.IsDelaunay()) << before.GetText();
     ASSERT_EQ(6 * size * size * size, before.Tetrahedra);
     EXPECT_NEAR(std::atan(std::sqrt(0.5)) * Degrees, before.SmallestDihedralAngle, 1e-12);
 
@@ -221,8 +222,8 @@ TEST(SliverRemover, GridOfT6BecomesT5)
     EXPECT_EQ(before.SmallestDihedralAngle, report.SmallestDihedralAngleBefore);
 
     // The boundary and the interface are as they were.
-    const MeshCheckReport after = Check(mesh, &boundary);
-    EXPECT_TRUE(after.IsValid()) << after.GetSummary();
+    const MeshCertificate after = Check(mesh, &boundary);
+    EXPECT_TRUE(after.IsDelaunay()) << after.GetText();
     EXPECT_EQ(5 * size * size * size, after.Tetrahedra);
     EXPECT_NEAR(std::atan(std::sqrt(2.0)) * Degrees, after.SmallestDihedralAngle, 1e-12);
     EXPECT_NEAR(after.SmallestDihedralAngle, report.SmallestDihedralAngleAfter, 1e-12);
@@ -241,8 +242,8 @@ TEST(SliverRemover, MixedCellsImproveAndStayDelaunay)
 {
   TetMesh mesh = MakeGrid(6, Numbering::Random);
   const TriangleMesh boundary = ExtractBoundary(mesh);
-  const MeshCheckReport before = Check(mesh, &boundary);
-  ASSERT_TRUE(before.IsValid()) << before.GetSummary();
+  const MeshCertificate before = Check(mesh, &boundary);
+  ASSERT_TRUE(before.IsDelaunay()) << before.GetText();
   const auto countBad = [](const TetMesh& m)
   {
     return std::count_if(m.Tetrahedra.begin(), m.Tetrahedra.end(),
@@ -257,8 +258,8 @@ TEST(SliverRemover, MixedCellsImproveAndStayDelaunay)
   const SliverRemoverReport report = Remove(mesh, 50.0);
   EXPECT_GT(report.Flips, 0);
   EXPECT_GE(report.SmallestDihedralAngleAfter, report.SmallestDihedralAngleBefore);
-  const MeshCheckReport after = Check(mesh, &boundary);
-  EXPECT_TRUE(after.IsValid()) << after.GetSummary();
+  const MeshCertificate after = Check(mesh, &boundary);
+  EXPECT_TRUE(after.IsDelaunay()) << after.GetText();
   EXPECT_LT(2 * countBad(mesh), badBefore);
 
   // The same input gives the same mesh.
@@ -303,11 +304,11 @@ TEST(SliverRemover, OnlyCosphericalSetsAreFlipped)
     AddTetrahedron(mesh, { 0, 1, 4, 2 }, 0);
     ASSERT_TRUE(BuildNeighbors(mesh).IsOk());
     const TriangleMesh boundary = ExtractBoundary(mesh);
-    ASSERT_TRUE(Check(mesh, &boundary).IsValid());
+    ASSERT_TRUE(Check(mesh, &boundary).IsDelaunay());
     const SliverRemoverReport report = Remove(mesh, 70.0);
     EXPECT_EQ(z == -3.0 ? 1 : 0, report.Flips);
     EXPECT_EQ(z == -3.0 ? 2u : 3u, mesh.Tetrahedra.size());
-    EXPECT_TRUE(Check(mesh, &boundary).IsValid());
+    EXPECT_TRUE(Check(mesh, &boundary).IsDelaunay());
 
     // Unless quality comes first.
     const SliverRemoverReport next = RemoveWithMoves(mesh, 70.0, true);
@@ -336,12 +337,12 @@ TEST(SliverRemover, DiagonalOfCocircularPointsIsTurnedBetweenTwoSpheres)
     }
     ASSERT_TRUE(BuildNeighbors(mesh).IsOk());
     const TriangleMesh boundary = ExtractBoundary(mesh);
-    ASSERT_TRUE(Check(mesh, &boundary).IsValid());
+    ASSERT_TRUE(Check(mesh, &boundary).IsDelaunay());
     const SliverRemoverReport report = Remove(mesh, 70.0);
     flips += report.Flips;
     angles[i] = report.SmallestDihedralAngleAfter;
     EXPECT_EQ(4u, mesh.Tetrahedra.size());
-    EXPECT_TRUE(Check(mesh, &boundary).IsValid());
+    EXPECT_TRUE(Check(mesh, &boundary).IsDelaunay());
   }
   EXPECT_EQ(1, flips);
   EXPECT_NEAR(angles[0], angles[1], 1e-9);
@@ -364,10 +365,12 @@ TEST(SliverRemover, FlatTetrahedronOnTheOutsideIsPeeledOff)
   const SliverRemoverReport report = Remove(mesh, 15.0, 1e-6);
   EXPECT_EQ(1, report.PeeledTetrahedra);
   EXPECT_EQ(0, report.Flips);
-  const MeshCheckReport check = Check(mesh);
+  const MeshCertificate check = Check(mesh);
   EXPECT_EQ(2, check.Tetrahedra);
-  EXPECT_EQ(0, check.WrongNeighbors + check.InvertedTetrahedra + check.FlatTetrahedra);
-  EXPECT_EQ(0, check.NonDelaunayTetrahedra);
+  EXPECT_EQ(0,
+    check.WrongNeighbors + check.GetCount(MeshFault::InvertedTetrahedron) +
+      check.GetCount(MeshFault::FlatTetrahedron));
+  EXPECT_EQ(0, check.GetCount(MeshFault::NonDelaunayTetrahedron));
   EXPECT_EQ(1, check.UnusedPoints) << "the lowest point, which had no tetrahedron before either";
   EXPECT_GT(check.SmallestDihedralAngle, 15.0);
 }
@@ -395,14 +398,14 @@ TEST(SliverRemover, PeelingLeavesNoGapAndNoPinch)
 TEST(SliverRemover, FlatTetrahedronOnAnInterfaceVanishesInTheOtherRegion)
 {
   TetMesh mesh = MakeInterfaceSliver();
-  const MeshCheckReport before = Check(mesh);
-  ASSERT_TRUE(before.IsValid()) << before.GetSummary();
+  const MeshCertificate before = Check(mesh);
+  ASSERT_TRUE(before.IsDelaunay()) << before.GetText();
   EXPECT_LT(before.SmallestDihedralAngle, 1e-3);
   const SliverRemoverReport report = Remove(mesh, 15.0, 1e-6);
   EXPECT_EQ(1, report.PeeledTetrahedra);
   EXPECT_EQ(1, report.Flips);
-  const MeshCheckReport after = Check(mesh);
-  EXPECT_TRUE(after.IsValid()) << after.GetSummary();
+  const MeshCertificate after = Check(mesh);
+  EXPECT_TRUE(after.IsDelaunay()) << after.GetText();
   EXPECT_EQ(4, after.Tetrahedra);
   EXPECT_GT(after.SmallestDihedralAngle, 15.0);
   EXPECT_EQ((RawVector<Id>{ 0, 0, 1, 1 }),
@@ -431,7 +434,7 @@ TEST(SliverRemover, FreePointIsSmoothedToTheBestPlace)
   const double best = std::atan(std::sqrt(2.0)) * Degrees;
   TetMesh mesh = MakeOctahedron();
   const TriangleMesh boundary = ExtractBoundary(mesh);
-  ASSERT_TRUE(Check(mesh, &boundary).IsValid());
+  ASSERT_TRUE(Check(mesh, &boundary).IsDelaunay());
   TetMesh same = mesh;
   const SliverRemoverReport report = RemoveWithMoves(mesh, 50.0, true);
   EXPECT_LT(report.SmallestDihedralAngleBefore, 35.0);
@@ -439,12 +442,13 @@ TEST(SliverRemover, FreePointIsSmoothedToTheBestPlace)
   EXPECT_EQ(0, report.Flips);
   EXPECT_NEAR(best, report.SmallestDihedralAngleAfter, 1e-6);
   EXPECT_LT(Norm(mesh.Points[6]), 1e-12);
-  EXPECT_TRUE(Check(mesh, &boundary).IsValid());
+  EXPECT_TRUE(Check(mesh, &boundary).IsDelaunay());
 
   // There it lies in the smallest spheres of all facets: Delaunay meshes keep those that are empty.
-  const MeshCheckReport before = Check(same, &boundary);
+  const MeshCertificate before = Check(same, &boundary);
   RemoveWithMoves(same, 50.0);
-  EXPECT_LE(Check(same, &boundary).SmallestSphereViolations, before.SmallestSphereViolations);
+  EXPECT_LE(Check(same, &boundary).GetCount(MeshFault::FacetSphere),
+    before.GetCount(MeshFault::FacetSphere));
 }
 
 TEST(SliverRemover, SliversOfDisturbedGridsVanishByMoves)
@@ -477,9 +481,9 @@ TEST(SliverRemover, SliversOfDisturbedGridsVanishByMoves)
     EXPECT_LT(report.SmallestDihedralAngleBefore, 2.0);
     EXPECT_GT(report.SmallestDihedralAngleAfter, 12.0);
     EXPECT_GT(report.MovedPoints, 0);
-    const MeshCheckReport check = Check(mesh, &output.Boundary);
-    EXPECT_TRUE(check.IsValid()) << check.GetSummary();
-    EXPECT_EQ(0, check.SmallestSphereViolations + check.EdgeSphereViolations);
+    const MeshCertificate check = Check(mesh, &output.Boundary);
+    EXPECT_TRUE(check.IsDelaunay()) << check.GetText();
+    EXPECT_EQ(0, check.GetCount(MeshFault::FacetSphere) + check.GetCount(MeshFault::EdgeSphere));
   }
 }
 
@@ -501,9 +505,9 @@ TEST(SliverRemover, MovesKeepAnyBoundaryAndTheDelaunayProperty)
       }
       TetMesh again = mesh;
       const TriangleMesh boundary = ExtractBoundary(mesh);
-      const MeshCheckReport before = Check(mesh, &boundary);
-      ASSERT_TRUE(before.IsValid()) << before.GetSummary();
-      EXPECT_GT(before.SmallestSphereViolations, 0);
+      const MeshCertificate before = Check(mesh, &boundary);
+      ASSERT_TRUE(before.IsDelaunay()) << before.GetText();
+      EXPECT_GT(before.GetCount(MeshFault::FacetSphere), 0);
       const std::vector<Vec3> points = mesh.Points;
 
       const double target = isOnGrid ? 25.0 : 15.0;
@@ -511,11 +515,11 @@ TEST(SliverRemover, MovesKeepAnyBoundaryAndTheDelaunayProperty)
       moved[isOnGrid] += report.MovedPoints;
       EXPECT_EQ(0, report.PeeledTetrahedra);
       const TriangleMesh now = ExtractBoundary(mesh);
-      const MeshCheckReport after = Check(mesh, areAllFree ? &now : &boundary);
+      const MeshCertificate after = Check(mesh, areAllFree ? &now : &boundary);
       EXPECT_EQ(boundary.Triangles.size(), now.Triangles.size());
-      EXPECT_TRUE(after.IsValid()) << after.GetSummary();
-      EXPECT_LE(after.SmallestSphereViolations, before.SmallestSphereViolations);
-      EXPECT_LE(after.EdgeSphereViolations, before.EdgeSphereViolations);
+      EXPECT_TRUE(after.IsDelaunay()) << after.GetText();
+      EXPECT_LE(after.GetCount(MeshFault::FacetSphere), before.GetCount(MeshFault::FacetSphere));
+      EXPECT_LE(after.GetCount(MeshFault::EdgeSphere), before.GetCount(MeshFault::EdgeSphere));
       EXPECT_EQ(before.UnusedPoints, after.UnusedPoints);
       EXPECT_GE(after.SmallestDihedralAngle, before.SmallestDihedralAngle);
       const std::vector<char> isOnBoundary = FindBoundaryPoints(mesh, boundary);
@@ -595,12 +599,12 @@ TEST(SliverRemover, PointsOfTheBoundaryAreMovedInTheirPlanesAndOnTheirLinesOnly)
 
     const TriangleMesh boundary = ExtractBoundary(mesh);
     EXPECT_EQ(boundary.Triangles.size(), output.Boundary.Triangles.size());
-    const MeshCheckReport before = Check(output.Mesh, &output.Boundary);
-    const MeshCheckReport after = Check(mesh, &boundary);
-    EXPECT_TRUE(after.IsValid()) << after.GetSummary();
-    EXPECT_EQ(before.SmallestSphereViolations, 0);
-    EXPECT_EQ(after.SmallestSphereViolations, 0);
-    EXPECT_LE(after.EdgeSphereViolations, before.EdgeSphereViolations);
+    const MeshCertificate before = Check(output.Mesh, &output.Boundary);
+    const MeshCertificate after = Check(mesh, &boundary);
+    EXPECT_TRUE(after.IsDelaunay()) << after.GetText();
+    EXPECT_EQ(before.GetCount(MeshFault::FacetSphere), 0);
+    EXPECT_EQ(after.GetCount(MeshFault::FacetSphere), 0);
+    EXPECT_LE(after.GetCount(MeshFault::EdgeSphere), before.GetCount(MeshFault::EdgeSphere));
     for (std::size_t i = 0; i < 2; ++i)
     {
       EXPECT_NEAR(before.Regions[i].Volume, after.Regions[i].Volume, 1e-12);
@@ -681,16 +685,16 @@ TEST(SliverRemover, QualityBeforeDelaunayKeepsTheRegions)
     EXPECT_LT(countSlivers(mesh), countSlivers(input) / 2);
 
     // All is as it was but the empty spheres.
-    MeshCheckReport check = Check(mesh, &boundary);
-    EXPECT_GT(check.NonDelaunayTetrahedra, 0);
-    check.NonDelaunayTetrahedra = 0;
-    EXPECT_TRUE(check.IsValid()) << check.GetSummary();
+    MeshCertificate check = Check(mesh, &boundary);
+    EXPECT_GT(check.GetCount(MeshFault::NonDelaunayTetrahedron), 0);
+    check.GetCount(MeshFault::NonDelaunayTetrahedron) = 0;
+    EXPECT_TRUE(check.IsDelaunay()) << check.GetText();
 
     // Moves in such a mesh do no harm either.
     RemoveWithMoves(mesh, 20.0);
     check = Check(mesh, &boundary);
-    check.NonDelaunayTetrahedra = 0;
-    EXPECT_TRUE(check.IsValid()) << check.GetSummary();
+    check.GetCount(MeshFault::NonDelaunayTetrahedron) = 0;
+    EXPECT_TRUE(check.IsDelaunay()) << check.GetText();
   }
 }
 
@@ -732,7 +736,7 @@ TEST(SliverRemover, EmptyMeshAndAbort)
     SliverRemoverReport report;
     const ExecutionContext context({}, [&] { return calls++ >= patience; });
     EXPECT_TRUE(RemoveSlivers(mesh, options, context, report).IsAborted());
-    EXPECT_TRUE(Check(mesh, &boundary).IsValid());
+    EXPECT_TRUE(Check(mesh, &boundary).IsDelaunay());
   }
 
   // Also while points are moved.
@@ -749,7 +753,7 @@ TEST(SliverRemover, EmptyMeshAndAbort)
     SliverRemoverReport report;
     const ExecutionContext context({}, [&] { return calls++ >= patience; });
     EXPECT_TRUE(RemoveSlivers(mesh, options, context, report).IsAborted());
-    EXPECT_TRUE(Check(mesh, &raggedBoundary).IsValid());
+    EXPECT_TRUE(Check(mesh, &raggedBoundary).IsDelaunay());
     moved += report.MovedPoints;
   }
   EXPECT_GT(moved, 0);

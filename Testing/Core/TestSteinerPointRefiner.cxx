@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Certificate/MeshCriteria.h"
+#include "Core/Certificate/MeshCertificate.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Improvement/SteinerPointRefiner.h"
 #include "Core/Surface/BoundaryTriangulator.h"
@@ -112,15 +112,15 @@ PolygonSoup MakeWedge(double angle)
 void ExpectRight(const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options,
   const SteinerPointRefinerOutput& output)
 {
-  MeshCheckReport check;
-  ASSERT_TRUE(CheckTetMesh(output.Mesh, &output.Boundary, {}, check).IsOk());
-  EXPECT_TRUE(check.IsValid()) << check.GetSummary();
+  MeshCertificate check;
+  ASSERT_TRUE(CertifyMesh(output.Mesh, &output.Boundary, {}, check).IsOk());
+  EXPECT_TRUE(check.IsDelaunay()) << check.GetText();
   EXPECT_EQ(check.UnusedPoints, 0);
-  EXPECT_EQ(check.SmallestSphereViolations, 0);
+  EXPECT_EQ(check.GetCount(MeshFault::FacetSphere), 0);
   EXPECT_EQ(output.Report.UnresolvedTriangles, 0);
   // The same regions as before.
-  MeshCheckReport before;
-  ASSERT_TRUE(CheckTetMesh(*input.Mesh, nullptr, {}, before).IsOk());
+  MeshCertificate before;
+  ASSERT_TRUE(CertifyMesh(*input.Mesh, nullptr, {}, before).IsOk());
   ASSERT_EQ(before.Regions.size(), check.Regions.size());
   for (std::size_t i = 0; i < check.Regions.size(); ++i)
   {
@@ -128,8 +128,8 @@ void ExpectRight(const SteinerPointRefinerInput& input, const SteinerPointRefine
     EXPECT_NEAR(before.Regions[i].Volume, check.Regions[i].Volume, 1e-12);
   }
 
-  MeshCriteriaReport criteria;
-  ASSERT_TRUE(EvaluateMeshCriteria(output.Mesh, &output.Boundary, {}, criteria).IsOk());
+  MeshCertificate criteria;
+  ASSERT_TRUE(CertifyMesh(output.Mesh, &output.Boundary, {}, criteria, FullCertificate).IsOk());
   EXPECT_EQ(
     criteria.GetCount(MeshFault::NegativeCoupling) > 0, output.Report.NegativeCouplings > 0);
 

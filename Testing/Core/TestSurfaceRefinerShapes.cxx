@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The surface refiner on the shapes that make refinement run away: thin curved and wedged layers,
 // fans of facets at one edge, many edges at one vertex, needles, sheets a hair apart.
-#include "Core/Certificate/MeshChecks.h"
+#include "Core/Certificate/MeshCertificate.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Surface/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
@@ -50,12 +50,12 @@ std::size_t RefineAndCheck(const TriangleMesh& surface, DelaunaySurfaceRefinerOp
   AdvancingFrontTetrahedralizerOutput mesh;
   const Status meshed = TetrahedralizeByAdvancingFront(mesherInput, {}, {}, mesh);
   EXPECT_TRUE(meshed.IsOk()) << meshed.Message;
-  MeshCheckReport report;
-  EXPECT_TRUE(CheckTetMesh(mesh.Mesh, &mesh.Boundary, {}, report).IsOk());
-  EXPECT_TRUE(report.IsValid(1e-9)) << report.GetSummary();
+  MeshCertificate report;
+  EXPECT_TRUE(CertifyMesh(mesh.Mesh, &mesh.Boundary, {}, report).IsOk());
+  EXPECT_TRUE(report.IsDelaunay(1e-9)) << report.GetText();
   if (options.Criterion != SurfaceCriterion::Delaunay)
   {
-    EXPECT_EQ(report.SmallestSphereViolations, 0);
+    EXPECT_EQ(report.GetCount(MeshFault::FacetSphere), 0);
   }
   return refined.NewPoints.size();
 }

@@ -6,7 +6,10 @@
 #include <vtkConformingDelaunayMesher.h>
 #include <vtkDelaunayMeshCriteria.h>
 #include <vtkDelaunaySurfaceRefiner.h>
+#include <vtkFieldData.h>
 #include <vtkSliverRemover.h>
+#include <vtkSteinerPointRefiner.h>
+#include <vtkTechnologyStructureSource.h>
 
 #include <vtkUnsignedCharArray.h>
 
@@ -14,6 +17,8 @@
 #include <cmath>
 
 using namespace testing_filters;
+
+#include <initializer_list>
 
 namespace
 {
@@ -84,6 +89,27 @@ std::array<vtkIdType, 4> GetSortedIds(vtkUnstructuredGrid* mesh, vtkIdType cell)
   return ids;
 }
 } // namespace
+
+/** A certificate is that of the mesh that was looked at, not of what a filter makes of it. */
+TEST(SliverRemoverFilter, TakesTheCertificateAway)
+{
+  vtkNew<vtkTechnologyStructureSource> device;
+  device->SetStructureToMosTransistor();
+  vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetInputConnection(device->GetOutputPort());
+  vtkNew<vtkSliverRemover> remover;
+  remover->SetInputConnection(mesher->GetOutputPort());
+  vtkNew<vtkSteinerPointRefiner> refiner;
+  refiner->SetInputConnection(mesher->GetOutputPort());
+  for (vtkAlgorithm* filter : std::initializer_list<vtkAlgorithm*>{ remover, refiner })
+  {
+    filter->Update();
+    vtkFieldData* const after = filter->GetOutputDataObject(0)->GetFieldData();
+    EXPECT_EQ(after->GetAbstractArray("Certificate"), nullptr);
+    EXPECT_EQ(after->GetArray("IsClean"), nullptr);
+    EXPECT_NE(mesher->GetOutput()->GetFieldData()->GetAbstractArray("Certificate"), nullptr);
+  }
+}
 
 TEST(SliverRemoverFilter, ImprovesAMeshAndKeepsDataOfSurvivors)
 {

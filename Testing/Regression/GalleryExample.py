@@ -27,9 +27,10 @@ def Check(script, meshes, pictures, arguments=(), clean=None):
         print(run.stdout)
         if run.returncode != 0 or "ERR|" in run.stdout or "Traceback" in run.stdout:
             sys.exit("exit code %d" % run.returncode)
-        certificates = re.findall("certificate: .*: (.*)", run.stdout)
+        certificates = re.findall("certificate: (.*)", run.stdout)
         assert len(certificates) == len(meshes), certificates
-        assert certificates.count("clean") == (len(meshes) if clean is None else clean), certificates
+        number = certificates.count("CLEAN FOR FINITE VOLUMES")
+        assert number == (len(meshes) if clean is None else clean), certificates
         written = sorted([*meshes, *(name for name, _ in pictures)])
         assert sorted(os.listdir(folder)) == written, os.listdir(folder)
         for name, baseline in pictures:

@@ -25,7 +25,7 @@ with tempfile.TemporaryDirectory() as folder:
 for before, after in re.findall(r"voxels +(\S+) um\^3, +\d+ tetrahedra +(\S+) um\^3", run.stdout):
     assert abs(float(after) / float(before) - 1.0) < 0.02, (before, after)
 assert run.stdout.count("um^3, ") == 3
-assert "0 inverted, 0 flat, 0 non-Delaunay, 0 boundary faults" in run.stdout
+assert "DELAUNAY\n" in run.stdout and "INVALID" not in run.stdout and "NOT DEL" not in run.stdout
 
 
 def CountColours(pixels):

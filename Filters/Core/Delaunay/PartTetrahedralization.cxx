@@ -6,7 +6,7 @@
 #include "Core/Delaunay/DelaunayTetrahedralization.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Geometry/PulledSphere.h"
-#include "Core/Search/EmptySphereSearch.h"
+#include "Core/Geometry/SphereForm.h"
 #include "Core/Search/SpatialSort.h"
 
 #include <algorithm>

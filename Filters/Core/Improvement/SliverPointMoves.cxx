@@ -2,11 +2,11 @@
 #include "Core/Improvement/SliverPointMoves.h"
 
 #include "Core/Basics/SortedIds.h"
+#include "Core/Certificate/SphereCriteria.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Improvement/RefinedMesh.h"
 #include "Core/Improvement/SliverPerturbation.h"
 #include "Core/Meshes/MeshBoundary.h"
-#include "Core/Search/SphereCriteria.h"
 #include "Core/Surface/StructuralEdges.h"
 
 #include <algorithm>

@@ -2,10 +2,10 @@
 #include "Core/Improvement/SliverRemover.h"
 
 #include "Core/Basics/ParallelLoop.h"
-#include "Core/Certificate/MeshChecks.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Improvement/SliverPointMoves.h"
+#include "Core/Meshes/MeshInvariants.h"
 #include "Core/Search/PlaceSearch.h"
 #include "Core/Surface/StructuralEdges.h"
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/SteinerPointChecks.h"
 
-#include "Core/Certificate/MeshChecks.h"
+#include "Core/Certificate/MeshCertificate.h"
 #include "Core/Meshes/MeshBoundary.h"
+#include "Core/Meshes/MeshInvariants.h"
 
 #include <algorithm>
 #include <string>

@@ -23,7 +23,7 @@ namespace cdm
  * Invariants: every tetrahedron is positively oriented (exact sign); Regions and Neighbors have one
  * entry for each tetrahedron; Neighbors[t][i] is the facet id, seen from the other tetrahedron, of
  * the tetrahedron that shares facet i, also across interfaces between regions, and NoId where there
- * is none. CheckTetMesh() in MeshChecks.h tests all of it.
+ * is none. CertifyMesh() in MeshCertificate.h tests all of it.
  */
 struct TetMesh
 {

@@ -35,7 +35,7 @@ std::vector<T> Compose(const std::vector<T>& from, const std::vector<Id>& via, T
 
 /** How much of a region peeling may take, at most: a layer as thin as what counts as flat. */
 double GetPeeledVolumeRatio(
-  const TriangleMesh& boundary, const MeshCheckReport& report, double flatnessRatio)
+  const TriangleMesh& boundary, const MeshCertificate& report, double flatnessRatio)
 {
   double area = 0.0;
   for (const TriangleIds& ids : boundary.Triangles)
@@ -71,7 +71,7 @@ private:
   Status AddSteinerPoints();
   Status RemoveFlatTetrahedra();
   Status Check();
-  Status CheckPeeled(const ExecutionContext& context);
+  Status CheckPeeled(const CertificateOptions& options, const ExecutionContext& context);
 
   /** A share of the progress, under the name of a stage. */
   ExecutionContext GetPart(const char* stage, double begin, double end) const
@@ -352,11 +352,12 @@ Status ConformingMesher::RemoveFlatTetrahedra()
 }
 
 /** The new facets are the mesh's own: only those before tell whether more is missing. */
-Status ConformingMesher::CheckPeeled(const ExecutionContext& context)
+Status ConformingMesher::CheckPeeled(
+  const CertificateOptions& options, const ExecutionContext& context)
 {
-  MeshCheckReport before;
+  MeshCertificate before;
   Status status =
-    CheckTetMesh(this->Output.Mesh, &this->Output.Boundary, context.Part(0.0, 0.5), before);
+    CertifyMesh(this->Output.Mesh, &this->Output.Boundary, context.Part(0.0, 0.5), before);
   const double allowed = GetPeeledVolumeRatio(this->Output.Boundary, before, this->FlatnessRatio);
   TriangleMesh boundary = UpdateBoundary(this->Output.Mesh, this->Output.Boundary);
   this->Surface.SourceCells = std::move(this->Output.Boundary.SourceCells);
@@ -365,13 +366,13 @@ Status ConformingMesher::CheckPeeled(const ExecutionContext& context)
   this->FollowBoundary(sources);
   if (status.IsOk())
   {
-    status = CheckTetMesh(
-      this->Output.Mesh, &this->Output.Boundary, context.Part(0.5, 1.0), this->Output.Check);
+    status = CertifyMesh(this->Output.Mesh, &this->Output.Boundary, context.Part(0.5, 1.0),
+      this->Output.Certificate, options);
   }
   if (before.LargestVolumeError > allowed)
   {
-    this->Output.Check.Regions = before.Regions;
-    this->Output.Check.LargestVolumeError = before.LargestVolumeError;
+    this->Output.Certificate.Regions = before.Regions;
+    this->Output.Certificate.LargestVolumeError = before.LargestVolumeError;
   }
   return status;
 }
@@ -379,13 +380,18 @@ Status ConformingMesher::CheckPeeled(const ExecutionContext& context)
 Status ConformingMesher::Check()
 {
   const ExecutionContext context = this->Context.Part(0.95, 1.0);
+  CertificateOptions options;
+  options.Level = this->Options.Surface.Criterion == SurfaceCriterion::Delaunay
+    ? CertificateLevel::Basic
+    : CertificateLevel::Full;
   Status status = this->PeeledTetrahedra > 0
-    ? this->CheckPeeled(context)
-    : CheckTetMesh(this->Output.Mesh, &this->Output.Boundary, context, this->Output.Check);
-  if (status.IsOk() && !this->Output.Check.IsValid())
+    ? this->CheckPeeled(options, context)
+    : CertifyMesh(
+        this->Output.Mesh, &this->Output.Boundary, context, this->Output.Certificate, options);
+  if (status.IsOk() && !this->Output.Certificate.IsDelaunay())
   {
     this->Output.Warnings.push_back(
-      { "The check finds fault with the mesh: " + this->Output.Check.GetSummary() });
+      { "The check finds fault with the mesh: " + this->Output.Certificate.GetReasons() });
   }
   this->Output.Facets = std::move(this->Facets);
   for (std::size_t i = 0; i < this->IsUnresolved.size(); ++i)

@@ -11,7 +11,8 @@
  *  3. AdvancingFrontTetrahedralizer.h: tetrahedra for every enclosed region;
  *  4. SteinerPointRefiner.h, if Steiner points are to be added, otherwise SliverRemover.h, if
  *     slivers are to be removed;
- *  5. MeshChecks.h: a check of the result, from the mesh and its boundary alone.
+ *  5. MeshCertificate.h: a check of the result, from the mesh and its boundary alone; at the full
+ *     level if the criterion is one for finite volumes.
  *
  * Guarantees: those of the stages. Deterministic, for any number of threads.
  * Failure: the Status of the stage that failed, with polygons and points of this input; the output
@@ -24,7 +25,7 @@
 #include "Core/Basics/ExecutionContext.h"
 #include "Core/Basics/Status.h"
 #include "Core/Basics/Warning.h"
-#include "Core/Certificate/MeshChecks.h"
+#include "Core/Certificate/MeshCertificate.h"
 #include "Core/Improvement/SteinerPointRefiner.h"
 #include "Core/MeshPoints/MeshPointGenerator.h"
 #include "Core/Meshes/PolygonSoup.h"
@@ -113,7 +114,7 @@ struct ConformingMesherOutput
   /** With Steiner points, if there are any: one for each tetrahedron. */
   std::vector<SteinerFault> Faults;
   PointHistory Points;
-  MeshCheckReport Check;
+  MeshCertificate Certificate;
   /** Findings about the polygons, also of a run that failed. */
   std::vector<SurfaceProblem> Problems;
   /** Those of all stages; cells are polygons of the input. */

@@ -3,7 +3,7 @@
 
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
-#include "Core/Search/EmptySphereSearch.h"
+#include "Core/Geometry/SphereForm.h"
 
 #include <algorithm>
 #include <cmath>

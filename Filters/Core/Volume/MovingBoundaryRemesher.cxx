@@ -2,7 +2,7 @@
 #include "Core/Volume/MovingBoundaryRemesher.h"
 
 #include "Core/Basics/SortedIds.h"
-#include "Core/Certificate/MeshChecks.h"
+#include "Core/Certificate/MeshCertificate.h"
 #include "Core/Geometry/Box.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Meshes/MeshBoundary.h"

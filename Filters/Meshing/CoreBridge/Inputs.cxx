@@ -6,7 +6,7 @@
 #include "CoreBridge/Reports.h"
 
 #include "Core/Basics/IdLimits.h"
-#include "Core/Certificate/MeshChecks.h"
+#include "Core/Meshes/MeshInvariants.h"
 
 #include <vtkAbstractArray.h>
 #include <vtkCell.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Uses the engine alone, without VTK: the checker on a mesh of one tetrahedron.
-#include <Core/Certificate/MeshChecks.h>
+#include <Core/Certificate/MeshCertificate.h>
+#include <Core/Meshes/MeshInvariants.h>
 
 #include <cstdlib>
 #include <iostream>
@@ -15,11 +16,11 @@ int main()
   {
     return EXIT_FAILURE;
   }
-  cdm::MeshCheckReport report;
-  if (!cdm::CheckTetMesh(mesh, nullptr, cdm::ExecutionContext(), report).IsOk())
+  cdm::MeshCertificate report;
+  if (!cdm::CertifyMesh(mesh, nullptr, cdm::ExecutionContext(), report).IsOk())
   {
     return EXIT_FAILURE;
   }
-  std::cout << report.GetSummary() << std::endl;
-  return report.IsValid() ? EXIT_SUCCESS : EXIT_FAILURE;
+  std::cout << report.GetText() << std::endl;
+  return report.IsDelaunay() ? EXIT_SUCCESS : EXIT_FAILURE;
 }

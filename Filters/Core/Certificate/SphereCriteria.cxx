@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Search/SphereCriteria.h"
+#include "Core/Certificate/SphereCriteria.h"
 
 #include "Core/Geometry/Predicates.h"
 

@@ -18,7 +18,7 @@
 #ifndef cdmSphereCriteria_h
 #define cdmSphereCriteria_h
 
-#include "Core/Search/EmptySphereSearch.h"
+#include "Core/Certificate/EmptySphereSearch.h"
 
 namespace cdm
 {

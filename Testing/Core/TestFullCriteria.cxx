@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HullMeshes.h"
 
-#include "Core/Certificate/MeshCriteria.h"
+#include "Core/Certificate/MeshCertificate.h"
+#include "Core/Certificate/SphereCriteria.h"
 #include "Core/Geometry/Predicates.h"
-#include "Core/Search/SphereCriteria.h"
 
 #include <gtest/gtest.h>
 
@@ -31,16 +31,17 @@ TetMesh MakeMesh(std::vector<Vec3> points, RawVector<TetrahedronIds> tetrahedra)
   return mesh;
 }
 
-MeshCriteriaReport Evaluate(const TetMesh& mesh, int threads = 2)
+MeshCertificate Evaluate(const TetMesh& mesh, int threads = 2)
 {
-  MeshCriteriaReport report;
-  const Status status = EvaluateMeshCriteria(mesh, nullptr, ExecutionContext(threads), report);
+  MeshCertificate report;
+  const Status status =
+    CertifyMesh(mesh, nullptr, ExecutionContext(threads), report, FullCertificate);
   EXPECT_TRUE(status.IsOk()) << status.Message;
   return report;
 }
 } // namespace
 
-TEST(MeshCriteria, QualityOfTheRegularTetrahedron)
+TEST(FullCriteria, QualityOfTheRegularTetrahedron)
 {
   const TetrahedronQuality quality = GetTetrahedronQuality(A, B, C, D);
   // Edge sqrt(8), R = sqrt(3), r = R / 3, V = 8 / 3.
@@ -55,7 +56,7 @@ TEST(MeshCriteria, QualityOfTheRegularTetrahedron)
   EXPECT_NEAR(quality.SmallestDihedralAngle, quality.LargestDihedralAngle, 1e-12);
 }
 
-TEST(MeshCriteria, QualityOfDegenerateTetrahedraIsTheWorst)
+TEST(FullCriteria, QualityOfDegenerateTetrahedraIsTheWorst)
 {
   const TetrahedronQuality flat =
     GetTetrahedronQuality({ 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 });
@@ -73,11 +74,51 @@ TEST(MeshCriteria, QualityOfDegenerateTetrahedraIsTheWorst)
   }
 }
 
-TEST(MeshCriteria, RegularTetrahedronIsClean)
+/** The verdict comes first, in capitals, and its reason second. */
+TEST(FullCriteria, VerdictsFromWorstToBest)
 {
-  const MeshCriteriaReport report = Evaluate(MakeMesh({ A, B, C, D }, { { 0, 1, 2, 3 } }));
-  EXPECT_TRUE(report.IsClean()) << report.GetCertificate();
-  EXPECT_TRUE(report.Violations.empty()) << report.GetCertificate();
+  // Two tetrahedra at one facet, the second apex at a height below it.
+  const auto make = [](double height)
+  {
+    TetMesh mesh;
+    mesh.Points = { { 0, 0, 0 }, { 4, 0, 0 }, { 2, 3, 0 }, { 2, 1, 3 }, { 2, 1, -height } };
+    mesh.Tetrahedra = { { 0, 1, 2, 3 }, { 0, 2, 1, 4 } };
+    mesh.Regions = { 0, 0 };
+    return mesh;
+  };
+  const auto expect =
+    [](const MeshCertificate& certificate, MeshVerdict verdict, const std::string& begin)
+  {
+    EXPECT_EQ(certificate.GetVerdict(), verdict) << certificate.GetText();
+    EXPECT_EQ(certificate.GetText().find(begin), 0u) << certificate.GetText();
+    const std::string text = certificate.GetText();
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
+  };
+  expect(Evaluate(make(3.0)), MeshVerdict::CleanForFiniteVolumes,
+    "CLEAN FOR FINITE VOLUMES\nValid, all circumspheres are empty, no coupling");
+  expect(Evaluate(make(0.1)), MeshVerdict::NotDelaunay,
+    "NOT DELAUNAY\n2 of 2 (1e+02 %) tetrahedra have a point");
+  expect(Evaluate(make(-1.0)), MeshVerdict::Invalid, "INVALID\n1 inverted tetrahedron");
+  // Without looking at couplings nothing is called clean.
+  MeshCertificate basic;
+  ASSERT_TRUE(CertifyMesh(make(3.0), nullptr, {}, basic).IsOk());
+  expect(basic, MeshVerdict::Delaunay, "DELAUNAY\nValid, all circumspheres are empty; the coup");
+  EXPECT_TRUE(basic.IsDelaunay());
+  EXPECT_FALSE(basic.IsClean());
+  // An obtuse angle of a facet on the boundary: the coupling of the edge opposite is negative.
+  TetMesh obtuse;
+  obtuse.Points = { { -3, 0, 0 }, { 3, 0, 0 }, { 0, 1, 0 }, { 0, 0.5, 4 } };
+  obtuse.Tetrahedra = { { 0, 1, 2, 3 } };
+  obtuse.Regions = { 0 };
+  expect(Evaluate(obtuse), MeshVerdict::Delaunay, "DELAUNAY\n");
+  EXPECT_GT(Evaluate(obtuse).GetCount(MeshFault::NegativeCoupling), 0);
+}
+
+TEST(FullCriteria, RegularTetrahedronIsClean)
+{
+  const MeshCertificate report = Evaluate(MakeMesh({ A, B, C, D }, { { 0, 1, 2, 3 } }));
+  EXPECT_TRUE(report.IsClean()) << report.GetText();
+  EXPECT_TRUE(report.Violations.empty()) << report.GetText();
   EXPECT_EQ(4, report.Facets);
   EXPECT_EQ(4, report.BorderFacets);
   EXPECT_EQ(6, report.Edges);
@@ -88,37 +129,37 @@ TEST(MeshCriteria, RegularTetrahedronIsClean)
   EXPECT_NEAR(8.0 / 3.0, report.Regions[0].EnclosedVolume, 1e-15);
 }
 
-TEST(MeshCriteria, EachFaultIsFound)
+TEST(FullCriteria, EachFaultIsFound)
 {
-  const auto count = [](const MeshCriteriaReport& report, MeshFault fault)
+  const auto count = [](const MeshCertificate& report, MeshFault fault)
   { return report.GetCount(fault); };
 
-  const MeshCriteriaReport inverted = Evaluate(MakeMesh({ B, A, C, D }, { { 0, 1, 2, 3 } }));
+  const MeshCertificate inverted = Evaluate(MakeMesh({ B, A, C, D }, { { 0, 1, 2, 3 } }));
   EXPECT_EQ(1, count(inverted, MeshFault::InvertedTetrahedron));
   EXPECT_EQ(0, count(inverted, MeshFault::NonDelaunayTetrahedron));
   EXPECT_FALSE(inverted.IsClean());
 
-  const MeshCriteriaReport flat =
+  const MeshCertificate flat =
     Evaluate(MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 } }, { { 0, 1, 2, 3 } }));
   EXPECT_EQ(1, count(flat, MeshFault::FlatTetrahedron));
   EXPECT_EQ(0.0, flat.SmallestDihedralAngle);
-  EXPECT_EQ(1, flat.Under5Degrees);
+  EXPECT_EQ(1, flat.Under5Degrees.Count);
 
   // A fifth point inside of the circumsphere, used by no tetrahedron; it is in no smallest sphere
   // of a facet or edge.
-  const MeshCriteriaReport disturbed =
+  const MeshCertificate disturbed =
     Evaluate(MakeMesh({ A, B, C, D, { 0, 0, 0.125 } }, { { 0, 1, 2, 3 } }));
   EXPECT_EQ(1, count(disturbed, MeshFault::NonDelaunayTetrahedron));
   EXPECT_EQ(0, count(disturbed, MeshFault::NonDelaunayFacet));
 
   // Three tetrahedra at a facet.
-  const MeshCriteriaReport overfull = Evaluate(MakeMesh(
+  const MeshCertificate overfull = Evaluate(MakeMesh(
     { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0.3, 0.3, 1 }, { 0.3, 0.3, -1 }, { 0.2, 0.2, 2 } },
     { { 0, 1, 2, 3 }, { 0, 2, 1, 4 }, { 0, 1, 2, 5 } }));
   EXPECT_EQ(1, count(overfull, MeshFault::OverfullFacet));
 
   // Two flat-topped tetrahedra whose common facet is not Delaunay: 2-3 flip wanted.
-  const MeshCriteriaReport facet = Evaluate(
+  const MeshCertificate facet = Evaluate(
     MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0.3, 0.3, 0.1 }, { 0.3, 0.3, -0.1 } },
       { { 0, 1, 2, 3 }, { 0, 2, 1, 4 } }));
   EXPECT_EQ(2, count(facet, MeshFault::NonDelaunayTetrahedron));
@@ -127,13 +168,13 @@ TEST(MeshCriteria, EachFaultIsFound)
   // The apices see the facet under obtuse angles: its edges have negative couplings.
   EXPECT_EQ(3, count(facet, MeshFault::NegativeCoupling));
 
-  const MeshCriteriaReport copies =
+  const MeshCertificate copies =
     Evaluate(MakeMesh({ A, B, C, D, A, B, C, { -1, -1, 1 } }, { { 0, 1, 2, 3 }, { 4, 5, 6, 7 } }));
   EXPECT_EQ(3, copies.CoincidentPoints);
   EXPECT_FALSE(copies.IsClean());
 }
 
-TEST(MeshCriteria, SmallestSpheresOfTheBorder)
+TEST(FullCriteria, SmallestSpheresOfTheBorder)
 {
   // The top vertex lies inside of the smallest sphere of the bottom, exactly on it, outside.
   const auto evaluate = [](double height)
@@ -155,7 +196,7 @@ TEST(MeshCriteria, SmallestSpheresOfTheBorder)
   EXPECT_EQ(3, evaluate(2.6).GetCount(MeshFault::EdgeSphere));
 }
 
-TEST(MeshCriteria, VolumesAreThoseOfTheBoundary)
+TEST(FullCriteria, VolumesAreThoseOfTheBoundary)
 {
   const TetMesh mesh = MakeMesh({ A, B, C, D }, { { 0, 1, 2, 3 } });
   TriangleMesh boundary;
@@ -165,24 +206,24 @@ TEST(MeshCriteria, VolumesAreThoseOfTheBoundary)
     boundary.Triangles.push_back(GetFacet(mesh.Tetrahedra[0], i));
     boundary.Labels.push_back({ OutsideRegion, 0 });
   }
-  MeshCriteriaReport report;
-  ASSERT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, report).IsOk());
+  MeshCertificate report;
+  ASSERT_TRUE(CertifyMesh(mesh, &boundary, {}, report, FullCertificate).IsOk());
   EXPECT_TRUE(report.IsClean());
   for (Vec3& point : boundary.Points)
   {
     point = 2.0 * point;
   }
-  ASSERT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, report).IsOk());
+  ASSERT_TRUE(CertifyMesh(mesh, &boundary, {}, report, FullCertificate).IsOk());
   EXPECT_NEAR(7.0 / 8.0, report.LargestVolumeError, 1e-15);
   EXPECT_FALSE(report.IsClean());
   boundary.Labels[2] = { OutsideRegion, 4 };
-  ASSERT_TRUE(EvaluateMeshCriteria(mesh, &boundary, {}, report).IsOk());
+  ASSERT_TRUE(CertifyMesh(mesh, &boundary, {}, report, FullCertificate).IsOk());
   ASSERT_EQ(2u, report.Regions.size());
   EXPECT_EQ(4, report.Regions[1].Region);
   EXPECT_EQ(0, report.Regions[1].Tetrahedra);
 }
 
-TEST(MeshCriteria, DelaunayMeshesHaveDelaunayFacetsAndNoNegativeInnerCouplings)
+TEST(FullCriteria, DelaunayMeshesHaveDelaunayFacetsAndNoNegativeInnerCouplings)
 {
   for (const double rounding : { 0.0, 1.0 / 8.0 })
   {
@@ -190,7 +231,7 @@ TEST(MeshCriteria, DelaunayMeshesHaveDelaunayFacetsAndNoNegativeInnerCouplings)
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
     const TetMesh mesh = MakeHullMesh(points);
-    const MeshCriteriaReport report = Evaluate(mesh);
+    const MeshCertificate report = Evaluate(mesh);
     EXPECT_EQ(0, report.GetCount(MeshFault::NonDelaunayTetrahedron));
     EXPECT_EQ(0, report.GetCount(MeshFault::NonDelaunayFacet));
     // Euler's formula for a ball of tetrahedra.
@@ -199,7 +240,7 @@ TEST(MeshCriteria, DelaunayMeshesHaveDelaunayFacetsAndNoNegativeInnerCouplings)
   }
 }
 
-TEST(MeshCriteria, TrianglesAgainstAllSpheresOfThePencil)
+TEST(FullCriteria, TrianglesAgainstAllSpheresOfThePencil)
 {
   // A triangle is Delaunay if some sphere through it is empty: the smallest one, or that through
   // it and another point.
@@ -242,12 +283,12 @@ TEST(MeshCriteria, TrianglesAgainstAllSpheresOfThePencil)
   EXPECT_GT(other, 100);
 }
 
-TEST(MeshCriteria, GridsAreCleanAndRoundingLeavesNoNegativeSums)
+TEST(FullCriteria, GridsAreCleanAndRoundingLeavesNoNegativeSums)
 {
   const TetMesh grid = MakeHullMesh(MakeGrid(6, 0.1));
-  const MeshCriteriaReport straight = Evaluate(grid);
-  EXPECT_TRUE(straight.IsClean()) << straight.GetCertificate();
-  EXPECT_TRUE(straight.Violations.empty()) << straight.GetCertificate();
+  const MeshCertificate straight = Evaluate(grid);
+  EXPECT_TRUE(straight.IsClean()) << straight.GetText();
+  EXPECT_TRUE(straight.Violations.empty()) << straight.GetText();
   EXPECT_EQ(3 * 25 * 6 * 2 / 3, straight.BorderFacets);
   EXPECT_EQ(12 * 5, straight.StructuralEdges) << "those of the cube";
   EXPECT_NEAR(0.125, straight.Regions[0].Volume, 1e-15);
@@ -261,14 +302,14 @@ TEST(MeshCriteria, GridsAreCleanAndRoundingLeavesNoNegativeSums)
       0.28 * (0.8 * point.X + 0.6 * point.Y) - 0.96 * point.Z,
       0.96 * (0.8 * point.X + 0.6 * point.Y) + 0.28 * point.Z };
   }
-  const MeshCriteriaReport turned = Evaluate(rotated);
+  const MeshCertificate turned = Evaluate(rotated);
   EXPECT_GT(turned.GetCount(MeshFault::NonDelaunayTetrahedron), 100);
   EXPECT_EQ(0, turned.GetCount(MeshFault::NegativeCoupling));
   EXPECT_EQ(0, turned.GetCount(MeshFault::NegativeCotangentSum));
   EXPECT_NEAR(straight.SmallestDihedralAngle, turned.SmallestDihedralAngle, 1e-10);
 }
 
-TEST(MeshCriteria, RoundingFarFromTheOriginLeavesNoNegativeCouplings)
+TEST(FullCriteria, RoundingFarFromTheOriginLeavesNoNegativeCouplings)
 {
   // Coordinates are rounded to 1e-10 of the edges, and the couplings of the diagonals are zero.
   const TetMesh grid = MakeHullMesh(MakeGrid(6, 1e-3));
@@ -295,7 +336,7 @@ TEST(MeshCriteria, RoundingFarFromTheOriginLeavesNoNegativeCouplings)
   EXPECT_EQ(negative, Evaluate(bad).GetCount(MeshFault::NegativeCoupling));
 }
 
-TEST(MeshCriteria, SameForAnyNumberOfThreads)
+TEST(FullCriteria, SameForAnyNumberOfThreads)
 {
   // Enough points for a tree that threads build, and regions in slabs.
   TetMesh mesh = MakeHullMesh(MakeRandomPoints(40000, 3));
@@ -303,12 +344,12 @@ TEST(MeshCriteria, SameForAnyNumberOfThreads)
   {
     mesh.Regions[i] = static_cast<Id>(5.0 * mesh.Points[mesh.Tetrahedra[i][0]].X);
   }
-  const MeshCriteriaReport one = Evaluate(mesh, 1);
+  const MeshCertificate one = Evaluate(mesh, 1);
   ASSERT_GT(one.Violations.size(), 100u);
   for (const int threads : { 2, 3, 8 })
   {
-    const MeshCriteriaReport other = Evaluate(mesh, threads);
-    EXPECT_EQ(one.GetCertificate(), other.GetCertificate());
+    const MeshCertificate other = Evaluate(mesh, threads);
+    EXPECT_EQ(one.GetText(), other.GetText());
     ASSERT_EQ(one.Violations.size(), other.Violations.size());
     for (std::size_t i = 0; i < one.Violations.size(); ++i)
     {
@@ -327,10 +368,10 @@ TEST(MeshCriteria, SameForAnyNumberOfThreads)
   }
 }
 
-TEST(MeshCriteria, InterfacesAreBordersAndCouplingsBelongToRegions)
+TEST(FullCriteria, InterfacesAreBordersAndCouplingsBelongToRegions)
 {
   TetMesh mesh = MakeHullMesh(MakeGrid(3, 1.0));
-  const MeshCriteriaReport one = Evaluate(mesh);
+  const MeshCertificate one = Evaluate(mesh);
   for (std::size_t i = 0; i < mesh.Tetrahedra.size(); ++i)
   {
     double x = 0.0;
@@ -340,17 +381,17 @@ TEST(MeshCriteria, InterfacesAreBordersAndCouplingsBelongToRegions)
     }
     mesh.Regions[i] = x > 1.0 ? 5 : 2;
   }
-  const MeshCriteriaReport two = Evaluate(mesh);
+  const MeshCertificate two = Evaluate(mesh);
   EXPECT_EQ(one.BorderFacets + 8, two.BorderFacets) << "the interface has four squares";
   EXPECT_EQ(one.StructuralEdges + 8, two.StructuralEdges) << "the rim of the interface";
   EXPECT_EQ(one.Couplings + 16, two.Couplings) << "edges of the interface count twice";
   ASSERT_EQ(2u, two.Regions.size());
   EXPECT_EQ(4.0, two.Regions[0].Volume);
   EXPECT_EQ(4.0, two.Regions[1].EnclosedVolume);
-  EXPECT_TRUE(two.IsClean()) << two.GetCertificate();
+  EXPECT_TRUE(two.IsClean()) << two.GetText();
 }
 
-TEST(MeshCriteria, AbortAndInvalidInput)
+TEST(FullCriteria, AbortAndInvalidInput)
 {
   const TetMesh mesh = MakeHullMesh(MakeRandomPoints(3000, 5));
   for (const double limit : { 0.0, 0.3, 0.65, 0.9 })
@@ -359,21 +400,22 @@ TEST(MeshCriteria, AbortAndInvalidInput)
     const ExecutionContext context([&](double fraction, const char*)
       { reached = std::max(reached, fraction); },
       [&] { return reached >= limit; });
-    MeshCriteriaReport report;
-    EXPECT_TRUE(EvaluateMeshCriteria(mesh, nullptr, context, report).IsAborted());
+    MeshCertificate report;
+    EXPECT_TRUE(CertifyMesh(mesh, nullptr, context, report, FullCertificate).IsAborted());
     EXPECT_GE(reached, limit);
   }
   TetMesh broken = mesh;
   broken.Tetrahedra[2][1] = 3000;
-  MeshCriteriaReport report;
-  Status status = EvaluateMeshCriteria(broken, nullptr, {}, report);
+  MeshCertificate report;
+  Status status = CertifyMesh(broken, nullptr, {}, report, FullCertificate);
   EXPECT_EQ(StatusCode::InvalidInput, status.Code);
   EXPECT_EQ(std::vector<Id>{ 2 }, status.Cells);
   broken = mesh;
   broken.Points[7].Y = std::numeric_limits<double>::quiet_NaN();
-  status = EvaluateMeshCriteria(broken, nullptr, {}, report);
+  status = CertifyMesh(broken, nullptr, {}, report, FullCertificate);
   EXPECT_EQ(std::vector<Id>{ 7 }, status.Points);
   broken = mesh;
   broken.Regions.pop_back();
-  EXPECT_EQ(StatusCode::InvalidInput, EvaluateMeshCriteria(broken, nullptr, {}, report).Code);
+  EXPECT_EQ(
+    StatusCode::InvalidInput, CertifyMesh(broken, nullptr, {}, report, FullCertificate).Code);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Certificate/MeshCriteria.h"
+#include "Core/Certificate/FullCriteria.h"
 
 #include "Core/Basics/IdLimits.h"
 #include "Core/Basics/ParallelLoop.h"
@@ -10,7 +10,6 @@
 #include "Core/Meshes/SimplexIncidence.h"
 #include "Core/Meshes/VolumeSums.h"
 #include "Core/Meshes/VoronoiMeasures.h"
-#include "Core/Search/SphereCriteria.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,92 +28,35 @@ constexpr double SumTolerance = 1e-12;
 /** Bound of the relative error of a product of four lengths that is a sum of some ten terms. */
 constexpr double ProductError = 1e-14;
 
-/** Tangent of one degree: facets of a border that bend by less go straight on. */
-constexpr double SmoothTangent = 0.017455064928217585;
-
-/** An outer or interface facet. */
-struct BorderFacet
-{
-  /** Ascending. */
-  TriangleIds Points;
-  /** Of its two sides, ascending. */
-  Id LowRegion = OutsideRegion;
-  Id HighRegion = OutsideRegion;
-};
-
-/** An edge of such a facet. */
-struct BorderEdge
-{
-  EdgeIds Points;
-  Id Facet;
-
-  friend bool operator<(const BorderEdge& a, const BorderEdge& b)
-  {
-    return a.Points != b.Points ? a.Points < b.Points : a.Facet < b.Facet;
-  }
-};
-
-/** What a block of tetrahedra has to say about their angles. */
-struct BlockAngles
-{
-  std::vector<MeshViolation> Violations;
-  Id Under5Degrees = 0;
-  Id Under10Degrees = 0;
-  double Smallest = 180.0;
-  double Largest = 0.0;
-};
-
 /** What a block of points finds; joined in the order of the blocks. */
 struct BlockResult
 {
   std::vector<MeshViolation> Violations;
-  std::vector<BorderFacet> BorderFacets;
-  /** Facet ids of all tetrahedra at them. */
+  /** Facet ids of all tetrahedra at outer and interface facets. */
   std::vector<Id> BorderSides;
   Id Simplices = 0;
   Id Couplings = 0;
 };
 
-/** Two facets of one surface that go straight on at their common edge. */
-bool AreSmooth(const BorderFacet& first, const BorderFacet& second, const EdgeIds& edge,
-  const std::vector<Vec3>& points)
-{
-  if (first.LowRegion != second.LowRegion || first.HighRegion != second.HighRegion)
-  {
-    return false;
-  }
-  const Vec3& origin = points[edge[0]];
-  const Vec3 direction = points[edge[1]] - origin;
-  const auto getNormal = [&](const BorderFacet& facet)
-  {
-    const Id third = facet.Points[0] + facet.Points[1] + facet.Points[2] - edge[0] - edge[1];
-    return Cross(direction, points[third] - origin);
-  };
-  const Vec3 a = getNormal(first);
-  const Vec3 b = getNormal(second);
-  return Norm(Cross(a, b)) < -SmoothTangent * Dot(a, b);
-}
-
 class Evaluator
 {
 public:
-  Evaluator(const TetMesh& mesh, const TriangleMesh* boundary, int numberOfThreads,
-    MeshCriteriaReport& report)
-    : Mesh(mesh), Boundary(boundary), Report(report), Incidence(mesh, numberOfThreads)
+  Evaluator(const TetMesh& mesh, const TriangleMesh* boundary, const BasicFindings& findings,
+    int numberOfThreads, MeshCertificate& report)
+    : Mesh(mesh), Boundary(boundary), Findings(findings), Report(report),
+      Incidence(mesh, numberOfThreads)
   {
     this->LoopOptions.NumberOfThreads = numberOfThreads;
   }
 
-  Status Run(const ExecutionContext& context);
+  Status Run(const SphereCriteria& criteria, const CertificateOptions& options,
+    const ExecutionContext& context);
 
 private:
-  bool EvaluateTetrahedra(const SphereCriteria& criteria, const ExecutionContext& context);
-  void AddTetrahedron(Id tetrahedron, BlockAngles& block) const;
+  bool EvaluateShapes(const ExecutionContext& context);
+  void ListTetrahedra();
   bool EvaluateFacets(const SphereCriteria& criteria, const ExecutionContext& context);
-  void CollectBorderEdges();
-  bool EvaluateStructuralEdges(const SphereCriteria& criteria, const ExecutionContext& context);
   bool EvaluateEdges(const ExecutionContext& context);
-  bool CountCoincidentPoints(const ExecutionContext& context);
   std::vector<Id> FindRegions() const;
   void CompareVolumes();
   bool Finish(const ExecutionContext& context);
@@ -125,6 +67,14 @@ private:
     RecordIterator begin, RecordIterator end, BlockResult& result) const;
   void EvaluateEdge(
     const EdgeIds& edge, RecordIterator begin, RecordIterator end, BlockResult& result) const;
+  /** Crit. 3.1 of an outer or interface facet, by its ascending points. */
+  bool HasEmptySphere(const TriangleIds& points) const
+  {
+    const std::vector<BorderFacet>& facets = this->Findings.BorderFacets;
+    const auto found = std::lower_bound(facets.begin(), facets.end(), points,
+      [](const BorderFacet& facet, const TriangleIds& ids) { return facet.Points < ids; });
+    return this->Findings.HasEmptyFacetSphere[found - facets.begin()] != 0;
+  }
   bool HasNegativeCotangentSum(RecordIterator begin, RecordIterator end) const;
 
   template <typename Block>
@@ -141,122 +91,74 @@ private:
 
   const TetMesh& Mesh;
   const TriangleMesh* Boundary;
-  MeshCriteriaReport& Report;
+  const BasicFindings& Findings;
+  MeshCertificate& Report;
   SimplexIncidence Incidence;
   ParallelLoopOptions LoopOptions;
-  /** Exact signs. */
-  std::vector<signed char> Orientations;
-  /** Crit. 5.3; false where there is no sphere. */
-  std::vector<char> IsDelaunay;
-  std::vector<BorderFacet> BorderFacets;
-  /** Facet ids of the tetrahedra at them. */
+  /** Facet ids of the tetrahedra at outer and interface facets. */
   std::vector<Id> BorderSides;
-  /** Their edges, ascending. */
-  std::vector<EdgeIds> BorderEdges;
-  /** Those where they do not go straight on, ascending, and whether they violate Crit. 3.2. */
-  std::vector<EdgeIds> StructuralEdges;
-  std::vector<char> HasFilledSphere;
 };
 
-Status Evaluator::Run(const ExecutionContext& context)
+Status Evaluator::Run(const SphereCriteria& criteria, const CertificateOptions& options,
+  const ExecutionContext& context)
 {
-  this->Report.Tetrahedra = static_cast<Id>(this->Mesh.Tetrahedra.size());
-  this->Report.Points = static_cast<Id>(this->Mesh.Points.size());
-  if (!this->CountCoincidentPoints(context.Part(0.0, 0.03)))
+  this->ListTetrahedra();
+  if ((options.KeepsDetails && !this->EvaluateShapes(context.Part(0.0, 0.2))) ||
+    !this->EvaluateFacets(criteria, context.Part(0.2, 0.5)) ||
+    !this->EvaluateEdges(context.Part(0.5, 0.95)))
   {
     return Status::Aborted();
   }
-  const SphereCriteria criteria(this->Mesh.Points, this->LoopOptions.NumberOfThreads);
-  if (!this->EvaluateTetrahedra(criteria, context.Part(0.05, 0.6)) ||
-    !this->EvaluateFacets(criteria, context.Part(0.6, 0.75)) ||
-    !this->EvaluateStructuralEdges(criteria, context.Part(0.75, 0.8)) ||
-    !this->EvaluateEdges(context.Part(0.8, 0.98)))
+  if (this->Boundary == nullptr || options.Boundary == BoundaryUse::Volumes)
+  {
+    this->CompareVolumes();
+  }
+  if (!this->Finish(context.Part(0.97, 1.0)))
   {
     return Status::Aborted();
   }
-  this->CompareVolumes();
-  return this->Finish(context.Part(0.99, 1.0)) ? Status() : Status::Aborted();
+  if (!options.KeepsDetails)
+  {
+    this->Report.Violations.clear();
+    this->Report.Violations.shrink_to_fit();
+  }
+  return {};
 }
 
-bool Evaluator::CountCoincidentPoints(const ExecutionContext& context)
-{
-  std::vector<Vec3> used;
-  used.reserve(this->Mesh.Points.size());
-  for (std::size_t point = 0; point < this->Mesh.Points.size(); ++point)
-  {
-    if (this->Incidence.IsUsed(static_cast<Id>(point)))
-    {
-      used.push_back(this->Mesh.Points[point]);
-    }
-  }
-  if (!ParallelSort(used, this->LoopOptions.NumberOfThreads, context, "Looking for equal points",
-        std::less<Vec3>()))
-  {
-    return false;
-  }
-  this->Report.CoincidentPoints =
-    static_cast<Id>(used.end() - std::unique(used.begin(), used.end()));
-  return true;
-}
-
-bool Evaluator::EvaluateTetrahedra(const SphereCriteria& criteria, const ExecutionContext& context)
+bool Evaluator::EvaluateShapes(const ExecutionContext& context)
 {
   const std::size_t count = this->Mesh.Tetrahedra.size();
-  this->Orientations.resize(count);
-  this->IsDelaunay.resize(count);
   this->Report.Qualities.resize(count);
-  std::vector<BlockAngles> blocks(GetNumberOfBlocks(count, this->LoopOptions));
-  const auto evaluate = [&](std::size_t begin, std::size_t end, std::size_t block)
-  {
-    for (std::size_t i = begin; i < end; ++i)
+  return ParallelLoop(count, this->LoopOptions, context, "Evaluating tetrahedra",
+    [this](std::size_t begin, std::size_t end, std::size_t)
     {
-      const auto [a, b, c, d] = this->GetCorners(static_cast<Id>(i));
-      const int orientation = Orientation(a, b, c, d);
-      this->Orientations[i] = static_cast<signed char>(orientation);
-      this->Report.Qualities[i] = GetTetrahedronQuality(a, b, c, d);
-      // An inverted tetrahedron has a circumsphere too.
-      TetrahedronIds ids = this->Mesh.Tetrahedra[i];
-      if (orientation < 0)
+      for (std::size_t i = begin; i < end; ++i)
       {
-        std::swap(ids[0], ids[1]);
+        const auto [a, b, c, d] = this->GetCorners(static_cast<Id>(i));
+        this->Report.Qualities[i] = GetTetrahedronQuality(a, b, c, d);
       }
-      this->IsDelaunay[i] = orientation != 0 && criteria.IsDelaunay(ids);
-      this->AddTetrahedron(static_cast<Id>(i), blocks[block]);
-    }
-  };
-  if (!ParallelLoop(count, this->LoopOptions, context, "Evaluating tetrahedra", evaluate))
-  {
-    return false;
-  }
-  this->Join(blocks);
-  for (const BlockAngles& block : blocks)
-  {
-    this->Report.Under5Degrees += block.Under5Degrees;
-    this->Report.Under10Degrees += block.Under10Degrees;
-    this->Report.SmallestDihedralAngle =
-      std::min(this->Report.SmallestDihedralAngle, block.Smallest);
-    this->Report.LargestDihedralAngle = std::max(this->Report.LargestDihedralAngle, block.Largest);
-  }
-  return true;
+    });
 }
 
-void Evaluator::AddTetrahedron(Id tetrahedron, BlockAngles& block) const
+/** What the basic checks have found about tetrahedra. */
+void Evaluator::ListTetrahedra()
 {
-  const int orientation = this->Orientations[tetrahedron];
-  if (orientation <= 0)
+  for (std::size_t i = 0; i < this->Mesh.Tetrahedra.size(); ++i)
   {
-    block.Violations.push_back(this->MakeViolation(
-      orientation < 0 ? MeshFault::InvertedTetrahedron : MeshFault::FlatTetrahedron, tetrahedron));
+    const int orientation = this->Findings.Orientations[i];
+    const Id tetrahedron = static_cast<Id>(i);
+    if (orientation <= 0)
+    {
+      this->Report.Violations.push_back(this->MakeViolation(
+        orientation < 0 ? MeshFault::InvertedTetrahedron : MeshFault::FlatTetrahedron,
+        tetrahedron));
+    }
+    if (orientation != 0 && this->Findings.IsDelaunay[i] == 0)
+    {
+      this->Report.Violations.push_back(
+        this->MakeViolation(MeshFault::NonDelaunayTetrahedron, tetrahedron));
+    }
   }
-  if (orientation != 0 && !this->IsDelaunay[tetrahedron])
-  {
-    block.Violations.push_back(this->MakeViolation(MeshFault::NonDelaunayTetrahedron, tetrahedron));
-  }
-  const TetrahedronQuality& quality = this->Report.Qualities[tetrahedron];
-  block.Under5Degrees += quality.SmallestDihedralAngle < 5.0;
-  block.Under10Degrees += quality.SmallestDihedralAngle < 10.0;
-  block.Smallest = std::min(block.Smallest, quality.SmallestDihedralAngle);
-  block.Largest = std::max(block.Largest, quality.LargestDihedralAngle);
 }
 
 void Evaluator::EvaluateFacet(const SphereCriteria& criteria, const TriangleIds& points,
@@ -275,7 +177,8 @@ void Evaluator::EvaluateFacet(const SphereCriteria& criteria, const TriangleIds&
   for (auto record = begin; record != end; ++record)
   {
     const Id tetrahedron = record->Simplex / 4;
-    isProven = isProven || this->IsDelaunay[tetrahedron];
+    isProven = isProven ||
+      (this->Findings.Orientations[tetrahedron] != 0 && this->Findings.IsDelaunay[tetrahedron]);
     isBorder =
       isBorder || this->Mesh.Regions[tetrahedron] != this->Mesh.Regions[begin->Simplex / 4];
     // The parity of the permutation that sorts the facet's points tells the side.
@@ -283,7 +186,7 @@ void Evaluator::EvaluateFacet(const SphereCriteria& criteria, const TriangleIds&
     const bool isEven = facet == TriangleIds{ points[0], points[1], points[2] } ||
       facet == TriangleIds{ points[1], points[2], points[0] } ||
       facet == TriangleIds{ points[2], points[0], points[1] };
-    ++sides[isEven == (this->Orientations[tetrahedron] >= 0)];
+    ++sides[isEven == (this->Findings.Orientations[tetrahedron] >= 0)];
   }
   if (sides[0] > 1 || sides[1] > 1)
   {
@@ -297,17 +200,11 @@ void Evaluator::EvaluateFacet(const SphereCriteria& criteria, const TriangleIds&
   {
     return;
   }
-  BorderFacet border{ points };
   for (auto record = begin; record != end; ++record)
   {
     result.BorderSides.push_back(record->Simplex);
-    const Id region = this->Mesh.Regions[record->Simplex / 4];
-    border.LowRegion = record == begin ? region : std::min(border.LowRegion, region);
-    border.HighRegion = std::max(border.HighRegion, region);
   }
-  border.LowRegion = end - begin == 1 ? OutsideRegion : border.LowRegion;
-  result.BorderFacets.push_back(border);
-  if (!criteria.HasEmptySmallestSphere(points))
+  if (!this->HasEmptySphere(points))
   {
     add(MeshFault::FacetSphere);
     const std::vector<Vec3>& p = this->Mesh.Points;
@@ -315,7 +212,7 @@ void Evaluator::EvaluateFacet(const SphereCriteria& criteria, const TriangleIds&
     {
       const Id tetrahedron = record->Simplex / 4;
       const Id apex = this->Mesh.Tetrahedra[tetrahedron][record->Simplex % 4];
-      if (this->Orientations[tetrahedron] != 0 &&
+      if (this->Findings.Orientations[tetrahedron] != 0 &&
         InEquatorialSphere(p[points[0]], p[points[1]], p[points[2]], p[apex]) > 0)
       {
         result.Violations.push_back(this->MakeViolation(MeshFault::OpenControlVolume, tetrahedron));
@@ -346,56 +243,10 @@ bool Evaluator::EvaluateFacets(const SphereCriteria& criteria, const ExecutionCo
   for (const BlockResult& result : results)
   {
     this->Report.Facets += result.Simplices;
-    this->BorderFacets.insert(
-      this->BorderFacets.end(), result.BorderFacets.begin(), result.BorderFacets.end());
     this->BorderSides.insert(
       this->BorderSides.end(), result.BorderSides.begin(), result.BorderSides.end());
   }
-  this->Report.BorderFacets = static_cast<Id>(this->BorderFacets.size());
   return true;
-}
-
-void Evaluator::CollectBorderEdges()
-{
-  std::vector<BorderEdge> edges;
-  edges.reserve(3 * this->BorderFacets.size());
-  for (Id facet = 0; facet < static_cast<Id>(this->BorderFacets.size()); ++facet)
-  {
-    const TriangleIds& ids = this->BorderFacets[facet].Points;
-    edges.push_back({ { ids[0], ids[1] }, facet });
-    edges.push_back({ { ids[1], ids[2] }, facet });
-    edges.push_back({ { ids[0], ids[2] }, facet });
-  }
-  std::sort(edges.begin(), edges.end());
-  for (auto begin = edges.cbegin(), end = begin; begin != edges.cend(); begin = end)
-  {
-    end = std::find_if(
-      begin, edges.cend(), [&](const BorderEdge& edge) { return edge.Points != begin->Points; });
-    this->BorderEdges.push_back(begin->Points);
-    if (end - begin != 2 ||
-      !AreSmooth(this->BorderFacets[begin[0].Facet], this->BorderFacets[begin[1].Facet],
-        begin->Points, this->Mesh.Points))
-    {
-      this->StructuralEdges.push_back(begin->Points);
-    }
-  }
-  this->Report.StructuralEdges = static_cast<Id>(this->StructuralEdges.size());
-}
-
-bool Evaluator::EvaluateStructuralEdges(
-  const SphereCriteria& criteria, const ExecutionContext& context)
-{
-  this->CollectBorderEdges();
-  this->HasFilledSphere.resize(this->StructuralEdges.size());
-  return ParallelLoop(this->StructuralEdges.size(), this->LoopOptions, context,
-    "Evaluating structural edges",
-    [&](std::size_t begin, std::size_t end, std::size_t)
-    {
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        this->HasFilledSphere[i] = !criteria.HasEmptySmallestSphere(this->StructuralEdges[i]);
-      }
-    });
 }
 
 bool Evaluator::HasNegativeCotangentSum(RecordIterator begin, RecordIterator end) const
@@ -406,7 +257,7 @@ bool Evaluator::HasNegativeCotangentSum(RecordIterator begin, RecordIterator end
   for (auto record = begin; record != end; ++record)
   {
     const Id tetrahedron = record->Simplex / 6;
-    if (this->Orientations[tetrahedron] == 0)
+    if (this->Findings.Orientations[tetrahedron] == 0)
     {
       continue;
     }
@@ -447,14 +298,15 @@ bool Evaluator::HasNegativeCotangentSum(RecordIterator begin, RecordIterator end
   for (auto record = begin; record != end; ++record)
   {
     const Id tetrahedron = record->Simplex / 6;
-    if (this->Orientations[tetrahedron] == 0)
+    if (this->Findings.Orientations[tetrahedron] == 0)
     {
       continue;
     }
     const int edge = record->Simplex % 6;
     const std::array<Vec3, 4> p = this->GetCorners(tetrahedron);
     const DoubleDouble term = GetOppositeCotangents(p[0], p[1], p[2], p[3])[edge];
-    accurateSum = this->Orientations[tetrahedron] > 0 ? accurateSum + term : accurateSum - term;
+    accurateSum =
+      this->Findings.Orientations[tetrahedron] > 0 ? accurateSum + term : accurateSum - term;
     const int* opposite = TetrahedronEdges[5 - edge];
     lengths += std::max(Distance(p[opposite[0]], p[opposite[1]]), std::abs(term.High));
   }
@@ -474,10 +326,15 @@ void Evaluator::EvaluateEdge(
   }
   const auto getRegion = [&](const SimplexIncidence::Record& record)
   { return this->Mesh.Regions[record.Simplex / 6]; };
-  const bool isConvex =
-    !std::binary_search(this->BorderEdges.begin(), this->BorderEdges.end(), edge) &&
-    std::all_of(
-      begin, end, [&](const auto& record) { return this->IsDelaunay[record.Simplex / 6]; });
+  const bool isConvex = !std::binary_search(this->Findings.BorderEdges.begin(),
+                          this->Findings.BorderEdges.end(), edge) &&
+    std::all_of(begin, end,
+      [&](const auto& record)
+      {
+        const Id tetrahedron = record.Simplex / 6;
+        return this->Findings.Orientations[tetrahedron] != 0 &&
+          this->Findings.IsDelaunay[tetrahedron] != 0;
+      });
   for (auto record = begin; record != end; ++record)
   {
     const Id region = getRegion(*record);
@@ -641,6 +498,7 @@ void Evaluator::CompareVolumes()
         this->Mesh.Points, Sixth);
     }
   }
+  this->Report.Regions.clear();
   for (std::size_t i = 0; i < ids.size(); ++i)
   {
     const RegionVolume region{ ids[i], sums[i].Tetrahedra, sums[i].Volume.Get(),
@@ -654,11 +512,11 @@ void Evaluator::CompareVolumes()
 bool Evaluator::Finish(const ExecutionContext& context)
 {
   std::vector<MeshViolation>& violations = this->Report.Violations;
-  for (std::size_t i = 0; i < this->StructuralEdges.size(); ++i)
+  for (std::size_t i = 0; i < this->Findings.StructuralEdges.size(); ++i)
   {
-    if (this->HasFilledSphere[i])
+    if (this->Findings.HasEmptySphere[i] == 0)
     {
-      const EdgeIds& edge = this->StructuralEdges[i];
+      const EdgeIds& edge = this->Findings.StructuralEdges[i];
       violations.push_back({ MeshFault::EdgeSphere, { edge[0], edge[1], NoId, NoId }, NoId, NoId });
     }
   }
@@ -682,6 +540,7 @@ bool Evaluator::Finish(const ExecutionContext& context)
                          a.Tetrahedron == b.Tetrahedron;
                      }),
     violations.end());
+  this->Report.Faults.fill(0);
   for (const MeshViolation& violation : violations)
   {
     ++this->Report.Faults[static_cast<int>(violation.Fault)];
@@ -689,23 +548,6 @@ bool Evaluator::Finish(const ExecutionContext& context)
   return true;
 }
 
-std::string Format(const char* format, double value)
-{
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-/** "3 of 40 (7.5 %)"; the share only where there is something. */
-std::string FormatShare(Id count, Id all)
-{
-  std::string text = std::to_string(count) + " of " + std::to_string(all);
-  if (count > 0)
-  {
-    text += " (" + Format("%.2g", 100.0 * count / all) + " %)";
-  }
-  return text;
-}
 } // namespace
 
 TetrahedronQuality GetTetrahedronQuality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
@@ -737,68 +579,14 @@ TetrahedronQuality GetTetrahedronQuality(const Vec3& a, const Vec3& b, const Vec
   return quality;
 }
 
-bool MeshCriteriaReport::IsClean(double volumeTolerance) const
+Status EvaluateFullCriteria(const TetMesh& mesh, const TriangleMesh* boundary,
+  const SphereCriteria& criteria, const BasicFindings& findings, const CertificateOptions& options,
+  const ExecutionContext& context, MeshCertificate& certificate)
 {
-  for (const MeshFault fault :
-    { MeshFault::InvertedTetrahedron, MeshFault::FlatTetrahedron, MeshFault::OverfullFacet,
-      MeshFault::NonDelaunayTetrahedron, MeshFault::NonDelaunayFacet, MeshFault::NegativeCoupling })
-  {
-    if (this->GetCount(fault) != 0)
-    {
-      return false;
-    }
-  }
-  return this->CoincidentPoints == 0 && this->LargestVolumeError <= volumeTolerance;
-}
-
-std::string MeshCriteriaReport::GetCertificate() const
-{
-  const auto count = [this](MeshFault fault) { return std::to_string(this->GetCount(fault)); };
-  std::string text = std::to_string(this->Tetrahedra) + " tetrahedra, " +
-    std::to_string(this->Points) + " points, regions: " + std::to_string(this->Regions.size()) +
-    "; " + count(MeshFault::InvertedTetrahedron) + " inverted, " +
-    count(MeshFault::FlatTetrahedron) + " flat, " + count(MeshFault::NonDelaunayTetrahedron) +
-    " non-Delaunay; facets: ";
-  // What hardly ever happens is named only then.
-  if (this->GetCount(MeshFault::OverfullFacet) != 0)
-  {
-    text += count(MeshFault::OverfullFacet) + " overfull, ";
-  }
-  text += "non-Delaunay " + FormatShare(this->GetCount(MeshFault::NonDelaunayFacet), this->Facets) +
-    ", filled smallest sphere " +
-    FormatShare(this->GetCount(MeshFault::FacetSphere), this->BorderFacets) +
-    "; structural edges: filled smallest sphere " +
-    FormatShare(this->GetCount(MeshFault::EdgeSphere), this->StructuralEdges) +
-    "; negative couplings " +
-    FormatShare(this->GetCount(MeshFault::NegativeCoupling), this->Couplings) +
-    "; open control volumes " + count(MeshFault::OpenControlVolume) + "; negative cotangent sums " +
-    FormatShare(this->GetCount(MeshFault::NegativeCotangentSum), this->Edges) +
-    "; dihedral angles " + Format("%.2f", this->SmallestDihedralAngle) + " to " +
-    Format("%.2f", this->LargestDihedralAngle) + " degrees, " +
-    std::to_string(this->Under5Degrees) + " under 5, " + std::to_string(this->Under10Degrees) +
-    " under 10; volume error " + Format("%.1g", this->LargestVolumeError);
-  if (this->CoincidentPoints != 0)
-  {
-    text += "; coincident points " + std::to_string(this->CoincidentPoints);
-  }
-  return text + (this->IsClean() ? ": clean" : ": not clean");
-}
-
-Status EvaluateMeshCriteria(const TetMesh& mesh, const TriangleMesh* boundary,
-  const ExecutionContext& context, MeshCriteriaReport& report)
-{
-  return RunGuarded(
-    [&]() -> Status
-    {
-      report = {};
-      Status status = CheckNumberOfTetrahedra(mesh.Tetrahedra.size());
-      if (status.IsOk())
-      {
-        status = CheckMeshInput(mesh, boundary);
-      }
-      return status.IsOk()
-        ? Evaluator(mesh, boundary, context.GetNumberOfThreads(), report).Run(context)
-        : status;
-    });
+  const Status status = CheckNumberOfTetrahedra(mesh.Tetrahedra.size());
+  return status.IsOk()
+    ? Evaluator(mesh, boundary, findings, context.GetNumberOfThreads(), certificate)
+        .Run(criteria, options, context)
+    : status;
 }
 } // namespace cdm

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Certificate/MeshChecks.h"
+#include "Core/Certificate/BasicChecks.h"
 
 #include "Core/Basics/IdLimits.h"
 #include "Core/Basics/ParallelLoop.h"
@@ -7,9 +7,9 @@
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
+#include "Core/Meshes/MeshInvariants.h"
 #include "Core/Meshes/SimplexIncidence.h"
 #include "Core/Meshes/VolumeSums.h"
-#include "Core/Search/SphereCriteria.h"
 
 #include <algorithm>
 #include <atomic>
@@ -25,6 +25,9 @@ namespace cdm
 {
 namespace
 {
+/** Tangent of one degree: facets of a border that bend by less go straight on. */
+constexpr double SmoothTangent = 0.017455064928217585;
+
 constexpr std::size_t ContinueInterval = 1 << 12;
 constexpr const char* FacetActivity = "Checking facets";
 constexpr std::size_t MaximumNumberOfExamples = 10;
@@ -77,22 +80,24 @@ Iterator FindEndOfGroup(Iterator begin, Iterator end)
     begin, end, [&](const FacetRecord& other) { return other.Points != begin->Points; });
 }
 
-template <typename Cells>
-std::vector<Id> FindOutOfRange(const Cells& cells, std::size_t numberOfPoints)
+/** Two facets of one surface that go straight on at their common edge. */
+bool AreSmooth(const BorderFacet& first, const BorderFacet& second, const EdgeIds& edge,
+  const std::vector<Vec3>& points)
 {
-  std::vector<Id> found;
-  for (std::size_t cell = 0; cell < cells.size(); ++cell)
+  if (first.Regions != second.Regions)
   {
-    for (const Id point : cells[cell])
-    {
-      if (point < 0 || static_cast<std::size_t>(point) >= numberOfPoints)
-      {
-        found.push_back(static_cast<Id>(cell));
-        break;
-      }
-    }
+    return false;
   }
-  return found;
+  const Vec3& origin = points[edge[0]];
+  const Vec3 direction = points[edge[1]] - origin;
+  const auto getNormal = [&](const BorderFacet& facet)
+  {
+    const Id third = facet.Points[0] + facet.Points[1] + facet.Points[2] - edge[0] - edge[1];
+    return Cross(direction, points[third] - origin);
+  };
+  const Vec3 a = getNormal(first);
+  const Vec3 b = getNormal(second);
+  return Norm(Cross(a, b)) < -SmoothTangent * Dot(a, b);
 }
 
 std::vector<Id> FindNotFinite(const std::vector<Vec3>& points)
@@ -108,37 +113,18 @@ std::vector<Id> FindNotFinite(const std::vector<Vec3>& points)
   return found;
 }
 
-Status CheckTetrahedra(const TetMesh& mesh)
-{
-  Status status = CheckNumberOfTetrahedra(mesh.Tetrahedra.size());
-  if (status.IsOk())
-  {
-    status = CheckIdRange(mesh.Points.size(), "points");
-  }
-  if (!status.IsOk())
-  {
-    return status;
-  }
-  std::vector<Id> cells = FindOutOfRange(mesh.Tetrahedra, mesh.Points.size());
-  if (!cells.empty())
-  {
-    return Status::InvalidInput(
-      std::to_string(cells.size()) + " tetrahedra refer to points that do not exist.", cells);
-  }
-  return {};
-}
-
 /** Runs the checks one after the other on one mesh. */
 class Checker
 {
 public:
-  Checker(
-    const TetMesh& mesh, const TriangleMesh* boundary, int numberOfThreads, MeshCheckReport& report)
-    : Mesh(mesh), Boundary(boundary), NumberOfThreads(numberOfThreads), Report(report)
+  Checker(const TetMesh& mesh, const TriangleMesh* boundary, int numberOfThreads,
+    MeshCertificate& report, BasicFindings& findings)
+    : Mesh(mesh), Boundary(boundary), NumberOfThreads(numberOfThreads), Report(report),
+      Findings(findings)
   {
   }
 
-  Status Run(const ExecutionContext& context);
+  Status Run(const SphereCriteria& criteria, const ExecutionContext& context);
 
 private:
   /** Volume of a region from its tetrahedra and from its boundary. */
@@ -156,6 +142,8 @@ private:
   bool CheckTetrahedra(const ExecutionContext& context);
   bool CheckFacets(const ExecutionContext& context);
   bool CheckSpheres(const SphereCriteria& criteria, const ExecutionContext& context);
+  void CollectBorderEdges();
+  void CountFlatter();
   bool CheckBoundarySpheres(const SphereCriteria& criteria, const ExecutionContext& context);
   void CountByInterface(const std::vector<char>& isEmpty);
   void FinishVolumes();
@@ -164,6 +152,7 @@ private:
   bool CollectFacets(const ExecutionContext& context, RawVector<FacetRecord>& facets) const;
   std::vector<FacetRecord> CollectBoundary();
   void CheckNeighbors(const FacetRecord* begin, const FacetRecord* end);
+  void AddBorderFacet(const FacetRecord* begin, const FacetRecord* end);
   void CheckBoundaryTriangle(const FacetRecord& triangle, const RegionPair& regions);
   void AddEnclosedVolume(Id triangle, const RegionPair& regions);
   Region* FindRegion(Id region);
@@ -176,21 +165,19 @@ private:
   const TetMesh& Mesh;
   const TriangleMesh* Boundary;
   int NumberOfThreads;
-  MeshCheckReport& Report;
-  /** Exact orientation of each tetrahedron. */
-  std::vector<signed char> Orientations;
+  MeshCertificate& Report;
+  BasicFindings& Findings;
   std::vector<char> IsUsed;
   /** Points in lexicographic order, used ones first among coincident ones. */
   std::vector<Id> SortedPoints;
-  /** Outer and interface facets of the mesh. */
-  std::vector<TriangleIds> BorderFacets;
-  std::vector<RegionPair> BorderRegions;
+  /** Of each tetrahedron. */
+  std::vector<double> SmallestAngles;
   /** Ascending ids of the regions, and what is known of each. */
   std::vector<Id> RegionIds;
   std::vector<Region> Regions;
 };
 
-Status Checker::Run(const ExecutionContext& context)
+Status Checker::Run(const SphereCriteria& criteria, const ExecutionContext& context)
 {
   this->Report.Tetrahedra = static_cast<Id>(this->Mesh.Tetrahedra.size());
   this->Report.Points = static_cast<Id>(this->Mesh.Points.size());
@@ -202,12 +189,12 @@ Status Checker::Run(const ExecutionContext& context)
     return Status::Aborted();
   }
   this->FinishVolumes();
-  const SphereCriteria criteria(this->Mesh.Points, this->NumberOfThreads);
   if (!this->CheckSpheres(criteria, context.Part(0.5, 0.9)) ||
     !this->CheckBoundarySpheres(criteria, context.Part(0.9, 1.0)))
   {
     return Status::Aborted();
   }
+  this->CountFlatter();
   return {};
 }
 
@@ -290,13 +277,9 @@ bool Checker::CheckTetrahedra(const ExecutionContext& context)
 {
   const std::size_t count = this->Mesh.Tetrahedra.size();
   const ParallelLoopOptions options{ this->NumberOfThreads, ContinueInterval };
-  struct Angles
-  {
-    double Smallest = 180.0;
-    double Largest = 0.0;
-  };
-  std::vector<Angles> blocks(GetNumberOfBlocks(count, options));
-  this->Orientations.resize(count);
+  std::vector<double> largest(GetNumberOfBlocks(count, options), 0.0);
+  this->SmallestAngles.resize(count);
+  this->Findings.Orientations.resize(count);
   std::vector<long double> volumes(count);
   const auto check = [&](std::size_t first, std::size_t last, std::size_t block)
   {
@@ -305,10 +288,12 @@ bool Checker::CheckTetrahedra(const ExecutionContext& context)
       const Id tetrahedron = static_cast<Id>(i);
       const std::array<Vec3, 4> p{ this->GetPoint(tetrahedron, 0), this->GetPoint(tetrahedron, 1),
         this->GetPoint(tetrahedron, 2), this->GetPoint(tetrahedron, 3) };
-      this->Orientations[i] = static_cast<signed char>(Orientation(p[0], p[1], p[2], p[3]));
+      this->Findings.Orientations[i] =
+        static_cast<signed char>(Orientation(p[0], p[1], p[2], p[3]));
       const long double determinant = GetSixVolumes(p[0], p[1], p[2], p[3]);
       volumes[i] = determinant / 6.0L;
 
+      double smallest = 180.0;
       std::array<Vec3, 4> normals;
       for (int facet = 0; facet < 4; ++facet)
       {
@@ -326,27 +311,31 @@ bool Checker::CheckTetrahedra(const ExecutionContext& context)
           const double angle = DegreesPerRadian *
             std::atan2(
               edge * static_cast<double>(std::abs(determinant)), -Dot(normals[j], normals[k]));
-          blocks[block].Smallest = std::min(blocks[block].Smallest, angle);
-          blocks[block].Largest = std::max(blocks[block].Largest, angle);
+          smallest = std::min(smallest, angle);
+          largest[block] = std::max(largest[block], angle);
         }
       }
+      this->SmallestAngles[i] = smallest;
     }
   };
   if (!ParallelLoop(count, options, context, "Checking tetrahedra", check))
   {
     return false;
   }
-  for (const Angles& angles : blocks)
+  for (const double angle : this->SmallestAngles)
   {
-    this->Report.SmallestDihedralAngle =
-      std::min(this->Report.SmallestDihedralAngle, angles.Smallest);
-    this->Report.LargestDihedralAngle = std::max(this->Report.LargestDihedralAngle, angles.Largest);
+    this->Report.SmallestDihedralAngle = std::min(this->Report.SmallestDihedralAngle, angle);
+  }
+  for (const double angle : largest)
+  {
+    this->Report.LargestDihedralAngle = std::max(this->Report.LargestDihedralAngle, angle);
   }
   for (std::size_t i = 0; i < count; ++i)
   {
-    if (this->Orientations[i] <= 0)
+    if (this->Findings.Orientations[i] <= 0)
     {
-      ++(this->Orientations[i] < 0 ? this->Report.InvertedTetrahedra : this->Report.FlatTetrahedra);
+      ++(this->Findings.Orientations[i] < 0 ? this->Report.GetCount(MeshFault::InvertedTetrahedron)
+                                            : this->Report.GetCount(MeshFault::FlatTetrahedron));
       this->AddExample(static_cast<Id>(i));
     }
     Region& region = *this->FindRegion(this->Mesh.Regions[i]);
@@ -414,7 +403,7 @@ std::vector<FacetRecord> Checker::CollectBoundary()
 
 void Checker::CheckNeighbors(const FacetRecord* begin, const FacetRecord* end)
 {
-  if (end - begin > 2)
+  if (end - begin > 2 || this->Mesh.Neighbors.empty())
   {
     return;
   }
@@ -426,6 +415,27 @@ void Checker::CheckNeighbors(const FacetRecord* begin, const FacetRecord* end)
       ++this->Report.WrongNeighbors;
       this->AddExample(facet->Source / 4);
     }
+  }
+}
+
+/** Notes a facet with one tetrahedron, or with tetrahedra of different regions. */
+void Checker::AddBorderFacet(const FacetRecord* begin, const FacetRecord* end)
+{
+  Id low = this->Mesh.Regions[begin->Source / 4];
+  Id high = low;
+  for (const FacetRecord* facet = begin; facet != end; ++facet)
+  {
+    const Id region = this->Mesh.Regions[facet->Source / 4];
+    low = std::min(low, region);
+    high = std::max(high, region);
+  }
+  if (end - begin == 1)
+  {
+    this->Findings.BorderFacets.push_back({ begin->Points, { OutsideRegion, high } });
+  }
+  else if (low != high)
+  {
+    this->Findings.BorderFacets.push_back({ begin->Points, { low, high } });
   }
 }
 
@@ -526,28 +536,23 @@ bool Checker::CheckFacets(const ExecutionContext& context)
     for (auto facet = begin; facet != end; ++facet)
     {
       const Id tetrahedron = facet->Source / 4;
-      const bool isBehind = facet->IsEven == (this->Orientations[tetrahedron] >= 0);
+      const bool isBehind = facet->IsEven == (this->Findings.Orientations[tetrahedron] >= 0);
       ++(isBehind ? behind : inFront);
       (isBehind ? regions.Back : regions.Front) = this->Mesh.Regions[tetrahedron];
     }
     if (behind > 1 || inFront > 1)
     {
-      ++this->Report.OverfullFacets;
+      ++this->Report.GetCount(MeshFault::OverfullFacet);
       this->AddExample(begin->Source / 4);
     }
     this->CheckNeighbors(&*begin, &*begin + (end - begin));
 
-    const bool isBorder = end - begin == 1 || regions.Front != regions.Back;
-    if (isBorder)
+    this->AddBorderFacet(&*begin, &*begin + (end - begin));
+    const bool isBound = end - begin > 1 && regions.Front == regions.Back;
+    if (!isBound && this->Boundary != nullptr && triangle == triangleEnd)
     {
-      this->BorderFacets.push_back(begin->Points);
-      const auto sides = std::minmax(regions.Front, regions.Back);
-      this->BorderRegions.push_back({ sides.first, sides.second });
-      if (this->Boundary != nullptr && triangle == triangleEnd)
-      {
-        ++this->Report.UnboundFacets;
-        this->AddExample(begin->Source / 4);
-      }
+      ++this->Report.UnboundFacets;
+      this->AddExample(begin->Source / 4);
     }
     for (; triangle != triangleEnd; ++triangle)
     {
@@ -579,18 +584,19 @@ void Checker::FinishVolumes()
 bool Checker::CheckSpheres(const SphereCriteria& criteria, const ExecutionContext& context)
 {
   const std::size_t count = this->Mesh.Tetrahedra.size();
-  std::vector<char> isDelaunay(count, 1);
+  std::vector<char>& isDelaunay = this->Findings.IsDelaunay;
+  isDelaunay.assign(count, 1);
   const auto check = [&](std::size_t begin, std::size_t end, std::size_t)
   {
     for (std::size_t i = begin; i < end; ++i)
     {
       // An inverted tetrahedron has a circumsphere too.
       TetrahedronIds ids = this->Mesh.Tetrahedra[i];
-      if (this->Orientations[i] < 0)
+      if (this->Findings.Orientations[i] < 0)
       {
         std::swap(ids[0], ids[1]);
       }
-      isDelaunay[i] = this->Orientations[i] == 0 || criteria.IsDelaunay(ids);
+      isDelaunay[i] = this->Findings.Orientations[i] == 0 || criteria.IsDelaunay(ids);
     }
   };
   if (!ParallelLoop(count, { this->NumberOfThreads, ContinueInterval }, context,
@@ -602,47 +608,113 @@ bool Checker::CheckSpheres(const SphereCriteria& criteria, const ExecutionContex
   {
     if (!isDelaunay[i])
     {
-      ++this->Report.NonDelaunayTetrahedra;
+      ++this->Report.GetCount(MeshFault::NonDelaunayTetrahedron);
       this->AddExample(static_cast<Id>(i));
     }
   }
   return true;
 }
 
+/** Edges of the border facets, and those where they do not go straight on. */
+void Checker::CollectBorderEdges()
+{
+  struct BorderEdge
+  {
+    EdgeIds Points;
+    Id Facet;
+  };
+  const std::vector<BorderFacet>& facets = this->Findings.BorderFacets;
+  std::vector<BorderEdge> edges;
+  edges.reserve(3 * facets.size());
+  for (Id facet = 0; facet < static_cast<Id>(facets.size()); ++facet)
+  {
+    const TriangleIds& ids = facets[facet].Points;
+    edges.push_back({ { ids[0], ids[1] }, facet });
+    edges.push_back({ { ids[1], ids[2] }, facet });
+    edges.push_back({ { ids[0], ids[2] }, facet });
+  }
+  std::sort(edges.begin(), edges.end(),
+    [](const BorderEdge& a, const BorderEdge& b)
+    { return a.Points != b.Points ? a.Points < b.Points : a.Facet < b.Facet; });
+  for (auto begin = edges.cbegin(), end = begin; begin != edges.cend(); begin = end)
+  {
+    end = std::find_if(
+      begin, edges.cend(), [&](const BorderEdge& edge) { return edge.Points != begin->Points; });
+    this->Findings.BorderEdges.push_back(begin->Points);
+    if (end - begin != 2 ||
+      !AreSmooth(facets[begin[0].Facet], facets[begin[1].Facet], begin->Points, this->Mesh.Points))
+    {
+      this->Findings.StructuralEdges.push_back(begin->Points);
+    }
+  }
+  this->Report.BorderFacets = static_cast<Id>(facets.size());
+  this->Report.StructuralEdges = static_cast<Id>(this->Findings.StructuralEdges.size());
+}
+
 bool Checker::CheckBoundarySpheres(const SphereCriteria& criteria, const ExecutionContext& context)
 {
-  std::vector<EdgeIds> edges;
-  for (const TriangleIds& ids : this->BorderFacets)
+  this->CollectBorderEdges();
+  // A degenerate triangle has no sphere; it shows as flat tetrahedra.
+  const auto findEmpty = [&](std::size_t count, const auto& getSimplex,
+                           const ExecutionContext& part, const char* activity,
+                           std::vector<char>& isEmpty)
   {
-    edges.push_back({ ids[0], ids[1] });
-    edges.push_back({ ids[1], ids[2] });
-    edges.push_back({ ids[0], ids[2] });
-  }
-  SortUnique(edges);
-  const auto findEmpty =
-    [&](const auto& simplices, const ExecutionContext& part, const char* activity, Id& filled)
-  {
-    // A degenerate triangle has no sphere; it shows as flat tetrahedra.
-    std::vector<char> isEmpty(simplices.size(), 1);
-    const bool isDone =
-      ParallelLoop(simplices.size(), { this->NumberOfThreads, ContinueInterval }, part, activity,
-        [&](std::size_t begin, std::size_t end, std::size_t)
+    isEmpty.assign(count, 1);
+    return ParallelLoop(count, { this->NumberOfThreads, ContinueInterval }, part, activity,
+      [&](std::size_t begin, std::size_t end, std::size_t)
+      {
+        for (std::size_t i = begin; i < end; ++i)
         {
-          for (std::size_t i = begin; i < end; ++i)
-          {
-            isEmpty[i] = criteria.HasEmptySmallestSphere(simplices[i]);
-          }
-        });
-    filled = static_cast<Id>(std::count(isEmpty.begin(), isEmpty.end(), 0));
-    return std::make_pair(isDone, isEmpty);
+          isEmpty[i] = criteria.HasEmptySmallestSphere(getSimplex(i));
+        }
+      });
   };
-  const auto triangles = findEmpty(this->BorderFacets, context.Part(0.0, 0.5),
-    "Checking boundary triangles", this->Report.SmallestSphereViolations);
-  this->CountByInterface(triangles.second);
-  return triangles.first &&
-    findEmpty(
-      edges, context.Part(0.5, 1.0), "Checking boundary edges", this->Report.EdgeSphereViolations)
-      .first;
+  const auto countFilled = [](const std::vector<char>& isEmpty)
+  { return static_cast<Id>(std::count(isEmpty.begin(), isEmpty.end(), 0)); };
+  if (!findEmpty(
+        this->Findings.BorderFacets.size(),
+        [this](std::size_t i) { return this->Findings.BorderFacets[i].Points; },
+        context.Part(0.0, 0.5), "Checking boundary triangles", this->Findings.HasEmptyFacetSphere))
+  {
+    return false;
+  }
+  this->Report.GetCount(MeshFault::FacetSphere) = countFilled(this->Findings.HasEmptyFacetSphere);
+  this->CountByInterface(this->Findings.HasEmptyFacetSphere);
+  const bool isDone = findEmpty(
+    this->Findings.StructuralEdges.size(),
+    [this](std::size_t i) { return this->Findings.StructuralEdges[i]; }, context.Part(0.5, 1.0),
+    "Checking structural edges", this->Findings.HasEmptySphere);
+  this->Report.GetCount(MeshFault::EdgeSphere) = countFilled(this->Findings.HasEmptySphere);
+  return isDone;
+}
+
+/** How many tetrahedra are flatter than bounds, and which of them have no point inside. */
+void Checker::CountFlatter()
+{
+  std::vector<char> isOnBorder(this->Mesh.Points.size(), 0);
+  for (const BorderFacet& facet : this->Findings.BorderFacets)
+  {
+    for (const Id point : facet.Points)
+    {
+      isOnBorder[point] = 1;
+    }
+  }
+  for (std::size_t i = 0; i < this->SmallestAngles.size(); ++i)
+  {
+    const TetrahedronIds& ids = this->Mesh.Tetrahedra[i];
+    const auto count = [&](double bound, FlatterTetrahedra& flatter)
+    {
+      if (this->SmallestAngles[i] < bound)
+      {
+        ++flatter.Count;
+        flatter.BetweenBoundaries +=
+          std::all_of(ids.begin(), ids.end(), [&](Id point) { return isOnBorder[point] != 0; });
+      }
+    };
+    count(5.0, this->Report.Under5Degrees);
+    count(10.0, this->Report.Under10Degrees);
+    count(15.0, this->Report.Under15Degrees);
+  }
 }
 
 void Checker::CountByInterface(const std::vector<char>& isEmpty)
@@ -650,7 +722,7 @@ void Checker::CountByInterface(const std::vector<char>& isEmpty)
   std::map<std::pair<Id, Id>, InterfaceSpheres> interfaces;
   for (std::size_t i = 0; i < isEmpty.size(); ++i)
   {
-    const RegionPair& regions = this->BorderRegions[i];
+    const RegionPair& regions = this->Findings.BorderFacets[i].Regions;
     InterfaceSpheres& found = interfaces[{ regions.Front, regions.Back }];
     found.Regions = regions;
     ++found.Facets;
@@ -661,117 +733,7 @@ void Checker::CountByInterface(const std::vector<char>& isEmpty)
     this->Report.Interfaces.push_back(item.second);
   }
 }
-
-/** "3 name" with the name's plural where needed. */
-std::string Count(Id count, const char* singular, const char* plural)
-{
-  return std::to_string(count) + " " + (count == 1 ? singular : plural);
-}
-bool HasRightNeighbors(const TetMesh& mesh, Id tetrahedron)
-{
-  const Id numberOfFacets = static_cast<Id>(4 * mesh.Tetrahedra.size());
-  for (int facet = 0; facet < 4; ++facet)
-  {
-    const Id neighbor = mesh.Neighbors[tetrahedron][facet];
-    if (neighbor == NoId)
-    {
-      continue;
-    }
-    if (neighbor < 0 || neighbor >= numberOfFacets ||
-      mesh.Neighbors[neighbor / 4][neighbor % 4] != 4 * tetrahedron + facet)
-    {
-      return false;
-    }
-    const TriangleIds own = GetFacet(mesh.Tetrahedra[tetrahedron], facet);
-    const TriangleIds other = GetFacet(mesh.Tetrahedra[neighbor / 4], neighbor % 4);
-    if (!std::is_permutation(own.begin(), own.end(), other.begin()))
-    {
-      return false;
-    }
-  }
-  return true;
-}
-
 } // namespace
-
-double RegionVolume::GetRelativeError() const
-{
-  const double difference = std::abs(this->Volume - this->EnclosedVolume);
-  return difference == 0.0        ? 0.0
-    : this->EnclosedVolume == 0.0 ? std::numeric_limits<double>::infinity()
-                                  : difference / std::abs(this->EnclosedVolume);
-}
-
-bool MeshCheckReport::IsValid(double volumeTolerance) const
-{
-  return this->InvertedTetrahedra == 0 && this->FlatTetrahedra == 0 &&
-    this->NonDelaunayTetrahedra == 0 && this->CoincidentPoints == 0 && this->OverfullFacets == 0 &&
-    this->WrongNeighbors == 0 && this->UnboundFacets == 0 && this->MissingBoundaryTriangles == 0 &&
-    this->LargestVolumeError <= volumeTolerance;
-}
-
-std::string MeshCheckReport::GetSummary() const
-{
-  std::string text = Count(this->Tetrahedra, "tetrahedron, ", "tetrahedra, ") +
-    Count(this->Points, "point, ", "points, ") +
-    Count(static_cast<Id>(this->Regions.size()), "region: ", "regions: ") +
-    std::to_string(this->InvertedTetrahedra) + " inverted, " +
-    std::to_string(this->FlatTetrahedra) + " flat, " + std::to_string(this->NonDelaunayTetrahedra) +
-    " non-Delaunay, ";
-  char number[64];
-  if (this->HasBoundary)
-  {
-    std::snprintf(number, sizeof number, "%.1g", this->LargestVolumeError);
-    text += Count(this->UnboundFacets + this->MissingBoundaryTriangles, "boundary fault, ",
-              "boundary faults, ") +
-      "volume error " + number + ", ";
-  }
-  // What hardly ever happens is named only then.
-  if (this->CoincidentPoints != 0)
-  {
-    text += Count(this->CoincidentPoints, "coincident point, ", "coincident points, ");
-  }
-  if (this->OverfullFacets != 0)
-  {
-    text += Count(this->OverfullFacets, "overfull facet, ", "overfull facets, ");
-  }
-  if (this->WrongNeighbors != 0)
-  {
-    text += Count(this->WrongNeighbors, "wrong neighbour, ", "wrong neighbours, ");
-  }
-  if (this->Tetrahedra != 0)
-  {
-    std::snprintf(number, sizeof number, "dihedral angles %.1f to %.1f degrees",
-      this->SmallestDihedralAngle, this->LargestDihedralAngle);
-    text += number;
-  }
-  else
-  {
-    text += "empty";
-  }
-  return text + (this->IsValid() ? ": valid" : ": not valid");
-}
-
-std::string MeshCheckReport::GetSphereSummary() const
-{
-  Id facets = 0;
-  std::string places;
-  for (const InterfaceSpheres& spheres : this->Interfaces)
-  {
-    facets += spheres.Facets;
-    if (spheres.Violations != 0)
-    {
-      const std::string back = std::to_string(spheres.Regions.Back);
-      places += (places.empty() ? ": " : ", ") + std::to_string(spheres.Violations) + " of " +
-        std::to_string(spheres.Facets) +
-        (spheres.Regions.Front == OutsideRegion
-            ? " outside of region " + back
-            : " between regions " + std::to_string(spheres.Regions.Front) + " and " + back);
-    }
-  }
-  return std::to_string(this->SmallestSphereViolations) + " of " + std::to_string(facets) +
-    " boundary triangles have a point in their smallest sphere" + places;
-}
 
 Status CheckMeshInput(const TetMesh& mesh, const TriangleMesh* boundary)
 {
@@ -795,7 +757,7 @@ Status CheckMeshInput(const TetMesh& mesh, const TriangleMesh* boundary)
   {
     return {};
   }
-  std::vector<Id> triangles = FindOutOfRange(boundary->Triangles, boundary->Points.size());
+  std::vector<Id> triangles = FindCellsOutOfRange(boundary->Triangles, boundary->Points.size());
   if (!triangles.empty())
   {
     return Status::InvalidInput(std::to_string(triangles.size()) +
@@ -816,130 +778,12 @@ Status CheckMeshInput(const TetMesh& mesh, const TriangleMesh* boundary)
   return {};
 }
 
-Status CheckTetMesh(const TetMesh& mesh, const TriangleMesh* boundary,
-  const ExecutionContext& context, MeshCheckReport& report)
+Status CheckBasics(const TetMesh& mesh, const TriangleMesh* boundary,
+  const SphereCriteria& criteria, const CertificateOptions& options,
+  const ExecutionContext& context, MeshCertificate& certificate, BasicFindings& findings)
 {
-  return RunGuarded(
-    [&]() -> Status
-    {
-      report = {};
-      const Status status = CheckMeshInput(mesh, boundary);
-      if (status.IsOk() && mesh.Neighbors.size() != mesh.Tetrahedra.size())
-      {
-        return Status::InvalidInput(
-          "The mesh needs four neighbours for each tetrahedron: BuildNeighbors() makes them.");
-      }
-      return status.IsOk()
-        ? Checker(mesh, boundary, context.GetNumberOfThreads(), report).Run(context)
-        : status;
-    });
-}
-
-namespace
-{
-Status RunBuildNeighbors(TetMesh& mesh, int numberOfThreads)
-{
-  Status status = CheckTetrahedra(mesh);
-  if (!status.IsOk())
-  {
-    return status;
-  }
-  mesh.Neighbors.resize(mesh.Tetrahedra.size());
-  const SimplexIncidence incidence(mesh, numberOfThreads);
-  const ParallelLoopOptions loop{ numberOfThreads, 2048 };
-  std::vector<std::vector<Id>> overfull(GetNumberOfBlocks(mesh.Points.size(), loop));
-  const auto build = [&](std::size_t begin, std::size_t end, std::size_t block)
-  {
-    std::vector<SimplexIncidence::Record> scratch;
-    const auto join = [&](const TriangleIds&, auto first, auto last)
-    {
-      for (auto record = first; record != last; ++record)
-      {
-        const auto other = record == first ? first + 1 : first;
-        mesh.Neighbors[record->Simplex / 4][record->Simplex % 4] =
-          last - first == 2 ? other->Simplex : NoId;
-        if (last - first > 2)
-        {
-          overfull[block].push_back(record->Simplex / 4);
-        }
-      }
-    };
-    for (std::size_t point = begin; point < end; ++point)
-    {
-      incidence.ForEachFacet(static_cast<Id>(point), scratch, join);
-    }
-  };
-  ParallelLoop(mesh.Points.size(), loop, {}, "", build);
-  std::vector<Id> cells;
-  for (const std::vector<Id>& ofBlock : overfull)
-  {
-    cells.insert(cells.end(), ofBlock.begin(), ofBlock.end());
-  }
-  if (!cells.empty())
-  {
-    SortUnique(cells);
-    return Status::InvalidInput(
-      std::to_string(cells.size()) + " tetrahedra share a facet with more than one other.", cells);
-  }
-  return {};
-}
-} // namespace
-
-Status BuildNeighbors(TetMesh& mesh, int numberOfThreads)
-{
-  return RunGuarded([&] { return RunBuildNeighbors(mesh, numberOfThreads); });
-}
-
-namespace
-{
-Status RunCheckMeshInvariants(const TetMesh& mesh, int numberOfThreads)
-{
-  const std::size_t count = mesh.Tetrahedra.size();
-  if (mesh.Regions.size() != count || mesh.Neighbors.size() != count)
-  {
-    return Status::InvalidInput("The mesh needs one region and four neighbors for each "
-                                "tetrahedron.");
-  }
-  const auto isRight = [&mesh](Id tetrahedron)
-  {
-    const TetrahedronIds& ids = mesh.Tetrahedra[tetrahedron];
-    const std::vector<Vec3>& points = mesh.Points;
-    return std::all_of(ids.begin(), ids.end(),
-             [&](Id point) {
-               return point >= 0 && point < static_cast<Id>(points.size()) &&
-                 IsFinite(points[point]);
-             }) &&
-      Orientation(points[ids[0]], points[ids[1]], points[ids[2]], points[ids[3]]) > 0 &&
-      HasRightNeighbors(mesh, tetrahedron);
-  };
-  const ParallelLoopOptions options{ numberOfThreads };
-  std::vector<std::vector<Id>> blocks(GetNumberOfBlocks(count, options));
-  ParallelLoop(count, options, {}, "",
-    [&](std::size_t begin, std::size_t end, std::size_t block)
-    {
-      for (std::size_t t = begin; t < end; ++t)
-      {
-        if (!isRight(static_cast<Id>(t)))
-        {
-          blocks[block].push_back(static_cast<Id>(t));
-        }
-      }
-    });
-  std::vector<Id> wrong;
-  for (const std::vector<Id>& block : blocks)
-  {
-    wrong.insert(wrong.end(), block.begin(), block.end());
-  }
-  return wrong.empty() ? Status{}
-                       : Status::InvalidInput(std::to_string(wrong.size()) +
-                             " tetrahedra are inverted, flat, or have wrong points or neighbors: "
-                             "only valid meshes can be changed.",
-                           wrong);
-}
-} // namespace
-
-Status CheckMeshInvariants(const TetMesh& mesh, int numberOfThreads)
-{
-  return RunGuarded([&] { return RunCheckMeshInvariants(mesh, numberOfThreads); });
+  const TriangleMesh* const facets = options.Boundary == BoundaryUse::Facets ? boundary : nullptr;
+  return Checker(mesh, facets, context.GetNumberOfThreads(), certificate, findings)
+    .Run(criteria, context);
 }
 } // namespace cdm

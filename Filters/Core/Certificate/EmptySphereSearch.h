@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file EmptySphereSearch.h
+ * @brief The mesh checker's own search: which points may lie inside of a sphere?
+ *
+ * Method: boxes of a k-d tree that the sphere surely does not touch (SphereForm.h) are left out.
+ *
+ * Guarantees: no point strictly inside or on the sphere is left out (up to overflow, where
+ * nothing is left out).
+ * Cost: O(n log n) to build; 28 bytes per point and 64 bytes per eight points.
+ */
+#ifndef cdmEmptySphereSearch_h
+#define cdmEmptySphereSearch_h
+
+#include "Core/Basics/Types.h"
+#include "Core/Basics/Vec3.h"
+#include "Core/Geometry/SphereForm.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace cdm
+{
+class EmptySphereSearch
+{
+public:
+  /** The points have to be finite. Threads: 0: one for each processor core. */
+  explicit EmptySphereSearch(const std::vector<Vec3>& points, int numberOfThreads = 1);
+
+  /**
+   * Calls isInside(id) for every point that may lie in the sphere, until it returns true; returns
+   * whether it did. The simplex's own vertices are passed over: they lie on the sphere, which is
+   * what takes longest to tell.
+   */
+  template <typename Simplex, typename Predicate>
+  bool FindInside(const SphereForm& sphere, const Simplex& simplex, Predicate&& isInside) const
+  {
+    // Every level of the tree leaves at most one node behind.
+    std::array<Id, 64> stack;
+    int size = 0;
+    if (!this->Nodes.empty())
+    {
+      stack[size++] = 0;
+    }
+    while (size > 0)
+    {
+      const Id index = stack[--size];
+      const Node& node = this->Nodes[index];
+      if (!sphere.MayTouch(node.Lower, node.Upper))
+      {
+        continue;
+      }
+      if (node.Right != NoId)
+      {
+        stack[size++] = node.Right;
+        stack[size++] = index + 1;
+        continue;
+      }
+      for (Id i = node.Begin; i < node.End; ++i)
+      {
+        const Id point = this->Order[i];
+        if (std::find(simplex.begin(), simplex.end(), point) == simplex.end() &&
+          sphere.MayHold(this->Positions[i]) && isInside(point))
+        {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+private:
+  /** The left child follows its parent. */
+  struct Node
+  {
+    Vec3 Lower;
+    Vec3 Upper;
+    Id Begin = 0;
+    Id End = 0;
+    /** NoId: a leaf. */
+    Id Right = NoId;
+  };
+
+  /** The points [Begin, End) of the order and the place of its root. */
+  struct Subtree
+  {
+    Id Begin;
+    Id End;
+    Id Node;
+  };
+
+  static Id CountNodes(Id numberOfPoints);
+  /** Makes the root only; the first point of its right child, or NoId if it is a leaf. */
+  Id Split(const std::vector<Vec3>& points, const Subtree& subtree);
+  /** The place after the last node. */
+  Id Build(const std::vector<Vec3>& points, const Subtree& subtree);
+
+  std::vector<Node> Nodes;
+  std::vector<Id> Order;
+  /** The points in that order. */
+  std::vector<Vec3> Positions;
+};
+} // namespace cdm
+
+#endif

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Certificate/MeshCertificate.h"
+
+#include "Core/Certificate/BasicChecks.h"
+#include "Core/Certificate/FullCriteria.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace cdm
+{
+namespace
+{
+std::string Format(const char* format, double value)
+{
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+/** "3 names", "1 name". */
+std::string Count(Id count, const char* singular, const char* plural)
+{
+  return std::to_string(count) + " " + (count == 1 ? singular : plural);
+}
+
+/** "3 of 40 (7.5 %)"; the share only where there is something. */
+std::string FormatShare(Id count, Id all)
+{
+  std::string text = std::to_string(count) + " of " + std::to_string(all);
+  if (count > 0)
+  {
+    text += " (" + Format("%.2g", 100.0 * count / all) + " %)";
+  }
+  return text;
+}
+
+/** What there is, with commas between. */
+class List
+{
+public:
+  void Add(Id count, const char* singular, const char* plural)
+  {
+    if (count != 0)
+    {
+      this->Add(Count(count, singular, plural));
+    }
+  }
+  void Add(const std::string& item) { this->Text += (this->Text.empty() ? "" : ", ") + item; }
+  std::string Text;
+};
+
+/** "2 under 5 (1 between boundaries)". */
+std::string FormatFlatter(const FlatterTetrahedra& flatter, const char* bound)
+{
+  std::string text = std::to_string(flatter.Count) + " under " + bound;
+  if (flatter.Count > 0)
+  {
+    text += " (" + std::to_string(flatter.BetweenBoundaries) + " with all points on boundaries)";
+  }
+  return text;
+}
+
+std::string ListFaults(const MeshCertificate& c, double volumeTolerance)
+{
+  List list;
+  list.Add(
+    c.GetCount(MeshFault::InvertedTetrahedron), "inverted tetrahedron", "inverted tetrahedra");
+  list.Add(c.GetCount(MeshFault::FlatTetrahedron), "flat tetrahedron", "flat tetrahedra");
+  list.Add(c.GetCount(MeshFault::OverfullFacet), "overfull facet", "overfull facets");
+  list.Add(c.WrongNeighbors, "wrong neighbour", "wrong neighbours");
+  list.Add(c.CoincidentPoints, "coincident point", "coincident points");
+  list.Add(c.UnboundFacets + c.MissingBoundaryTriangles, "boundary fault", "boundary faults");
+  if (!(c.LargestVolumeError <= volumeTolerance))
+  {
+    list.Add("volume error " + Format("%.1g", c.LargestVolumeError));
+  }
+  return list.Text;
+}
+
+/** Where the smallest spheres of the boundary are not empty (Crit. 3.1); empty if all are. */
+std::string ListFilledSpheres(const MeshCertificate& c)
+{
+  const Id filled = c.GetCount(MeshFault::FacetSphere);
+  if (filled == 0)
+  {
+    return {};
+  }
+  std::string places;
+  for (const InterfaceSpheres& spheres : c.Interfaces)
+  {
+    if (spheres.Violations != 0)
+    {
+      const std::string back = std::to_string(spheres.Regions.Back);
+      places += (places.empty() ? ": " : ", ") + std::to_string(spheres.Violations) + " of " +
+        std::to_string(spheres.Facets) +
+        (spheres.Regions.Front == OutsideRegion
+            ? " outside of region " + back
+            : " between regions " + std::to_string(spheres.Regions.Front) + " and " + back);
+    }
+  }
+  return std::to_string(filled) + " of " + std::to_string(c.BorderFacets) +
+    " boundary triangles have a point in their smallest sphere" + places + ".";
+}
+
+std::string GetNumbers(const MeshCertificate& c)
+{
+  std::string text = Count(c.Tetrahedra, "tetrahedron, ", "tetrahedra, ") +
+    Count(c.Points, "point, ", "points, ") +
+    Count(static_cast<Id>(c.Regions.size()), "region", "regions") + "; boundary: smallest sphere " +
+    "filled at " + FormatShare(c.GetCount(MeshFault::FacetSphere), c.BorderFacets) +
+    " triangles and " + FormatShare(c.GetCount(MeshFault::EdgeSphere), c.StructuralEdges) +
+    " structural edges";
+  if (c.Level == CertificateLevel::Full)
+  {
+    text += "; negative couplings " +
+      FormatShare(c.GetCount(MeshFault::NegativeCoupling), c.Couplings) +
+      "; open control volumes " + std::to_string(c.GetCount(MeshFault::OpenControlVolume)) +
+      "; non-Delaunay facets " + FormatShare(c.GetCount(MeshFault::NonDelaunayFacet), c.Facets) +
+      "; negative cotangent sums " +
+      FormatShare(c.GetCount(MeshFault::NegativeCotangentSum), c.Edges);
+  }
+  if (c.Tetrahedra != 0)
+  {
+    text += "; dihedral angles " + Format("%.2f", c.SmallestDihedralAngle) + " to " +
+      Format("%.2f", c.LargestDihedralAngle) + " degrees, tetrahedra " +
+      FormatFlatter(c.Under5Degrees, "5") + " and " + FormatFlatter(c.Under15Degrees, "15");
+  }
+  if (c.HasBoundary || c.Level == CertificateLevel::Full)
+  {
+    text += "; volume error " + Format("%.1g", c.LargestVolumeError);
+  }
+  return text;
+}
+} // namespace
+
+double RegionVolume::GetRelativeError() const
+{
+  const double difference = std::abs(this->Volume - this->EnclosedVolume);
+  return difference == 0.0        ? 0.0
+    : this->EnclosedVolume == 0.0 ? std::numeric_limits<double>::infinity()
+                                  : difference / std::abs(this->EnclosedVolume);
+}
+
+MeshVerdict MeshCertificate::GetVerdict(double volumeTolerance) const
+{
+  if (!ListFaults(*this, volumeTolerance).empty())
+  {
+    return MeshVerdict::Invalid;
+  }
+  if (this->GetCount(MeshFault::NonDelaunayTetrahedron) != 0 ||
+    this->GetCount(MeshFault::NonDelaunayFacet) != 0)
+  {
+    return MeshVerdict::NotDelaunay;
+  }
+  return this->Level == CertificateLevel::Full && this->GetCount(MeshFault::NegativeCoupling) == 0
+    ? MeshVerdict::CleanForFiniteVolumes
+    : MeshVerdict::Delaunay;
+}
+
+bool MeshCertificate::IsDelaunay(double volumeTolerance) const
+{
+  return this->GetVerdict(volumeTolerance) >= MeshVerdict::Delaunay;
+}
+
+bool MeshCertificate::IsClean(double volumeTolerance) const
+{
+  return this->GetVerdict(volumeTolerance) == MeshVerdict::CleanForFiniteVolumes;
+}
+
+const char* MeshCertificate::GetVerdictName() const
+{
+  static const char* const names[] = { "INVALID", "NOT DELAUNAY", "DELAUNAY",
+    "CLEAN FOR FINITE VOLUMES" };
+  return names[static_cast<int>(this->GetVerdict())];
+}
+
+std::string MeshCertificate::GetReasons() const
+{
+  switch (this->GetVerdict())
+  {
+    case MeshVerdict::Invalid:
+    {
+      const Id filled = this->GetCount(MeshFault::NonDelaunayTetrahedron);
+      return ListFaults(*this, VolumeTolerance) +
+        (filled == 0 ? "."
+                     : "; " +
+              Count(filled, "tetrahedron has a point in its circumsphere.",
+                "tetrahedra have a point in their circumsphere."));
+    }
+    case MeshVerdict::NotDelaunay:
+      return FormatShare(this->GetCount(MeshFault::NonDelaunayTetrahedron), this->Tetrahedra) +
+        " tetrahedra have a point in their circumsphere.";
+    default:
+      break;
+  }
+  const std::string spheres = ListFilledSpheres(*this);
+  const std::string rest = spheres.empty() ? spheres : " " + spheres;
+  if (this->Tetrahedra == 0)
+  {
+    return "The mesh is empty.";
+  }
+  if (this->Level == CertificateLevel::Basic)
+  {
+    return "Valid, all circumspheres are empty; the couplings of the box method were not looked "
+           "at." +
+      rest;
+  }
+  const Id negative = this->GetCount(MeshFault::NegativeCoupling);
+  return negative == 0
+    ? "Valid, all circumspheres are empty, no coupling of the box method is negative." + rest
+    : FormatShare(negative, this->Couplings) + " couplings of the box method are negative." + rest;
+}
+
+std::string MeshCertificate::GetText() const
+{
+  return std::string(this->GetVerdictName()) + "\n" + this->GetReasons() + "\n" + GetNumbers(*this);
+}
+
+Status CertifyMesh(const TetMesh& mesh, const TriangleMesh* boundary,
+  const ExecutionContext& context, MeshCertificate& certificate, const CertificateOptions& options)
+{
+  return RunGuarded(
+    [&]() -> Status
+    {
+      certificate = {};
+      certificate.Level = options.Level;
+      Status status = CheckMeshInput(mesh, boundary);
+      if (!status.IsOk())
+      {
+        return status;
+      }
+      if (!mesh.Neighbors.empty() && mesh.Neighbors.size() != mesh.Tetrahedra.size())
+      {
+        return Status::InvalidInput("The mesh needs four neighbours for each tetrahedron, or none: "
+                                    "BuildNeighbors() makes them.");
+      }
+      const bool isFull = options.Level == CertificateLevel::Full;
+      const double share = isFull ? 0.6 : 1.0;
+      const SphereCriteria criteria(mesh.Points, context.GetNumberOfThreads());
+      BasicFindings findings;
+      return CheckBasics(
+        mesh, boundary, criteria, options, context.Part(0.0, share), certificate, findings)
+        .Then(
+          [&]
+          {
+            return isFull ? EvaluateFullCriteria(mesh, boundary, criteria, findings, options,
+                              context.Part(share, 1.0), certificate)
+                          : Status();
+          });
+    });
+}
+} // namespace cdm

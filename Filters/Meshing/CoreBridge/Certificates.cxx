@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CoreBridge/Certificates.h"
+
+#include "CoreBridge/Outputs.h"
+
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkIdTypeArray.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkStringArray.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace
+{
+/** Names of the counts, by cdm::MeshFault. */
+constexpr const char* FaultNames[cdm::NumberOfMeshFaults] = { "InvertedTetrahedra",
+  "FlatTetrahedra", "OverfullFacets", "NonDelaunayTetrahedra", "NonDelaunayFacets",
+  "FacetSphereViolations", "EdgeSphereViolations", "OpenControlVolumes", "NegativeCouplings",
+  "NegativeCotangentSums" };
+
+std::vector<std::pair<const char*, vtkIdType>> GetCounts(const cdm::MeshCertificate& certificate)
+{
+  std::vector<std::pair<const char*, vtkIdType>> counts{ { "IsClean", certificate.IsClean() } };
+  for (int fault = 0; fault < cdm::NumberOfMeshFaults; ++fault)
+  {
+    counts.emplace_back(FaultNames[fault], certificate.Faults[fault]);
+  }
+  counts.insert(counts.end(),
+    { { "Facets", certificate.Facets }, { "BorderFacets", certificate.BorderFacets },
+      { "StructuralEdges", certificate.StructuralEdges }, { "Edges", certificate.Edges },
+      { "Couplings", certificate.Couplings }, { "CoincidentPoints", certificate.CoincidentPoints },
+      { "TetrahedraUnder5Degrees", certificate.Under5Degrees.Count },
+      { "TetrahedraUnder10Degrees", certificate.Under10Degrees.Count },
+      { "TetrahedraUnder15Degrees", certificate.Under15Degrees.Count } });
+  return counts;
+}
+
+template <typename Array, typename Function>
+void AddArray(vtkFieldData* data, const char* name, std::size_t count, const Function& getValue)
+{
+  data->AddArray(vtkCoreBridge::MakeArray<Array>(name, count, getValue));
+}
+} // namespace
+
+namespace vtkCoreBridge
+{
+//--------------------------------------------------------------------------------------------------
+void AddCertificate(const cdm::MeshCertificate& certificate, vtkFieldData* data)
+{
+  vtkNew<vtkStringArray> text;
+  text->SetName("Certificate");
+  text->InsertNextValue(certificate.GetText());
+  data->AddArray(text);
+  for (const auto& count : GetCounts(certificate))
+  {
+    AddArray<vtkIdTypeArray>(data, count.first, 1, [&count](std::size_t) { return count.second; });
+  }
+  const auto addAngle = [data](const char* name, double angle)
+  { AddArray<vtkDoubleArray>(data, name, 1, [angle](std::size_t) { return angle; }); };
+  addAngle("MeshSmallestDihedralAngle", certificate.SmallestDihedralAngle);
+  addAngle("MeshLargestDihedralAngle", certificate.LargestDihedralAngle);
+  const auto& regions = certificate.Regions;
+  AddArray<vtkIntArray>(
+    data, "RegionIds", regions.size(), [&](std::size_t i) { return regions[i].Region; });
+  AddArray<vtkDoubleArray>(
+    data, "RegionVolumes", regions.size(), [&](std::size_t i) { return regions[i].Volume; });
+  AddArray<vtkDoubleArray>(data, "RegionVolumeErrors", regions.size(),
+    [&](std::size_t i) { return regions[i].GetRelativeError(); });
+}
+
+//--------------------------------------------------------------------------------------------------
+void RemoveCertificate(vtkFieldData* data)
+{
+  vtkNew<vtkFieldData> names;
+  AddCertificate({}, names);
+  for (int i = 0; i < names->GetNumberOfArrays(); ++i)
+  {
+    data->RemoveArray(names->GetArrayName(i));
+  }
+}
+} // namespace vtkCoreBridge
