@@ -8,7 +8,7 @@
 #include "CoreBridge/Reports.h"
 #include "CoreBridge/Tuples.h"
 
-#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Repair/BoundaryTriangulator.h"
 
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>

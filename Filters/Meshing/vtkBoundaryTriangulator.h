@@ -40,7 +40,7 @@
  * Cost: O(n log n) for n triangles that overlap in few places.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
- * 1999: recursive splitting, gaps, T-junctions. Filters/Core/Surface/BoundaryTriangulator.h is the
+ * 1999: recursive splitting, gaps, T-junctions. Filters/Core/Repair/BoundaryTriangulator.h is the
  * engine.
  */
 #ifndef vtkBoundaryTriangulator_h

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkConformingDelaunayMesher.h"
 
-#include "BlockDistribution.h"
 #include "CoreBridge/ArrayNames.h"
 #include "CoreBridge/Certificates.h"
 #include "CoreBridge/Execution.h"
@@ -12,7 +11,8 @@
 #include "CoreBridge/Reports.h"
 #include "CoreBridge/SizingInputs.h"
 #include "CoreBridge/Tuples.h"
-#include "ProcessGroup.h"
+#include "Distributed/BlockDistribution.h"
+#include "Distributed/ProcessGroup.h"
 
 #include "Core/Pipeline/ConformingMesher.h"
 
@@ -205,8 +205,8 @@ int vtkConformingDelaunayMesher::MeshBlocks(
                                 "vtkPartitionedDataSetCollection or a vtkMultiBlockDataSet."),
       nullptr);
   }
-  ProcessGroup processes(vtkMultiProcessController::GetGlobalController());
-  BlockDistribution distribution;
+  vtkDistributed::ProcessGroup processes(vtkMultiProcessController::GetGlobalController());
+  vtkDistributed::BlockDistribution distribution;
   cdm::Status status = distribution.Run(processes, input);
   vtkSmartPointer<vtkDataSet> points;
   vtkSmartPointer<vtkDataSet> sizing;
@@ -218,15 +218,15 @@ int vtkConformingDelaunayMesher::MeshBlocks(
   std::vector<vtkSmartPointer<vtkPolyData>> problems;
   if (status.IsOk())
   {
-    points = GatherDataSet(processes, vtkDataSet::GetData(inputVector[1]));
-    sizing = GatherDataSet(processes, vtkDataSet::GetData(inputVector[2]));
+    points = vtkDistributed::GatherDataSet(processes, vtkDataSet::GetData(inputVector[1]));
+    sizing = vtkDistributed::GatherDataSet(processes, vtkDataSet::GetData(inputVector[2]));
     for (vtkDataObjectTree* output : outputs)
     {
-      BlockDistribution::CopyStructure(input, output);
+      vtkDistributed::BlockDistribution::CopyStructure(input, output);
     }
-    const std::vector<BlockDistribution::Block>& blocks = distribution.GetBlocks();
+    const std::vector<vtkDistributed::BlockDistribution::Block>& blocks = distribution.GetBlocks();
     const double share = 1.0 / static_cast<double>(std::max<std::size_t>(1, blocks.size()));
-    for (const BlockDistribution::Block& block : blocks)
+    for (const vtkDistributed::BlockDistribution::Block& block : blocks)
     {
       // A block that fails does not keep the others from showing what is wrong with them.
       this->SetProgressShiftScale(share * static_cast<double>(problems.size()), share);
@@ -235,8 +235,8 @@ int vtkConformingDelaunayMesher::MeshBlocks(
       problems.push_back(vtkSmartPointer<vtkPolyData>::New());
       const cdm::Status step = this->MeshPolygons(block.Name + ": ", block.Polygons,
         vtkPointSet::SafeDownCast(points), sizing, mesh, boundary, problems.back());
-      BlockDistribution::SetBlock(outputs[0], block.Index, mesh);
-      BlockDistribution::SetBlock(outputs[1], block.Index, boundary);
+      vtkDistributed::BlockDistribution::SetBlock(outputs[0], block.Index, mesh);
+      vtkDistributed::BlockDistribution::SetBlock(outputs[1], block.Index, boundary);
       if (step.IsAborted())
       {
         status = step;
@@ -255,10 +255,11 @@ int vtkConformingDelaunayMesher::MeshBlocks(
     status.IsOk() ? 1 : vtkCoreBridge::ReportFailure(this, outputVector, status, nullptr);
   if (!status.IsAborted() && outputs[2])
   {
-    BlockDistribution::CopyStructure(input, outputs[2]);
+    vtkDistributed::BlockDistribution::CopyStructure(input, outputs[2]);
     for (std::size_t i = 0; i < problems.size(); ++i)
     {
-      BlockDistribution::SetBlock(outputs[2], distribution.GetBlocks()[i].Index, problems[i]);
+      vtkDistributed::BlockDistribution::SetBlock(
+        outputs[2], distribution.GetBlocks()[i].Index, problems[i]);
     }
   }
   return success;

@@ -3,8 +3,8 @@
 
 #include "CoreBridge/Execution.h"
 #include "CoreBridge/Reports.h"
-#include "DistributedMesh.h"
-#include "ProcessGroup.h"
+#include "Distributed/DistributedMesh.h"
+#include "Distributed/ProcessGroup.h"
 
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
@@ -87,9 +87,10 @@ int vtkDistributedTetrahedralizer::RequestData(
   vtkPointSet* input = vtkPointSet::GetData(inputVector[0]);
   vtkInformation* info = outputVector->GetInformationObject(0);
   const auto ghostLevels = vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS();
-  ProcessGroup processes(this->Controller);
+  vtkDistributed::ProcessGroup processes(this->Controller);
   const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(this);
-  DistributedMesh mesh(processes, context, info->Has(ghostLevels) ? info->Get(ghostLevels) : 0);
+  vtkDistributed::DistributedMesh mesh(
+    processes, context, info->Has(ghostLevels) ? info->Get(ghostLevels) : 0);
   cdm::Status status = mesh.Run(input, vtkPointSet::GetData(inputVector[1]));
   this->NumberOfRounds = mesh.GetNumberOfRounds();
   this->NumberOfHaloPoints = mesh.GetNumberOfHaloPoints();

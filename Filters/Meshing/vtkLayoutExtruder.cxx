@@ -4,9 +4,9 @@
 #include "CoreBridge/Execution.h"
 #include "CoreBridge/Inputs.h"
 #include "CoreBridge/Reports.h"
-#include "LayeredStructure.h"
-#include "LayoutOverlay.h"
-#include "vtkStructureOutput.h"
+#include "Devices/LayeredStructure.h"
+#include "Devices/LayoutOverlay.h"
+#include "Devices/vtkStructureOutput.h"
 
 #include "Core/Geometry/Box.h"
 

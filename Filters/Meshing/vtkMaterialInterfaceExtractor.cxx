@@ -5,7 +5,7 @@
 #include "CoreBridge/Outputs.h"
 #include "CoreBridge/Reports.h"
 
-#include "Core/Interfaces/MaterialInterfaces.h"
+#include "Core/Voxels/MaterialInterfaces.h"
 
 #include <vtkDataArray.h>
 #include <vtkDataSetAttributes.h>

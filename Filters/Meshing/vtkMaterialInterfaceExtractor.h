@@ -40,7 +40,7 @@
  * empty output.
  *
  * Cost: O(n log n) for n faces between labels: 256^3 voxels with 0.6 million faces take 37 s and
- * 420 MB; see Filters/Core/Interfaces/MaterialInterfaces.h, the engine.
+ * 420 MB; see Filters/Core/Voxels/MaterialInterfaces.h, the engine.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
  * 1999; S. F. Gibson, "Constrained elastic surface nets", 1998, doi:10.1007/BFb0056277; G. Taubin,

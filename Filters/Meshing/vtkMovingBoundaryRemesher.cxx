@@ -10,7 +10,7 @@
 #include "CoreBridge/Tuples.h"
 
 #include "Core/Meshes/MeshBoundary.h"
-#include "Core/Volume/MovingBoundaryRemesher.h"
+#include "Core/MovingBoundary/MovingBoundaryRemesher.h"
 
 #include <vtkCellData.h>
 #include <vtkInformation.h>

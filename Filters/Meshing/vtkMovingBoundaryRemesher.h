@@ -40,7 +40,7 @@
  * Cost: that of refining the surface and meshing all regions, in each step.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
- * 1999: moving boundaries. Filters/Core/Volume/MovingBoundaryRemesher.h is the engine.
+ * 1999: moving boundaries. Filters/Core/MovingBoundary/MovingBoundaryRemesher.h is the engine.
  */
 #ifndef vtkMovingBoundaryRemesher_h
 #define vtkMovingBoundaryRemesher_h

@@ -2,7 +2,7 @@
 #include "vtkTechnologyStructureSource.h"
 
 #include "Devices/Device.h"
-#include "vtkStructureOutput.h"
+#include "Devices/vtkStructureOutput.h"
 
 #include <vtkInformationVector.h>
 #include <vtkObjectFactory.h>

@@ -8,7 +8,7 @@
 #include "CoreBridge/Reports.h"
 #include "CoreBridge/Tuples.h"
 
-#include "Core/Certificate/ControlPolyhedra.h"
+#include "Core/BoxMethod/ControlPolyhedra.h"
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>

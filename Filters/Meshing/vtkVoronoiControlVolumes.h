@@ -38,7 +38,7 @@
  * 500 more for the boxes.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
- * 1999: control volumes. Filters/Core/Certificate/ControlVolumes.h and ControlPolyhedra.h are the
+ * 1999: control volumes. Filters/Core/BoxMethod/ControlVolumes.h and ControlPolyhedra.h are the
  * engine.
  */
 #ifndef vtkVoronoiControlVolumes_h

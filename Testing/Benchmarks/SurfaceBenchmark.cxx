@@ -16,7 +16,7 @@
  * Exit status: 0 done, 1 refused (the reason on the standard error), 2 wrong use.
  */
 #include "Core/Meshes/PolygonSoup.h"
-#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 

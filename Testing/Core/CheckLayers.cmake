@@ -2,11 +2,11 @@
 # Core knows no VTK, Meshing knows no ParaView, CGAL is seen by one file only; a folder of Core knows
 # only those before it.
 #   cmake -D SOURCE_DIR=<folder of the project> -P CheckLayers.cmake
-set(folders Basics Geometry Search Meshes Certificate Sizing Delaunay Surface MeshPoints Volume
-  Improvement Interfaces Pipeline)
+set(folders Basics Geometry Search Meshes Certificate BoxMethod Sizing Delaunay Repair Surface
+  MeshPoints Volume Improvement MovingBoundary Voxels Pipeline)
 file(GLOB core "${SOURCE_DIR}/Filters/Core/*/*.h" "${SOURCE_DIR}/Filters/Core/*/*.cxx")
-file(GLOB meshing "${SOURCE_DIR}/Filters/Meshing/*.h" "${SOURCE_DIR}/Filters/Meshing/*.cxx"
-  "${SOURCE_DIR}/Filters/Meshing/Devices/*.h" "${SOURCE_DIR}/Filters/Meshing/Devices/*.cxx")
+file(GLOB_RECURSE meshing "${SOURCE_DIR}/Filters/Meshing/*.h"
+  "${SOURCE_DIR}/Filters/Meshing/*.cxx")
 set(problems 0)
 
 function (forbid pattern what)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Repair/BoundaryTriangulator.h"
 
 #include "Core/Geometry/Predicates.h"
 #include "Core/Meshes/TriangleIntersection.h"

@@ -2,7 +2,7 @@
 #include "Core/Basics/SortedIds.h"
 #include "Core/Delaunay/CavityFilling.h"
 #include "Core/Geometry/Measures.h"
-#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "RandomComplexes.h"

@@ -7,7 +7,7 @@
 #include "ComplexKinds.h"
 #include "Core/Certificate/MeshCertificate.h"
 #include "Core/Improvement/SteinerPointRefiner.h"
-#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HullMeshes.h"
 
-#include "Core/Certificate/ControlPolyhedra.h"
+#include "Core/BoxMethod/ControlPolyhedra.h"
 #include "Core/Certificate/MeshCertificate.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Meshes/MeshInvariants.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Certificate/MeshCertificate.h"
 #include "Core/Geometry/Measures.h"
-#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "RandomComplexes.h"

@@ -3,7 +3,7 @@
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Improvement/BoundarySpheres.h"
-#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "RandomComplexes.h"

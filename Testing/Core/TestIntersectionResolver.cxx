@@ -2,8 +2,8 @@
 #include "Core/Geometry/Predicates.h"
 #include "Core/Meshes/SurfaceSides.h"
 #include "Core/Meshes/TriangleIntersection.h"
-#include "Core/Surface/BoundaryTriangulator.h"
-#include "Core/Surface/IntersectionResolver.h"
+#include "Core/Repair/BoundaryTriangulator.h"
+#include "Core/Repair/IntersectionResolver.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/Measures.h"
-#include "Core/Interfaces/MaterialInterfaces.h"
 #include "Core/Meshes/SurfaceOrientation.h"
 #include "Core/Meshes/SurfaceSides.h"
 #include "Core/Meshes/TriangleIntersection.h"
+#include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Search/BoxTree.h"
-#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Voxels/MaterialInterfaces.h"
 #include "EnclosedVolumes.h"
 
 #include <gtest/gtest.h>

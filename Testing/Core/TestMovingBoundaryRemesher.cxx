@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Certificate/MeshCertificate.h"
 #include "Core/Meshes/MeshBoundary.h"
-#include "Core/Volume/MovingBoundaryRemesher.h"
+#include "Core/MovingBoundary/MovingBoundaryRemesher.h"
 #include "EnclosedVolumes.h"
 #include "HullMeshes.h"
 

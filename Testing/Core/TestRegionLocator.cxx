@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Sizing/RegionLocator.h"
-#include "Core/Surface/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "RandomComplexes.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Sizing/SizingOctree.h"
-#include "Core/Surface/BoundaryTriangulator.h"
 #include "RandomComplexes.h"
 
 #include <gtest/gtest.h>

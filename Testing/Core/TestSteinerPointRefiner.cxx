@@ -2,7 +2,7 @@
 #include "Core/Certificate/MeshCertificate.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Improvement/SteinerPointRefiner.h"
-#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "RandomComplexes.h"

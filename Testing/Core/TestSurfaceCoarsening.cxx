@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/Predicates.h"
 #include "Core/Meshes/TriangleIntersection.h"
-#include "Core/Surface/SurfaceCoarsening.h"
+#include "Core/MovingBoundary/SurfaceCoarsening.h"
 #include "EnclosedVolumes.h"
 
 #include <gtest/gtest.h>

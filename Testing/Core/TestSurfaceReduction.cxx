@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Interfaces/SurfaceReduction.h"
 #include "Core/Meshes/TriangleIntersection.h"
+#include "Core/Voxels/SurfaceReduction.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 // fans of facets at one edge, many edges at one vertex, needles, sheets a hair apart.
 #include "Core/Certificate/MeshCertificate.h"
 #include "Core/Geometry/Measures.h"
-#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "RandomComplexes.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ParallelTesting.h"
 
-#include "ProcessGroup.h"
+#include "Distributed/ProcessGroup.h"
 
 #include <functional>
 #include <new>
@@ -11,7 +11,7 @@ using namespace testing_parallel;
 
 namespace
 {
-using Bytes = ProcessGroup::Bytes;
+using Bytes = vtkDistributed::ProcessGroup::Bytes;
 
 /** Bytes that tell who sent them, to whom, and where in the message they are. */
 Bytes MakeMessage(int from, int to, std::size_t size)
@@ -24,9 +24,10 @@ Bytes MakeMessage(int from, int to, std::size_t size)
   return bytes;
 }
 
-ProcessGroup MakeGroup(std::int64_t largestGather)
+vtkDistributed::ProcessGroup MakeGroup(std::int64_t largestGather)
 {
-  return ProcessGroup(vtkMultiProcessController::GetGlobalController(), largestGather);
+  return vtkDistributed::ProcessGroup(
+    vtkMultiProcessController::GetGlobalController(), largestGather);
 }
 
 void ExpectGathered(std::int64_t largestGather, const std::function<std::size_t(int)>& getSize)
@@ -82,7 +83,7 @@ TEST(ProcessGroup, AllLearnOfAnErrorWhateverItsLength)
 {
   for (const std::int64_t limit : Limits)
   {
-    const ProcessGroup processes = MakeGroup(limit);
+    const vtkDistributed::ProcessGroup processes = MakeGroup(limit);
     for (int culprit = 0; culprit < GetSize(); ++culprit)
     {
       const std::string text(200, static_cast<char>('a' + culprit));
@@ -112,7 +113,7 @@ TEST(ProcessGroup, AllLearnOfAnErrorWhateverItsLength)
 
 TEST(ProcessGroup, ExchangesMessagesOfAnyLength)
 {
-  ProcessGroup processes(vtkMultiProcessController::GetGlobalController());
+  vtkDistributed::ProcessGroup processes(vtkMultiProcessController::GetGlobalController());
   const auto getSize = [](int from, int to)
   { return static_cast<std::size_t>(from == to + 1 ? 0 : 100 * from + 10 * to); };
   std::vector<Bytes> messages;

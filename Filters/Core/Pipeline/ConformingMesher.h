@@ -31,7 +31,7 @@
 #include "Core/Meshes/PolygonSoup.h"
 #include "Core/Meshes/TetMesh.h"
 #include "Core/Meshes/TriangleMesh.h"
-#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 
 #include <vector>

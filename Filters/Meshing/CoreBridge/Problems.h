@@ -7,7 +7,7 @@
 #define CoreBridge_Problems_h
 
 #include "Core/Meshes/PolygonSoup.h"
-#include "Core/Surface/BoundaryTriangulator.h"
+#include "Core/Repair/BoundaryTriangulator.h"
 
 #include <vtkType.h>
 

@@ -11,8 +11,8 @@
 #ifndef cdmGridLayout_h
 #define cdmGridLayout_h
 
-#include "../LayeredStructure.h"
 #include "Device.h"
+#include "Devices/LayeredStructure.h"
 
 #include <functional>
 #include <vector>

@@ -6,7 +6,7 @@
 #ifndef cdmRoundHole_h
 #define cdmRoundHole_h
 
-#include "../LayeredStructure.h"
+#include "Devices/LayeredStructure.h"
 
 #include <array>
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../LayeredStructure.h"
 #include "Device.h"
+#include "Devices/LayeredStructure.h"
 #include "RoundHole.h"
 
 #include <cmath>
