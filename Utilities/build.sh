@@ -18,6 +18,7 @@ if [ "$1" = ON ]; then
   packages+=(
     libeigen3-dev gmsh       # solvers, and meshes to compare with
     xdotool imagemagick      # a mouse for the GUI, and pictures of the whole screen
+    clang-format-14 clang-tidy-14   # the style of the sources
   )
 fi
 packages+=(${more_packages[@]+"${more_packages[@]}"})

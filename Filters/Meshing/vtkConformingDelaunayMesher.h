@@ -54,6 +54,8 @@
 #define vtkConformingDelaunayMesher_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkDelaunaySurfaceRefiner.h"
+#include "vtkMeshPointGenerator.h"
 #include <vtkUnstructuredGridAlgorithm.h>
 
 #include <array>
@@ -77,14 +79,12 @@ public:
   vtkTypeMacro(vtkConformingDelaunayMesher, vtkUnstructuredGridAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  /** See vtkDelaunaySurfaceRefiner::Criteria. */
   enum Criteria
   {
-    /** Criterion 5.2: the surface is part of the Delaunay mesh. */
-    Delaunay = 0,
-    /** Criterion 3.1: the smallest sphere of each boundary triangle is empty. */
-    SmallestSphere,
-    /** Criterion 3.2: those of each triangle and of its edges are: closed control volumes. */
-    SmallestSphereAndEdges
+    Delaunay = vtkDelaunaySurfaceRefiner::Delaunay,
+    SmallestSphere = vtkDelaunaySurfaceRefiner::SmallestSphere,
+    SmallestSphereAndEdges = vtkDelaunaySurfaceRefiner::SmallestSphereAndEdges
   };
 
   ///@{
@@ -179,7 +179,7 @@ public:
 
   ///@{
   /** How they are placed, one of vtkMeshPointGenerator::Placements. Default OCTREE. */
-  vtkSetClampMacro(Placement, int, 0, 3);
+  vtkSetClampMacro(Placement, int, vtkMeshPointGenerator::OCTREE, vtkMeshPointGenerator::NONE);
   vtkGetMacro(Placement, int);
   ///@}
 
@@ -291,7 +291,7 @@ protected:
   double MaximumArea = 0.0;
   double MaximumEdgeLength = 0.0;
   bool GenerateMeshPoints = false;
-  int Placement = 0;
+  int Placement = vtkMeshPointGenerator::OCTREE;
   double Spacing[3] = { 0.0, 0.0, 0.0 };
   std::vector<std::array<double, 5>> Layers;
   double MeshPointClearanceRatio = 1e-3;

@@ -5,6 +5,8 @@
 #include "CoreBridge/Inputs.h"
 #include "CoreBridge/Reports.h"
 
+#include "Core/Basics/SortedIds.h"
+
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkErrorCode.h>
@@ -115,12 +117,6 @@ private:
   std::vector<Element> Facets;
 };
 
-cdm::TriangleIds Sort(cdm::TriangleIds ids)
-{
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
-
 cdm::Status GroupCollector::Run(vtkDataSet*& faulty)
 {
   faulty = this->Grid;
@@ -155,7 +151,7 @@ cdm::Status GroupCollector::MatchContacts()
       if (neighbor == cdm::NoId || this->Mesh.Regions[neighbor / 4] != this->Mesh.Regions[i])
       {
         const cdm::TriangleIds points = cdm::GetFacet(this->Mesh.Tetrahedra[i], facet);
-        borders.insert(Sort(points));
+        borders.insert(cdm::Sorted(points));
         for (const cdm::Id point : points)
         {
           pointIds[this->Mesh.Points[point]] = point;
@@ -181,12 +177,12 @@ cdm::Status GroupCollector::MatchContacts()
       const auto found = pointIds.find({ x[0], x[1], x[2] });
       points[j] = found == pointIds.end() ? cdm::NoId : found->second;
     }
-    if (borders.count(Sort(points)) == 0 || contact != static_cast<cdm::Id>(contact))
+    if (borders.count(cdm::Sorted(points)) == 0 || contact != static_cast<cdm::Id>(contact))
     {
       wrong.push_back(static_cast<cdm::Id>(i));
       continue;
     }
-    this->ContactOfFacet[Sort(points)] = static_cast<cdm::Id>(contact);
+    this->ContactOfFacet[cdm::Sorted(points)] = static_cast<cdm::Id>(contact);
   }
   return wrong.empty() ? cdm::Status()
                        : cdm::Status::InvalidInput(
@@ -228,7 +224,7 @@ void GroupCollector::CollectFacets()
       }
       const cdm::TriangleIds ids = cdm::GetFacet(this->Mesh.Tetrahedra[i], facet);
       const cdm::TetrahedronIds points{ ids[0], ids[1], ids[2], cdm::NoId };
-      const auto contact = this->ContactOfFacet.find(Sort(ids));
+      const auto contact = this->ContactOfFacet.find(cdm::Sorted(ids));
       const bool isContact = contact != this->ContactOfFacet.end();
       if (isContact)
       {

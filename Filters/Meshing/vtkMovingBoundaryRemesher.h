@@ -46,6 +46,7 @@
 #define vtkMovingBoundaryRemesher_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkDelaunaySurfaceRefiner.h"
 #include <vtkUnstructuredGridAlgorithm.h>
 
 class CDMMESHING_EXPORT vtkMovingBoundaryRemesher : public vtkUnstructuredGridAlgorithm
@@ -55,14 +56,12 @@ public:
   vtkTypeMacro(vtkMovingBoundaryRemesher, vtkUnstructuredGridAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  /** See vtkDelaunaySurfaceRefiner::Criteria. */
   enum Criteria
   {
-    /** Criterion 5.2: the surface is part of the Delaunay mesh. */
-    Delaunay = 0,
-    /** Criterion 3.1: the smallest sphere of each boundary triangle is empty. */
-    SmallestSphere,
-    /** Criterion 3.2: those of each triangle and of its edges are: closed control volumes. */
-    SmallestSphereAndEdges
+    Delaunay = vtkDelaunaySurfaceRefiner::Delaunay,
+    SmallestSphere = vtkDelaunaySurfaceRefiner::SmallestSphere,
+    SmallestSphereAndEdges = vtkDelaunaySurfaceRefiner::SmallestSphereAndEdges
   };
 
   ///@{

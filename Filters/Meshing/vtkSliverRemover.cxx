@@ -9,6 +9,7 @@
 #include "CoreBridge/Reports.h"
 #include "CoreBridge/Tuples.h"
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Improvement/SliverRemover.h"
 
 #include <vtkCellData.h>
@@ -32,10 +33,9 @@ SortedTetrahedra Sort(const cdm::RawVector<cdm::TetrahedronIds>& tetrahedra)
 {
   SortedTetrahedra sorted;
   sorted.reserve(tetrahedra.size());
-  for (cdm::TetrahedronIds ids : tetrahedra)
+  for (const cdm::TetrahedronIds& ids : tetrahedra)
   {
-    std::sort(ids.begin(), ids.end());
-    sorted.emplace_back(ids, static_cast<vtkIdType>(sorted.size()));
+    sorted.emplace_back(cdm::Sorted(ids), static_cast<vtkIdType>(sorted.size()));
   }
   std::sort(sorted.begin(), sorted.end());
   return sorted;
@@ -55,8 +55,7 @@ std::vector<vtkIdType> FindSurvivors(const cdm::RawVector<cdm::TetrahedronIds>& 
       sources[i] = static_cast<vtkIdType>(i);
       continue;
     }
-    cdm::TetrahedronIds ids = after[i];
-    std::sort(ids.begin(), ids.end());
+    const cdm::TetrahedronIds ids = cdm::Sorted(after[i]);
     const auto found =
       std::lower_bound(sorted.begin(), sorted.end(), std::make_pair(ids, vtkIdType(-1)));
     if (found != sorted.end() && found->first == ids)

@@ -57,6 +57,7 @@
 #define vtkSteinerPointRefiner_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkDelaunaySurfaceRefiner.h"
 #include <vtkUnstructuredGridAlgorithm.h>
 
 class CDMMESHING_EXPORT vtkSteinerPointRefiner : public vtkUnstructuredGridAlgorithm
@@ -66,12 +67,11 @@ public:
   vtkTypeMacro(vtkSteinerPointRefiner, vtkUnstructuredGridAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  /** See vtkDelaunaySurfaceRefiner::Criteria. */
   enum Criteria
   {
-    /** Criterion 3.1: the smallest sphere of each triangle is empty. */
-    SmallestSphere = 1,
-    /** Criterion 3.2: those of each triangle and of its edges are: closed control volumes. */
-    SmallestSphereAndEdges
+    SmallestSphere = vtkDelaunaySurfaceRefiner::SmallestSphere,
+    SmallestSphereAndEdges = vtkDelaunaySurfaceRefiner::SmallestSphereAndEdges
   };
 
   ///@{

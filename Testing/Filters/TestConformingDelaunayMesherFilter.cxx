@@ -481,7 +481,7 @@ TEST(ConformingDelaunayMesherFilter, GeneratesMeshPoints)
 
   // A layer nearer than the clearance is dropped, with a warning, unless that is lowered.
   filter->RemoveAllLayers();
-  filter->SetPlacement(3);
+  filter->SetPlacement(vtkMeshPointGenerator::NONE);
   filter->AddLayers(3, 7, 1, 0.001, 1.0);
   filter->Update();
   EXPECT_TRUE(Contains(recorder->Warnings, "MeshPointClearanceRatio"));

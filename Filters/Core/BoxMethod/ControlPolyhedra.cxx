@@ -189,8 +189,7 @@ void PolyhedronMaker::CollectBorders()
         this->BorderIndices[neighbor] = this->BorderIndices[4 * i + facet];
       }
       this->BorderFacets.push_back(4 * i + facet);
-      TriangleIds ids = GetFacet(this->Mesh.Tetrahedra[i], facet);
-      std::sort(ids.begin(), ids.end());
+      const TriangleIds ids = Sorted(GetFacet(this->Mesh.Tetrahedra[i], facet));
       this->BorderEdges.push_back({ ids[0], ids[1] });
       this->BorderEdges.push_back({ ids[1], ids[2] });
       this->BorderEdges.push_back({ ids[0], ids[2] });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Delaunay/PartRegions.h"
 
+#include "Core/Basics/SortedIds.h"
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -9,12 +10,6 @@ namespace cdm
 {
 namespace
 {
-TriangleIds Sort(TriangleIds ids)
-{
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
-
 /** Whether two orders of the same three points turn the same way. */
 bool TurnAlike(const TriangleIds& s, const TriangleIds& t)
 {
@@ -37,7 +32,7 @@ Status PartRegions::FindFacets()
   std::vector<char> isOnSurface(this->Mesh.Points.size(), 0);
   for (std::size_t i = 0; i < this->Triangles.size(); ++i)
   {
-    places.emplace_back(Sort(this->Triangles[i]), static_cast<Id>(i));
+    places.emplace_back(Sorted(this->Triangles[i]), static_cast<Id>(i));
     for (Id point : this->Triangles[i])
     {
       isOnSurface[point] = 1;
@@ -54,8 +49,8 @@ Status PartRegions::FindFacets()
         continue;
       }
       const auto place =
-        std::lower_bound(places.begin(), places.end(), std::make_pair(Sort(facet), Id(0)));
-      if (place != places.end() && place->first == Sort(facet))
+        std::lower_bound(places.begin(), places.end(), std::make_pair(Sorted(facet), Id(0)));
+      if (place != places.end() && place->first == Sorted(facet))
       {
         // The tetrahedron lies behind its outward facet.
         const bool isInFront = !TurnAlike(this->Triangles[place->second], facet);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/SteinerPointChecks.h"
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Certificate/MeshCertificate.h"
 #include "Core/Meshes/MeshBoundary.h"
 #include "Core/Meshes/MeshInvariants.h"
@@ -35,7 +36,7 @@ Status CheckMesh(const SteinerPointRefinerInput& input, int threads)
     return Status::InvalidInput(std::to_string(outside.size()) +
         " tetrahedra have a negative region id, which stands for the outside; number the regions "
         "from 0 on.",
-      std::move(outside));
+      outside);
   }
   std::vector<Id> wrong;
   for (Id p = 0; p < static_cast<Id>(input.NewPoints.size()); ++p)
@@ -48,7 +49,7 @@ Status CheckMesh(const SteinerPointRefinerInput& input, int threads)
   return wrong.empty() ? Status()
                        : Status::InvalidInput(std::to_string(wrong.size()) +
                              " points to be inserted have coordinates that are not finite.",
-                           {}, std::move(wrong));
+                           {}, wrong);
 }
 
 /** The triangles given have to be all facets between regions, and besides them only facets. */
@@ -66,22 +67,17 @@ Status CheckBoundary(const SteinerPointRefinerInput& input)
     return Status::InvalidInput("The boundary needs the points of the mesh, in the same order, and "
                                 "labels: use the one that belongs to it.");
   }
-  const auto sort = [](TriangleIds ids)
-  {
-    std::sort(ids.begin(), ids.end());
-    return ids;
-  };
   std::vector<std::pair<TriangleIds, Id>> facets;
   for (Id t = 0; t < static_cast<Id>(boundary.Triangles.size()); ++t)
   {
-    facets.emplace_back(sort(boundary.Triangles[t]), t);
+    facets.emplace_back(Sorted(boundary.Triangles[t]), t);
   }
   std::sort(facets.begin(), facets.end());
   const auto find = [&](const TriangleIds& ids)
   {
     const auto found =
-      std::lower_bound(facets.begin(), facets.end(), std::pair<TriangleIds, Id>(sort(ids), NoId));
-    return found != facets.end() && found->first == sort(ids) ? found->second : NoId;
+      std::lower_bound(facets.begin(), facets.end(), std::pair<TriangleIds, Id>(Sorted(ids), NoId));
+    return found != facets.end() && found->first == Sorted(ids) ? found->second : NoId;
   };
   std::vector<char> isFacet(boundary.Triangles.size(), 0);
   std::size_t missing = 0;
@@ -120,7 +116,7 @@ Status CheckBoundary(const SteinerPointRefinerInput& input)
     : Status::InvalidInput(std::to_string(cells.size()) +
           " triangles of the boundary are no facets of the mesh: use the one that "
           "belongs to it, or none.",
-        std::move(cells));
+        cells);
 }
 } // namespace
 

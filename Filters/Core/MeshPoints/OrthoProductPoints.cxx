@@ -90,7 +90,7 @@ std::vector<double> FindTicks(const SizingOctree& octree, const MeshPointPlacer&
     return ticks;
   }
   std::size_t part = 1;
-  for (double i = 0.0; i < number; i += 1.0)
+  for (Id i = 0; i < static_cast<Id>(number); ++i)
   {
     const double count = i / number * all;
     while (part + 1 < counts.size() && counts[part].Count < count)

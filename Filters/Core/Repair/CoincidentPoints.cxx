@@ -52,8 +52,8 @@ bool MergeNearPoints(const std::vector<Vec3>& points, double tolerance,
     Id found = NoId;
     for (int k = 0; k < 27; ++k)
     {
-      const auto cell =
-        grid.find({ home[0] + k % 3 - 1, home[1] + k / 3 % 3 - 1, home[2] + k / 9 - 1 });
+      const int steps[3] = { k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1 };
+      const auto cell = grid.find({ home[0] + steps[0], home[1] + steps[1], home[2] + steps[2] });
       if (cell == grid.end())
       {
         continue;

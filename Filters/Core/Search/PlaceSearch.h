@@ -14,6 +14,7 @@
 
 #include "Core/Basics/Vec3.h"
 
+#include <array>
 #include <vector>
 
 namespace cdm
@@ -52,7 +53,8 @@ inline std::vector<Vec3> MakeCubeDirections()
   {
     if (i != 13)
     {
-      directions.push_back({ i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0 });
+      const std::array<int, 3> cell{ i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1 };
+      directions.push_back({ double(cell[0]), double(cell[1]), double(cell[2]) });
     }
   }
   return directions;

@@ -99,7 +99,7 @@ Status CheckSurface(const TriangleMesh& surface)
     return Status::InvalidInput(std::to_string(badTriangles.size()) +
         " triangles refer to points that do not exist, or to the same point twice: run the "
         "boundary triangulator first.",
-      std::move(badTriangles));
+      badTriangles);
   }
   return {};
 }
