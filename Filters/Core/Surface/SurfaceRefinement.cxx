@@ -37,7 +37,7 @@ SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
   const std::vector<StructuralEdge>& edges, const std::vector<Vec3>& meshPoints,
   const DelaunaySurfaceRefinerOptions& options, SizingField sizing, bool isSaturated,
   SurfaceRefinementPlan plan)
-  : Options(options), Plan(std::move(plan)), Points(surface.Points),
+  : Options(options), Plan(plan), Points(surface.Points),
     NumberOfSurfacePoints(static_cast<Id>(surface.Points.size())),
     Diagonal(GetBoundingBoxDiagonal(surface.Points)),
     Flatness(options.StructuralEdges.FlatnessRatio * this->Diagonal),

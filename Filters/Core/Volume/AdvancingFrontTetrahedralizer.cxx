@@ -239,8 +239,7 @@ Status AdvancingFront::TetrahedralizePoints()
     [this, infinite](std::size_t t)
     {
       const TetrahedronIds& ids = this->All.Tetrahedra[t];
-      const bool isBeyondHull = (ids[0] != NoId) &
-        ((ids[0] == infinite) | (ids[1] == infinite) | (ids[2] == infinite) | (ids[3] == infinite));
+      const bool isBeyondHull = ids[0] != NoId && Contains(ids, infinite);
       this->States[t] = isBeyondHull ? BeyondHull : Unreached;
     });
   return status;

@@ -350,9 +350,9 @@ cdm::Status ToFacets(
   vtkDataArray* array = nullptr;
   const cdm::Status status = FindScalars(
     input->GetCellData(), StructuralFacetIdName, "cell", input->GetNumberOfCells(), array);
-  for (const vtkIdType cell : array ? cells : std::vector<vtkIdType>())
+  for (std::size_t i = 0; array && i < cells.size(); ++i)
   {
-    facets.push_back(static_cast<cdm::Id>(array->GetComponent(cell, 0)));
+    facets.push_back(static_cast<cdm::Id>(array->GetComponent(cells[i], 0)));
   }
   return status;
 }
