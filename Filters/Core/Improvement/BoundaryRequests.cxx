@@ -32,7 +32,7 @@ bool BoundaryRequests::MayHavePoint(const Ids& ids, double distance) const
   return std::all_of(ids.begin(), ids.end(), [&](Id id) { return this->Rule(id, distance); });
 }
 
-/** False if it may not be split. */
+/** Requests an edge to be split. False if it may not be split. */
 bool BoundaryRequests::AddEdge(Id edge, bool isDistanceKept)
 {
   const EdgeIds& ends = this->SurfaceEdges[edge].Points;
@@ -49,7 +49,7 @@ bool BoundaryRequests::AddEdge(Id edge, bool isDistanceKept)
   return true;
 }
 
-/** Not if it is NoId. */
+/** Requests a triangle to be split; does nothing for NoId. */
 void BoundaryRequests::AddTriangle(Id triangle)
 {
   if (triangle != NoId && !this->IsTriangleRequested[triangle])
@@ -168,7 +168,7 @@ void BoundaryRequests::AddLargestTriangle(const TetrahedronIds& ids, const IdLis
   this->AddLargest(triangles);
 }
 
-/** Of those that may be split. */
+/** Requests the largest of the triangles that may be split. */
 void BoundaryRequests::AddLargest(const std::vector<Id>& triangles)
 {
   double largest = 0.0;

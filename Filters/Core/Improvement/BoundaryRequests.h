@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundaryRequests.h
- * @brief What of the boundary is to be split for tetrahedra that no point inside mends.
+ * @brief Requests to split the boundary, for tetrahedra that no interior point can improve.
  *
- * An edge of the boundary, or one of its triangles, each at most once, and only if its ends or
- * corners may have a new point that close to them.
+ * A request names an edge or a triangle of the boundary. Each is requested at most once, and only
+ * if a new point may come as close to its corners as the split would put it.
  *
  * Reference: J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998,
  * doi:10.1145/276884.276894 (what is split instead of a point that it keeps out).
@@ -25,31 +25,31 @@ namespace cdm
 class BoundaryRequests
 {
 public:
-  /** Whether a new point may come to a point of the surface at a distance. */
+  /** Whether a new point may be this close to a point of the surface. */
   using DistanceRule = std::function<bool(Id point, double distance)>;
 
   /** Surface and edges have to outlive the object. */
   BoundaryRequests(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
     DistanceRule mayHavePoint);
 
-  /** Nothing is requested any more; the surface may be another one. */
+  /** Forgets all requests. The surface may be another one from then on. */
   void Clear();
 
   /**
-   * What the position disturbs most; edges before triangles.
-   * @param isDistanceKept whether the rule is asked
+   * Requests the edge, or if there is none the triangle, on which the position encroaches most.
+   * @param isDistanceKept whether the distance rule applies
    */
   void AddDisturbed(
     const Vec3& position, const BoundarySpheres::Disturbed& disturbed, bool isDistanceKept);
   /**
-   * Where two triangles of the boundary that lie almost in a plane have a common circumcircle,
-   * almost, they share a flat tetrahedron. No point inside destroys it; a point on their edge does.
-   * @return whether that is so
+   * Two boundary triangles that are nearly coplanar and nearly cocircular share a flat tetrahedron.
+   * No interior point destroys it, but a point on their common edge does.
+   * @return whether the tetrahedron is such a one; then the edge is requested
    */
   bool AddEdgeOfTwoTriangles(const TetrahedronIds& ids, const IdLists& pointTriangles);
-  /** An edge of the boundary, or the largest triangle at it if it is within a facet. */
+  /** Requests an edge of the boundary; if it lies within a facet, the largest triangle at it. */
   void AddEdgeOrTriangle(const EdgeIds& ends, const IdLists& pointTriangles);
-  /** The largest triangle at the tetrahedron's points on the boundary that may be split. */
+  /** Requests the largest boundary triangle at the tetrahedron's points that may be split. */
   void AddLargestTriangle(const TetrahedronIds& ids, const IdLists& pointTriangles);
 
   std::size_t GetNumber() const { return this->Triangles.size() + this->Edges.size(); }

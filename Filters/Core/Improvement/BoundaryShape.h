@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundaryShape.h
- * @brief What follows for tetrahedra from the boundary of their mesh as it is: smallest spheres
- * that stay empty, sharp angles and thin layers.
+ * @brief What tetrahedra have to respect in the current boundary: smallest spheres that stay empty,
+ * sharp angles and thin layers.
  */
 #ifndef cdmBoundaryShape_h
 #define cdmBoundaryShape_h
@@ -18,21 +18,21 @@
 
 namespace cdm
 {
-/** It stays where it is: some of it refers to other parts. */
+/** Cannot be copied or moved: some members refer to others. */
 struct BoundaryShape
 {
   /**
-   * All outlive the object.
-   * @param edges structural ones, sorted
-   * @param keptEdges those whose smallest spheres stay empty
+   * The arguments have to outlive the object.
+   * @param edges structural edges, sorted
+   * @param keptEdges structural edges whose smallest spheres stay empty
    * @param sharpPlaneAngle degrees, see SharpAngles
    */
   BoundaryShape(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
     const std::vector<StructuralEdge>& keptEdges, double sharpPlaneAngle);
   /**
-   * After some triangles have been split. Tetrahedra that stay are in the same sharp angles and
-   * thin layers.
-   * @param parents of each triangle, one that was in its facet before
+   * The shape after some triangles have been split. Tetrahedra that stay are in the same sharp
+   * angles and thin layers as before.
+   * @param parents for each triangle one of the coarse surface in the same surface facet
    */
   BoundaryShape(BoundaryShape&& coarse, const TriangleMesh& surface,
     const std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges,

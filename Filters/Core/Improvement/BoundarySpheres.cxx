@@ -8,7 +8,10 @@ namespace cdm
 {
 namespace
 {
-/** What the exact test has to see: the centers and radii of the balls are rounded. */
+/**
+ * Balls are enlarged by this, as their centers and radii are rounded: the exact test has to see all
+ * candidates.
+ */
 constexpr double Margin = 1.0 + 1e-6;
 } // namespace
 

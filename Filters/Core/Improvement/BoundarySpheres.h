@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundarySpheres.h
- * @brief Which triangles and structural edges of a surface a new point would disturb.
+ * @brief Finds the triangles and structural edges of a surface on which a new point would encroach.
  *
- * A point disturbs a triangle or an edge if it lies in its smallest sphere or on it (Crit. 3.1 and
- * 3.2; "encroaches" in the literature on Delaunay refinement). If no point does, all of them stay
- * part of the Delaunay mesh.
+ * A point encroaches on a triangle or an edge if it lies in its smallest sphere or on it (Crit. 3.1
+ * and 3.2). The smallest sphere of an edge is its diametral sphere, that of a triangle its
+ * equatorial sphere; a simplex whose smallest sphere is empty has the Gabriel property. Names of
+ * functions and the thesis say "disturb" for encroach. If no point encroaches on them, all
+ * triangles and edges stay part of the Delaunay mesh.
  *
  * Exact. Cost: O(1) for a point, in cells of BallIndex.h; about 100 bytes per triangle and edge.
  */
@@ -23,10 +25,10 @@ namespace cdm
 class BoundarySpheres
 {
 public:
-  /** Both have to outlive the object. */
+  /** Surface and edges have to outlive the object. */
   BoundarySpheres(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges);
 
-  /** What a point disturbs: triangles and edges by their indices, ascending. */
+  /** The triangles and edges on which a point encroaches, by their indices, ascending. */
   struct Disturbed
   {
     std::vector<Id> Triangles;
@@ -39,7 +41,7 @@ public:
 private:
   const TriangleMesh& Surface;
   const std::vector<StructuralEdge>& Edges;
-  /** Triangles, then edges. */
+  /** Balls around triangles, then around edges, a little too large. */
   BallIndex Balls;
   std::vector<Id> Near;
 };

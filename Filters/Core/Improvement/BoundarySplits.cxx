@@ -53,7 +53,7 @@ BoundarySplits::BoundarySplits(DynamicTetrahedralization& mesh, Id firstInside,
   this->ListEdges();
 }
 
-/** Those that have come, moved or gone since the last run. */
+/** Tells the refinement which points have come, moved or gone since the last run. */
 Status BoundarySplits::FollowPoints(const ExecutionContext& context)
 {
   const std::vector<Vec3>& points = this->Refinement.GetPoints();
@@ -166,7 +166,7 @@ TriangleIds BoundarySplits::Translate(const TriangleIds& refined) const
     this->SurfacePoints[refined[2]] };
 }
 
-/** To make the mesh fit the refined surface. False if that cannot be done; then nothing changes. */
+/** Makes the mesh fit the refined surface. False if that is impossible; then nothing changes. */
 bool BoundarySplits::Update()
 {
   const std::vector<Vec3>& refined = this->Refinement.GetPoints();
@@ -207,7 +207,7 @@ bool BoundarySplits::Update()
   return true;
 }
 
-/** What has changed in the surface. */
+/** Collects the triangles of the surface that have changed. */
 void BoundarySplits::CollectTriangles(const std::vector<Id>& touched)
 {
   const Id count = static_cast<Id>(this->Surface.Triangles.size());
@@ -236,7 +236,8 @@ void BoundarySplits::CollectTriangles(const std::vector<Id>& touched)
       this->Vanished.push_back(Sorted(this->Surface.Triangles[t]));
     }
   }
-  // Flips may have brought triangles to other places.
+  // A flip sequence may leave a triangle under another index: it has neither vanished nor been
+  // made.
   SortUnique(this->Made);
   SortUnique(this->Vanished);
   std::vector<TriangleIds> both;
@@ -249,11 +250,14 @@ void BoundarySplits::CollectTriangles(const std::vector<Id>& touched)
     std::remove_if(this->Vanished.begin(), this->Vanished.end(), isInBoth), this->Vanished.end());
 }
 
-/** The facets that are a triangle of the surface, as part of Sides. False if there are none. */
+/**
+ * Finds the tetrahedron facets that are this triangle, and adds them to Sides. False if there are
+ * none.
+ */
 bool BoundarySplits::FindSides(const TriangleIds& ids)
 {
-  // Tetrahedra at a point hang together across facets, but where outer facets meet in an edge only.
-  // New points have fewer of them than corners of the input, which may have thousands.
+  // Tetrahedra at a point are connected across facets, unless outer facets meet in an edge only.
+  // New points come first: they have few tetrahedra, while corners of the input may have thousands.
   const TetMesh& mesh = this->Mesh.GetMesh();
   for (auto point = ids.rbegin(); point != ids.rend(); ++point)
   {
@@ -290,8 +294,8 @@ bool BoundarySplits::FindSides(const TriangleIds& ids)
 }
 
 /**
- * To the cavity, if it has a point, or another position is in or on its sphere, and this search is
- * the first to ask.
+ * Adds the tetrahedron to the cavity if it has the point or if its closed circumsphere holds the
+ * position, unless this search has looked at it before.
  */
 void BoundarySplits::Visit(Id tetrahedron, Id point, const Vec3& position)
 {
@@ -387,13 +391,13 @@ bool BoundarySplits::CollectConflicts(
   return true;
 }
 
-/** Of a new triangle, turned in any way. */
+/** The region in front of a new triangle, whose points are given in either orientation. */
 Id BoundarySplits::GetRegionInFront(const TriangleIds& ids) const
 {
   const TriangleIds key = Sorted(ids);
   const auto triangle = std::find_if(this->Triangles.begin(), this->Triangles.end(),
     [&key](const NewTriangle& other) { return Sorted(other.Ids) == key; });
-  // The same turn has each point follow the same one.
+  // Orientations are equal if each point is followed by the same one.
   const TriangleIds& others = triangle->Ids;
   const auto first = std::find(others.begin(), others.end(), ids[0]) - others.begin();
   return others[(first + 1) % 3] == ids[1] ? triangle->Labels.Front : triangle->Labels.Back;
@@ -549,7 +553,7 @@ void BoundarySplits::Adopt(const std::vector<Vec3>& points)
   }
 }
 
-/** As the refinement has them, sorted. */
+/** Lists the structural edges of the refinement, sorted, with their segments. */
 void BoundarySplits::ListEdges()
 {
   const RefinableSurface& refined = this->Refinement.GetSurface();

@@ -5,7 +5,7 @@
  *
  * Method, for one triangle or edge after the other:
  *  1. the surface is refined (SurfaceRefinement.h) until it fulfils its criterion again; diagonals
- *     of points on one circle turn as the pulling rule has them;
+ *     of cocircular points are flipped to those of the pulling rule;
  *  2. all tetrahedra in conflict with its new points, whatever their region, leave a cavity; it is
  *     filled anew (CavityFilling.h), the surface's new triangles and the interfaces that stay being
  *     walls.
@@ -33,22 +33,24 @@ class BoundarySplits
 public:
   /**
    * All have to outlive the object.
-   * @param mesh has the surface's points first, then places for new ones, then points inside
-   * @param firstInside of the mesh's points
+   * @param mesh has the surface's points first, then reserved ids for new ones, then interior
+   *   points
+   * @param firstInside id of the first interior point
    * @param surface all outer and interface facets of the mesh; with labels and source cells
-   * @param edges structural ones, sorted
-   * @param options those that have made the surface
+   * @param edges structural edges, sorted
+   * @param options those that the surface was refined with
    */
   BoundarySplits(DynamicTetrahedralization& mesh, Id firstInside, TriangleMesh& surface,
     std::vector<StructuralEdge>& edges, const DelaunaySurfaceRefinerOptions& options,
     const SizingField& sizing);
 
   /**
-   * Splits what it is given. Before that, points inside may have come and gone, and points of the
-   * surface may have been moved, in the surface or in both: the mesh follows. Triangles that have a
-   * new point at them by then, and edges that are split, are left out. The lists keep what is left,
-   * with the one that failed, if the mesh has to be made anew: there is no place for more points,
-   * or rounding has made something that does not fit; then the object is good for nothing more.
+   * Splits the given triangles and edges. First the mesh follows points that have changed since the
+   * last run: interior points that have come or gone, and points of the surface that were moved, in
+   * the surface or in both. Triangles that have got a new point at them by then, and edges that are
+   * split already, are left out. If the mesh has to be made anew, the lists keep what is left,
+   * beginning with the split that failed. That happens when no reserved id is left, or when
+   * rounding has made something that does not fit. The object cannot be used any more then.
    */
   Status Run(
     std::vector<Id>& triangles, std::vector<EdgeIds>& edges, const ExecutionContext& context);
@@ -58,7 +60,7 @@ public:
   const std::vector<Id>& GetChanged() const { return this->Changed; }
 
 private:
-  /** A triangle of the surface as it is to be. */
+  /** A triangle of the surface after the split. */
   struct NewTriangle
   {
     Id Index;
@@ -87,9 +89,9 @@ private:
   std::vector<StructuralEdge>& Edges;
   SurfaceRefinement Refinement;
   bool CanGoOn = true;
-  /** Of the surface when the object was made. */
+  /** SourceCells of the surface when the object was made. */
   const std::vector<Id> SourceCells;
-  /** Segment of each edge. */
+  /** For each structural edge its segment in the refinement. */
   std::vector<Id> Segments;
   /** Point of the refinement for each point inside, or NoId. */
   std::vector<Id> RefinementPoints;
@@ -101,7 +103,7 @@ private:
 
   /** Work space of one split. */
   std::vector<NewTriangle> Triangles;
-  /** Sorted: triangles that are there no longer, and new ones. */
+  /** Points of triangles that are no longer there, and of new ones; each sorted. */
   std::vector<TriangleIds> Vanished;
   std::vector<TriangleIds> Made;
   /** Facets of tetrahedra at vanished triangles; the tetrahedra that are replaced. */
@@ -114,9 +116,12 @@ private:
   std::vector<Id> Open;
   Cavity Around;
   std::vector<Id> Outer;
-  /** Facets of tetrahedra beyond the cavity that are outer ones now. */
+  /** Facets of tetrahedra beyond the cavity that have become outer ones. */
   std::vector<Id> Bared;
-  /** Of each wall, sorted: a region that has to be at it, and one that is. */
+  /**
+   * For each wall, by its sorted points: a region that has to be at it, and one that was found
+   * there.
+   */
   std::vector<std::pair<TriangleIds, Id>> WallRegions;
   std::vector<std::pair<TriangleIds, Id>> FoundRegions;
   CavityFilling Filling;

@@ -11,15 +11,17 @@ namespace cdm
 {
 namespace
 {
-/** The first radius of a search, in limits; the next ones are four times as large. */
+/** The first radius of a search, in units of the limit; each next one is four times as large. */
 constexpr double FirstRadius = 1.0 / 64.0;
 /**
- * In limits: features closer to each other are a strip or a layer that nobody fills with well
- * shaped elements.
+ * Smallest size, in units of the limit. Features closer to each other bound a strip or a layer that
+ * nobody fills with well shaped elements.
  */
 constexpr double SmallestSize = 0.01;
 
-/** Where so many features touch each other, as at the tip of a cone, others do not matter. */
+/**
+ * Give up where this many features touch each other, as at the tip of a cone: others do not matter.
+ */
 constexpr std::size_t MostTouching = 256;
 
 double GetDistance(const Vec3& position, const Vec3& a, const Vec3& b)
@@ -109,7 +111,7 @@ double FeatureSizes::GetDistanceTo(Id part, const Vec3& position) const
     position, this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]);
 }
 
-/** Of two features. */
+/** Whether two features have no common point. */
 bool FeatureSizes::AreDisjoint(Id a, Id b) const
 {
   const Id first = static_cast<Id>(this->Edges.size());

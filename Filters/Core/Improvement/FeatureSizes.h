@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FeatureSizes.h
- * @brief How close structural edges and facets come to each other that do not touch.
+ * @brief Local feature size: how close structural edges and facets without a common point come to
+ * each other.
  *
- * At a point: the radius of the smallest ball around it that touches two edges, two facets, or an
- * edge and a facet, without a common point. That is the local feature size of the literature on
- * Delaunay refinement; it tells how small the elements have to be there, however far away all
- * corners are: in the middle of a layer as small as it is thick.
+ * The local feature size of a point is the radius of the smallest ball around it that touches two
+ * features (structural edges or surface facets) without a common point (thesis Def. 2.1). It tells
+ * how small elements have to be there, even where all corners are far away: in the middle of a
+ * layer they are as small as the layer is thick.
  *
  * Cost: O(n log n) to build, 100 bytes per edge and triangle; a query visits what lies
  * within four times its result, and compares 256 features at most.
@@ -28,13 +29,13 @@ namespace cdm
 class FeatureSizes
 {
 public:
-  /** @param facets one for each triangle, as from NumberFacets() */
+  /** @param facets the surface facet of each triangle, as from NumberFacets() */
   FeatureSizes(const std::vector<Vec3>& points, const std::vector<TriangleIds>& triangles,
     const std::vector<Id>& facets, const std::vector<StructuralEdge>& edges);
 
   /**
-   * At most the limit; features closer than a hundredth of it are left out. The limit, too, where
-   * 256 features touch each other.
+   * The local feature size at a position, at most the limit. Features closer than a hundredth of
+   * the limit are left out. If 256 features touch each other, the result is the limit.
    */
   double Find(const Vec3& position, double limit) const;
 

@@ -16,12 +16,13 @@ namespace cdm
 namespace
 {
 /**
- * How far from the plane and the circle a fourth point may lie, in radii: far more than rounding.
+ * A fourth point is cocircular if it is this close to the plane and the circle, in radii: far more
+ * than rounding.
  */
 constexpr double RoundingRatio = 1e-8;
 /** Cells whose centers are closer, in radii, are one degenerate cell. */
 constexpr double SameCellRatio = 1e-3;
-/** How far a point moves at most along each axis, in units in the last place. */
+/** Largest move along each axis, in units in the last place. */
 constexpr int MaximumSteps = 4;
 /** Distance of a sphere's center from the span of the others, in lengths of it, that is enough. */
 constexpr double EnoughMargin = 1.0;
@@ -218,8 +219,8 @@ std::array<bool, 3> PointRounding::FindFreeAxes(Id point) const
 }
 
 /**
- * How far the centers of the spheres through the quadrangles and the position are at least from the
- * span of the cells' centers, in lengths of that; not positive if a flat tetrahedron fits in.
+ * Distance of the spheres' centers from the span of the two cells' centers, in lengths of that
+ * span: the smallest over all quadrangles. Not positive if a flat tetrahedron fits in.
  */
 double PointRounding::Rate(const Vec3& position, const std::vector<Quadrangle>& quadrangles)
 {

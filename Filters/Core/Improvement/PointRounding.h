@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointRounding.h
- * @brief Other last digits for points of a surface, with which no tetrahedron is flat.
+ * @brief Perturbs the last bits of surface points to remove numerically flat tetrahedra.
  *
- * In a device that is turned, points that lie in one plane and on one circle as drawn do so only to
- * rounding. If they are corners of two cells that are degenerate but for that, these may choose
- * different diagonals of the quadrangle in between, and only a flat tetrahedron fits there. It is
- * Delaunay if the center of its circumsphere lies between those of the two cells: that is chance,
- * decided by the last digits. A point that was computed to lie on the surface has no right last
- * digits. So another one of the positions around it is taken, such that for each quadrangle of the
- * point the sphere's center lies well outside of what the centers of both sides span. This takes a
- * few units in the last place, whatever the facet or edge that the point lies on. A coordinate
- * that the facets across an axis have in common stays exact.
+ * In a rotated device, points that were drawn in one plane and on one circle are so only up to
+ * rounding. The quadrangle of four such points may lie between two cells that are degenerate but
+ * for rounding. If the cells choose different diagonals of it, only a flat tetrahedron fits in
+ * between. That tetrahedron is Delaunay if the center of its circumsphere lies between the centers
+ * of the two cells, which the last bits of the coordinates decide by chance.
  *
- * Floating point: which position is the better one is no question of topology.
+ * A point that was computed to lie on the surface has no true last bits. So a nearby position is
+ * taken, such that for each quadrangle at the point the center of the sphere lies well outside of
+ * the span of the two cells' centers. A change of a few units in the last place is enough, whatever
+ * facet or edge the point lies on. A coordinate stays exact if a facet at the point lies across
+ * that axis.
+ *
+ * Positions are rated in floating point: the choice does not decide topology.
  * Deterministic. Cost: O(n) for n tetrahedra, and a few hundred positions for each flat one.
  */
 #ifndef cdmPointRounding_h
@@ -33,29 +35,30 @@ class PointRounding
 {
 public:
   /**
-   * @param mesh has the surface's points first; places whose tetrahedron is gone have the vertex
-   * NoId
+   * @param mesh has the surface's points first; dead tetrahedra have the vertex NoId
    * @param flat tetrahedra that are flat but for rounding, of points of the surface
    */
   PointRounding(const TetMesh& mesh, const TriangleMesh& surface, const std::vector<Id>& flat);
 
   /**
    * Moves at most one point of each flat tetrahedron.
-   * @param isFree one for each point of the surface: whether it may be moved
-   * @param points of the surface, which get their new places
+   * @param isFree for each point of the surface: whether it may be moved
+   * @param points of the surface, which are moved
    */
   void Move(const std::vector<char>& isFree, std::vector<Vec3>& points) const;
 
 private:
-  /** Three other points of a plane and a circle that a point lies on, too, but for rounding. */
+  /**
+   * Three points that lie in one plane and on one circle with the moved point, but for rounding.
+   */
   struct Quadrangle
   {
     Vec3 Corner;
-    /** From the corner to the center of the circle; of length one and across the plane. */
+    /** From the corner to the center of the circle; and the unit normal of the plane. */
     WideVec3 Center;
     WideVec3 Normal;
     /**
-     * Where along the normal, from the circle's center on, the centers of the adjacent cells lie.
+     * Centers of the two adjacent cells, as positions along the normal from the circle's center.
      */
     double Low = 0.0;
     double High = 0.0;

@@ -17,12 +17,12 @@ namespace
 /** Degrees: tetrahedra of boundary points with a smaller angle are flat but for rounding. */
 constexpr double FlatAngle = 1e-6;
 /**
- * What is left of a point's size between it and a new one. With a tenth more slivers are left, with
- * less, more at needles in the surface.
+ * A new point keeps this part of a point's size as its distance. A larger part (a tenth) leaves
+ * more slivers, a smaller one leaves more of them at needles of the surface.
  */
 constexpr double SizeRatio = 0.05;
 
-/** Places for more points after the first ones, which no tetrahedron has. */
+/** Inserts reserved point ids, which no tetrahedron uses, before the point first. */
 TetMesh ReservePoints(TetMesh mesh, std::size_t first, Id reserve)
 {
   if (reserve > 0)
@@ -39,7 +39,7 @@ TetMesh ReservePoints(TetMesh mesh, std::size_t first, Id reserve)
   return mesh;
 }
 
-/** One triangle of each source cell. */
+/** For each source cell one triangle that comes from it. */
 std::vector<Id> ListSourceTriangles(const TriangleMesh& surface)
 {
   const std::vector<Id>& sources = surface.SourceCells;
@@ -359,7 +359,7 @@ bool RefinedMesh::IsClear(const Vec3& position) const
 
 bool RefinedMesh::DisturbsBoundary(const Vec3& position)
 {
-  // What would be disturbed is part of the hole.
+  // An encroached boundary triangle has its corners at the cavity.
   const bool isNear = std::any_of(this->Hole.Facets.begin(), this->Hole.Facets.end(),
     [&](const TriangleIds& facet)
     { return *std::min_element(facet.begin(), facet.end()) < this->FirstInside; });
@@ -372,9 +372,9 @@ bool RefinedMesh::DisturbsBoundary(const Vec3& position)
 }
 
 /**
- * Whether the hole ends at an outer facet that is no triangle of the surface: its smallest sphere
- * is not known to be empty, so a point on this side may be in conflict with what lies beyond, which
- * the mesh does not have.
+ * Whether the cavity ends at an outer facet that is no triangle of the surface. The smallest sphere
+ * of such a facet need not be empty. So a point on this side may be in conflict with points beyond,
+ * which the mesh does not know.
  */
 bool RefinedMesh::TouchesOpenFacet() const
 {

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RefinedMesh.h
- * @brief A mesh that gets Steiner points inside of its regions, and what they have to respect.
+ * @brief A Delaunay mesh that gets Steiner points inside of its regions, with the rules that these
+ * have to respect.
  *
- * The mesh has the points of its surface, then those inside. It is Delaunay; by the pulling rule it
- * stays if it is. The surface's triangles are those of its outer and interface facets whose
- * smallest spheres are empty, and stay so; points are put in only where no other outer facet is
- * near. The boundary itself changes in SplitBoundary() only.
+ * The mesh has the points of its surface first, then interior points. It stays Delaunay; if its
+ * cospherical sets are split by the pulling rule, they stay so. The surface consists of the outer
+ * and interface facets whose smallest spheres are empty, and these spheres stay empty. Points are
+ * inserted only where no other outer facet is near. The boundary changes only in SplitBoundary()
+ * and by moves of surface points (NoteSurfaceMove()).
  *
- * Each point has a size, the shortest edge at it before any shape was refined, or how close edges
- * and facets of the boundary come to each other there (FeatureSizes.h), and at most the size of
- * another point and the way from there; no point comes closer to it than a twentieth of that, but
- * for size limits. Sharp input angles would be refined for ever: a tetrahedron across one
- * (SharpAngles.h) is refined for its size only, as is one across a thin layer (ThinLayers.h).
+ * Each point has a size: the shortest edge at it before any shape was refined, or the local feature
+ * size (FeatureSizes.h) if that is smaller. It is at most the size of another point plus the
+ * distance from there. No point is inserted closer to it than a twentieth of its size, unless a
+ * size limit asks for it. Sharp input angles would be refined without end: a tetrahedron across one
+ * (SharpAngles.h) or across a thin layer (ThinLayers.h) is refined for its size only.
  *
- * What is done with it: VolumeRefinement.h, SliverPerturbation.h.
+ * VolumeRefinement.h and SliverPerturbation.h work on this mesh.
  */
 #ifndef cdmRefinedMesh_h
 #define cdmRefinedMesh_h
@@ -42,17 +44,17 @@ struct InteriorPoint
   double Size = 0.0;
   /** Whether it may be moved and removed. */
   bool IsFree = false;
-  /** Where it comes from, to the caller; NoId for new and moved points. */
+  /** The caller's id of the point; NoId for new and moved points. */
   Id Source = NoId;
-  /** See SliverMemory. */
+  /** Its name in SliverMemory. */
   Id Name = NoId;
 };
 
-/** The boundary that a mesh is refined for; all outlives the mesh. */
+/** The boundary that a mesh is refined for. The referenced objects have to outlive the mesh. */
 struct RefinedBoundary
 {
   TriangleMesh& Surface;
-  /** Structural ones of the surface, sorted; they change with the surface. */
+  /** Structural edges of the surface, sorted; they change with the surface. */
   std::vector<StructuralEdge>& Edges;
   /** Edges of the surface whose smallest spheres are empty, and stay so. */
   const std::vector<StructuralEdge>& KeptEdges;
@@ -62,11 +64,11 @@ struct RefinedMeshOptions
 {
   TetrahedronLimits Limits;
   Id MaximumNewPoints = 0;
-  /** So many points may be added to the surface by SplitBoundary(). */
+  /** Number of points that SplitBoundary() may add to the surface: their ids are reserved. */
   Id Reserve = 0;
-  /** Of structural edges, degrees: see SharpAngles. */
+  /** Plane angles between structural edges below this are sharp. Degrees; see SharpAngles. */
   double SharpPlaneAngle = UsualSharpPlaneAngle;
-  /** As InteriorPoint::Size, one for each point of the surface, or empty. */
+  /** Sizes as in InteriorPoint::Size, one for each point of the surface, or empty. */
   std::vector<double> SurfaceSizes;
 };
 
@@ -87,52 +89,59 @@ public:
   RefinedMesh(const RefinedMesh&) = delete;
   RefinedMesh& operator=(const RefinedMesh&) = delete;
 
-  /** One for each point of the surface: whether it has not been there, or has been elsewhere. */
+  /** Marks new and moved points: one entry for each point of the surface. */
   void NoteNewPoints(const std::vector<char>& isNew);
-  /** As InteriorPoint::Size, one for each point of the mesh. */
+  /** Sizes as in InteriorPoint::Size, one for each point of the mesh. */
   void SetSizes(const std::vector<double>& sizes);
-  /** As InteriorPoint::Size, of new points of the surface, from the first one on. */
+  /** Sizes as in InteriorPoint::Size for new points of the surface, from the first one on. */
   void SetSurfaceSizes(Id first, const std::vector<double>& sizes);
 
   /** The points that are in the mesh now. */
   std::vector<InteriorPoint> GetInterior() const;
   const TetMesh& GetMesh() const { return this->Mesh.GetMesh(); }
-  /** Without gaps: points are those of the surface, then those of GetInterior(). */
+  /**
+   * The mesh without dead tetrahedra and unused ids: points are those of the surface, then those of
+   * GetInterior().
+   */
   TetMesh MakeMesh() const;
   const RefinedMeshReport& GetReport() const { return this->Report; }
-  /** Whether it has got as many points as it may. */
+  /** Whether as many points have been inserted as allowed. */
   bool IsFull() const { return this->Report.InsertedPoints >= this->MaximumNewPoints; }
   const TetrahedronLimits& GetLimits() const { return this->Limits; }
   const RefinedBoundary& GetBoundary() const { return this->Boundary; }
-  /** Of the surface as it is. */
+  /** The shape of the current surface. */
   const BoundaryShape& GetShape() const { return *this->Shape; }
 
-  /** What is to be split in the boundary. */
+  /** The boundary triangles and edges that are requested to be split. */
   const BoundaryRequests& GetRequests() const { return this->Requests; }
   BoundaryRequests& GetRequests() { return this->Requests; }
-  /** What a point at the position disturbs most; false if it disturbs nothing. */
+  /**
+   * Requests a split of what a point at the position encroaches on most. False if it encroaches on
+   * nothing.
+   */
   bool RequestDisturbed(const Vec3& position, bool isSizeKept);
   /**
-   * Edges of the boundary with a negative coupling, or triangles at those within facets.
-   * @return how many edges there are, whether they may be split or not
+   * Requests splits of edges with a negative coupling, or of triangles at those within facets.
+   * @return number of edges with a negative coupling, whether they may be split or not
    */
   std::size_t RequestNegativeCouplings();
   /**
-   * Splits what is requested in the boundary, and whatever that disturbs, in the mesh itself.
-   * @param options those that have made the surface
-   * @return whether all is done: if not, the surface is as far as the mesh is, what is left is
-   *   still requested, and a new mesh has to be made; this object is good for nothing more
+   * Makes the requested splits of the boundary, and further ones that these need, in the mesh
+   * itself.
+   * @param options those that the surface was refined with
+   * @return whether all requests are done. If not, surface and mesh still fit each other, the
+   *   requests that are left stay, and a new mesh has to be made: this object cannot be used then
    */
   bool SplitBoundary(const DelaunaySurfaceRefinerOptions& options, const SizingField& sizing,
     const ExecutionContext& context, Status& status);
 
-  /** Not of the surface. */
+  /** Whether a point is none of the surface. */
   bool IsInside(Id point) const { return point >= this->FirstInside; }
-  /** Of a point inside: whether it may be moved and removed. */
+  /** Whether a point is an interior one that may be moved and removed. */
   bool IsFree(Id point) const;
-  /** How close a new point may come. */
+  /** Smallest distance at which a new point may come to this one. */
   double GetClearance(Id point) const;
-  /** The smallest dihedral one, in degrees. */
+  /** The smallest dihedral angle, in degrees. */
   double GetAngle(Id tetrahedron) const { return this->Facts.GetAngle(tetrahedron); }
   TetrahedronFault GetFault(Id tetrahedron, double& severity) const
   {
@@ -144,41 +153,42 @@ public:
     return this->Facts.IsAcrossSharp(tetrahedron, *this->Shape);
   }
   /**
-   * By rounding, as in turned devices: its points, which are all on the surface, would have no
-   * tetrahedron otherwise; more points on the surface would have more of the kind.
+   * Whether a tetrahedron is numerically flat, as happens in rotated devices. All its points are on
+   * the surface; more points on the surface would only make more such tetrahedra.
    */
   bool IsFlat(Id tetrahedron) const;
   std::vector<Id> FindFlatTetrahedra() const;
-  /** Of what is refined for. */
+  /** Whether the tetrahedron breaks a limit that it is refined for. */
   bool BreaksLimit(Id tetrahedron) const;
-  /** Of a tetrahedron that might be made; ids of points inside do not matter. */
+  /** The same for a tetrahedron that might be made; ids of interior points do not matter. */
   bool BreaksLimit(const TetrahedronIds& ids, const std::array<Vec3, 4>& corners) const;
 
-  /** The tetrahedra themselves. Who changes them says so by NoteChanges(), or undoes it. */
+  /** The tetrahedra themselves. Whoever changes them calls NoteChanges(), or undoes the change. */
   const DynamicTetrahedralization& GetTetrahedra() const { return this->Mesh; }
   DynamicTetrahedralization& GetTetrahedra() { return this->Mesh; }
   void NoteChanges();
-  /** Points of the surface have been moved in the mesh only: the surface will follow. */
+  /** Notes that surface points have been moved in the mesh only: the surface will follow. */
   void NoteSurfaceMove();
-  /** What is tried for a tetrahedron is remembered under its points' names, which are sorted. */
+  /** The sorted names of a tetrahedron's points, under which SliverMemory keeps failed attempts. */
   TetrahedronIds GetNames(const TetrahedronIds& ids) const;
   SliverMemory& GetMemory() { return this->Memory; }
 
   /**
-   * Looks for the hole of a point (DynamicTetrahedralization::FindHole()), which what follows is
-   * about; number: its id, that of the next new point by default.
+   * Finds the cavity of a point (DynamicTetrahedralization::FindHole()). The functions below refer
+   * to this cavity.
+   * @param number id of the point; NoId: that of the next new point
    */
   bool FindHole(const Vec3& position, Id first, Id number = NoId);
   const DynamicTetrahedralization::Hole& GetHole() const { return this->Hole; }
-  /** How many tetrahedra of the hole's cone would break a limit. */
+  /** Number of tetrahedra that would break a limit if the cavity were filled from the position. */
   Id CountBroken(const Vec3& position) const;
-  /** Whether the point keeps the distances that the sizes of its neighbors ask for. */
+  /** Whether the position keeps the distances that its neighbors' sizes ask for. */
   bool IsClear(const Vec3& position) const;
   bool DisturbsBoundary(const Vec3& position);
   void Insert(const Vec3& position);
-  /** Puts a point that was taken out, and is free, back in at another place. */
+  /** Inserts a free point again, which was removed, at another position. */
   void Restore(Id point, const Vec3& position);
-  /** That a free point has been taken out, and is not restored. */
+  /** Counts a free point that was removed and is not restored. */
   void NoteRemoval();
 
 private:
@@ -188,7 +198,10 @@ private:
   DynamicTetrahedralization Mesh;
   const RefinedBoundary Boundary;
   const TetrahedronLimits Limits;
-  /** Of the mesh's points; those of the surface, and places for new ones, come before. */
+  /**
+   * Id of the first interior point. Points of the surface, and ids reserved for new ones, come
+   * before.
+   */
   const Id FirstInside;
   Id MaximumNewPoints;
   SliverMemory& Memory;
@@ -199,7 +212,7 @@ private:
   RefinedMeshReport Report;
   BoundaryRequests Requests;
   mutable TetrahedronFacts Facts;
-  /** Some are of tetrahedra with points of the surface that have been moved in the mesh only. */
+  /** Whether some facts are about surface points that have been moved in the mesh only. */
   bool AreFactsPreliminary = false;
   DynamicTetrahedralization::Hole Hole;
   /** Work space. */

@@ -21,7 +21,7 @@ void SliverMemory::SetChanged(const TetrahedronIds& names)
   }
 }
 
-/** When a point has last got other neighbors; 0: never. */
+/** Time at which a point has last got other neighbors; 0: never. */
 std::int64_t SliverMemory::GetChange(Id name) const
 {
   const bool isInside = name >= FirstName;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SliverMemory.h
- * @brief What has been tried in vain for slivers, so that it is not tried again before something
- * has changed there. Points are known by names that they keep from one mesh to the next.
+ * @brief Remembers attempts to remove slivers that failed, so that they are not repeated before
+ * something nearby has changed. Points have names, which they keep from one mesh to the next.
  */
 #ifndef cdmSliverMemory_h
 #define cdmSliverMemory_h
@@ -15,28 +15,31 @@
 
 namespace cdm
 {
-/** What is tried for a sliver, in this order. */
+/** The attempts to remove a sliver, in this order. */
 enum class SliverAttempt
 {
-  /** To move or take out one of its free points inside. */
+  /** Move or remove one of its free interior points. */
   Move,
-  /** To put in a point. */
+  /** Insert a point. */
   Insertion,
-  /** To move one of its points on the surface. */
+  /** Move one of its points on the surface. */
   SurfaceMove
 };
 
 class SliverMemory
 {
 public:
-  /** A name for a point inside of a region, for good. */
+  /** Makes a permanent name for an interior point. */
   Id MakeName() { return this->NextName++; }
-  /** Names of new points are larger than ids of points of the surface, which are their names. */
+  /**
+   * The first name of interior points. Points of the surface have their ids as names, which are
+   * smaller.
+   */
   static constexpr Id FirstName = 1 << 29;
 
-  /** That the points of a tetrahedron have got other neighbors. */
+  /** Notes that the points of a tetrahedron have got other neighbors. */
   void SetChanged(const TetrahedronIds& names);
-  /** That nothing up to this has helped the tetrahedron. */
+  /** Notes that all attempts up to this one have failed for the tetrahedron. */
   void SetHopeless(const TetrahedronIds& names, SliverAttempt last);
   bool IsHopeless(const TetrahedronIds& names, SliverAttempt last) const;
 
@@ -50,7 +53,7 @@ private:
 
   Id NextName = FirstName;
   std::int64_t Time = 0;
-  /** Of points of the surface, and of points inside. */
+  /** Time of the last change, for surface points and for interior points. */
   std::vector<std::int64_t> SurfaceChanges;
   std::vector<std::int64_t> InsideChanges;
   std::map<TetrahedronIds, Failure> Failures;

@@ -21,12 +21,12 @@ constexpr double FirstInsertion = 0.3;
 /** Passes over the slivers that are left. */
 constexpr int MaximumPasses = 20;
 
-/** What changes are for, and what they may be. */
+/** Which tetrahedra the changes are to improve, and by which means. */
 struct Aim
 {
   /** Degrees; larger angles are as good. */
   double Target;
-  /** Whether tetrahedra across sharp angles are to get better ones, or all others. */
+  /** True: only tetrahedra across sharp angles are improved; false: only the others. */
   bool IsSharp = false;
   SliverMeans Means = SliverMeans::Moves;
 };
@@ -84,7 +84,7 @@ private:
   /** The smallest angles of tetrahedra that a change replaces, or makes. */
   struct SmallestAngles
   {
-    /** Of those that it is for. */
+    /** The smallest angle of tetrahedra that the change is to improve. */
     double Aimed = 180.0;
     double Other = 180.0;
   };
@@ -109,7 +109,7 @@ void Perturbation::Include(Id tetrahedron, SmallestAngles& smallest) const
   one = std::min(one, angle);
 }
 
-/** What tetrahedra that a change is not for have to keep. */
+/** The angle that tetrahedra which the change is not meant to improve have to keep. */
 double Perturbation::GetFloor(const SmallestAngles& before) const
 {
   return this->Goal.IsSharp ? std::min(before.Other, this->Goal.Target)
@@ -117,8 +117,8 @@ double Perturbation::GetFloor(const SmallestAngles& before) const
 }
 
 /**
- * Smallest angle that the hole's cone would have among those aimed at; 0 if another one falls below
- * the floor, or as soon as it is not larger than required.
+ * Smallest angle among the tetrahedra aimed at if the cavity were filled from the position. 0 if
+ * another tetrahedron falls below the floor, or as soon as the angle is not larger than required.
  */
 double Perturbation::RateHole(const Vec3& position, double floor, double required) const
 {
@@ -174,7 +174,7 @@ bool Perturbation::Move(Id point)
   }
   const std::vector<Id> filled = this->Tetrahedra.GetChanged();
   const double floor = this->GetFloor(before);
-  // Of those aimed at; the others are either fine or bad.
+  // Angles of the tetrahedra aimed at; the others are either good enough or not.
   std::vector<double> angles;
   std::vector<char> isBroken;
   for (Id t : filled)
@@ -358,8 +358,8 @@ Status PerturbSlivers(
     isLast = mayInsert && !isMended;
     mayInsert = !isMoving;
   }
-  // No edge or triangle of the boundary is at fault: another point at one of them gives a
-  // sliver beside it another chance; one for those that have a point in common.
+  // No edge or triangle of the boundary is in the way. A point on a boundary triangle beside the
+  // sliver may still help: request one for all slivers that have a point in common.
   if (requests.GetNumber() == 0)
   {
     std::vector<Id> near;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SliverPointMoves.h
- * @brief Moves points of slivers in a Delaunay mesh of any boundary, which stays as it is.
+ * @brief Moves points of slivers in a Delaunay mesh, without a split of its boundary.
  *
  * Method:
  *  1. triangles and edges of the boundary (outer facets and interfaces) whose smallest spheres are
@@ -12,10 +12,10 @@
  *     (SurfacePointMoves.h). This does not see what lies beyond outer facets: if one of those
  *     spheres is found to be filled afterwards, the moves that fill it are taken back, and 3. is
  *     begun anew without these points;
- *  4. what has been moved there is room for points inside: 2. again.
+ *  4. moved boundary points give interior points new room: 2. is done again.
  *
  * Guarantees: a Delaunay mesh stays Delaunay. Deterministic.
- * Cost: about a millisecond for a point that is tried to be moved; 120 bytes per tetrahedron.
+ * Cost: about a millisecond for each point that it tries to move; 120 bytes per tetrahedron.
  */
 #ifndef cdmSliverPointMoves_h
 #define cdmSliverPointMoves_h

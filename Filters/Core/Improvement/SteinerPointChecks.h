@@ -12,8 +12,9 @@
 namespace cdm
 {
 /**
- * Whether mesh and boundary fit each other and all numbers are in their ranges: an error names
- * tetrahedra, triangles of the boundary, or new points.
+ * Checks that mesh and boundary fit each other, that regions are numbered from 0 on, and that new
+ * points are finite. An error names tetrahedra, triangles of the boundary, or new points.
+ * @param threads 0: one for each processor core
  */
 Status CheckSteinerPointInput(const SteinerPointRefinerInput& input, int threads);
 } // namespace cdm

@@ -25,7 +25,9 @@ namespace cdm
 {
 namespace
 {
-/** Rounds without end would be an error of the rules; so many have never been seen. */
+/**
+ * Guards against rounds without end, which would be an error of the rules. No input came near it.
+ */
 constexpr Id MaximumRounds = 1000;
 /** Rounds in a row that move points of the boundary for slivers, or split it, in vain. */
 constexpr int MaximumSliverRounds = 40;
@@ -41,19 +43,25 @@ constexpr int MaximumLastPasses = 5;
 /** Slivers wait until no more requests than these are left from badly shaped tetrahedra. */
 constexpr std::size_t FewRequests = 16;
 /**
- * Edges of the boundary for a largest volume, in edges of the regular tetrahedron of that volume.
+ * Longest edge on the boundary where MaximumVolume is given, in edges of the regular tetrahedron of
+ * that volume.
  */
 constexpr double BoundaryEdgeRatio = 1.15;
-/** Where more than this part of the boundary is to be split, the mesh is made anew. */
+/**
+ * If more than this part of the boundary triangles is requested to be split, the mesh is made anew.
+ */
 constexpr double LargestSplitRatio = 0.05;
-/** Places that the mesh of a round has for points of the boundary. */
+/** Fewest point ids that a round reserves for new points of the boundary. */
 constexpr Id FewestReservedPoints = 256;
 
-/** Until when something is tried again: while it makes a number smaller now and then. */
+/** Gives up after a number of tries in a row that do not reduce a count. */
 class Patience
 {
 public:
-  /** @param part of the smallest number that a smaller one has to be below */
+  /**
+   * @param part a try counts as a success if the count is below this part of the smallest one so
+   *   far
+   */
   explicit Patience(int maximumTries, double part = 1.0) : MaximumTries(maximumTries), Part(part) {}
 
   bool IsOver(std::size_t number)
@@ -107,16 +115,16 @@ private:
   std::size_t CollectSurfaceSizes();
   void MeasureSizes();
   void CollectReport();
-  /** What a round of shapes and slivers has come to. */
+  /** How a round for shapes and slivers ended. */
   enum class Outcome
   {
-    /** What shapes have requested is to be split. */
+    /** Boundary splits that bad shapes requested are to be made. */
     Open,
-    /** As before, and what slivers have requested. */
+    /** Boundary splits that shapes, slivers or negative couplings requested are to be made. */
     Requested,
-    /** Points of the surface have got other places. */
+    /** Points of the surface have been moved. */
     Moved,
-    /** Nothing helps any more. */
+    /** Nothing more can be done. */
     Done
   };
   Status RefineSizes();
@@ -144,7 +152,7 @@ private:
 
   /** SourceCells: triangles of the first surface. */
   TriangleMesh Surface;
-  /** Of each triangle of the first surface: what it is in the input, and its facet. */
+  /** For each triangle of the first surface: its cell in the input, and its surface facet. */
   std::vector<Id> InputCells;
   std::vector<Id> Facets;
   std::vector<StructuralEdge> Edges;
@@ -152,7 +160,7 @@ private:
   std::vector<Id> SurfaceSources;
   /** See InteriorPoint::Size; empty while only sizes are refined. */
   std::vector<double> SurfaceSizes;
-  /** Of the surface when sizes were measured. */
+  /** Feature sizes of the surface at the time when SurfaceSizes were measured. */
   std::unique_ptr<FeatureSizes> Features;
   std::vector<InteriorPoint> Interior;
   SliverMemory Memory;
@@ -161,23 +169,23 @@ private:
   std::vector<char> IsNew;
   /** One for each point of the surface: whether it may be moved in its facet or along its edge. */
   std::vector<char> IsSurfaceFree;
-  /** Over flat tetrahedra, while there are others than those left. */
+  /** Limits the tries to round flat tetrahedra away. LeftFlat are those that it gave up on. */
   Patience Roundings{ MaximumRoundings, RoundingGain };
-  /** Over slivers, until the boundary is split for them. */
+  /** Limits the moves of surface points for slivers between two splits of the boundary. */
   Patience Moves{ MaximumMoves };
-  /** Over slivers. */
+  /** Limits the rounds for slivers. */
   Patience SliverRounds{ MaximumSliverRounds };
-  /** Over negative couplings. */
+  /** Limits the rounds for negative couplings. */
   Patience Couplings{ MaximumCouplingRounds };
-  /** Points of flat tetrahedra that rounding has left, sorted. */
+  /** The flat tetrahedra that rounding could not remove, by their sorted points. */
   std::vector<TetrahedronIds> LeftFlat;
   /** Whether points at sharp angles have been moved. */
   bool IsSharpPerturbed = false;
   /** Whether the last round has split nothing of what was requested. */
   bool IsStuck = false;
   /**
-   * What the mesh is made of while all smallest spheres are empty: before points that are put into
-   * them, or moved, ask for splits.
+   * The last state in which all smallest spheres were empty. Points that are inserted or moved
+   * after it may request splits that cannot be had.
    */
   struct
   {
@@ -185,7 +193,7 @@ private:
     std::vector<StructuralEdge> Edges;
     std::vector<InteriorPoint> Interior;
   } Noted;
-  /** Whether a split has asked for what cannot be had: the boundary stays as it was before. */
+  /** Whether requested splits could not be had. The boundary then stays as it was before them. */
   bool IsBoundaryFinal = false;
 };
 
@@ -243,7 +251,10 @@ void Refiner::ExtractSurface()
   }
 }
 
-/** Of the surface as it comes: in small triangles, as later ones are, edges could get lost. */
+/**
+ * Numbers the facets of the surface as it was given: on smaller triangles, as later surfaces have
+ * them, structural edges could be missed.
+ */
 Status Refiner::FindFacets()
 {
   StructuralEdgesOutput edges;
@@ -257,7 +268,7 @@ Status Refiner::FindFacets()
   return this->Translate(status, {});
 }
 
-/** Of each triangle of the surface as it is. */
+/** The surface facet of each triangle of the current surface. */
 std::vector<Id> Refiner::GetFacets() const
 {
   std::vector<Id> facets;
@@ -268,7 +279,7 @@ std::vector<Id> Refiner::GetFacets() const
   return facets;
 }
 
-/** Rounds get smaller: each takes a part of what is left. */
+/** Progress of the next round. Rounds get shorter: each takes a fifth of what is left. */
 ExecutionContext Refiner::GetRoundContext() const
 {
   const double done = 1.0 - std::pow(0.8, static_cast<double>(this->Output.Report.Rounds));
@@ -276,7 +287,7 @@ ExecutionContext Refiner::GetRoundContext() const
   return this->Context.Part(done, next);
 }
 
-/** What a stage before says of triangles of the surface, in cells of the input. */
+/** Translates a message about triangles of the surface into cells of the input. */
 Status Refiner::Translate(Status status, const std::vector<Id>& sources) const
 {
   std::vector<Id> cells;
@@ -379,8 +390,8 @@ Status Refiner::StartRound()
 }
 
 /**
- * Tetrahedralizes a surface whose triangles come from those of Surface, which it becomes, with these
- * points inside.
+ * Tetrahedralizes the given surface with the given interior points, and makes it the current
+ * surface. sourceCells: for each triangle its source in the surface so far.
  */
 Status Refiner::StartRoundOn(const TriangleMesh& surface,
   const std::vector<InteriorPoint>& interior, const std::vector<Id>& sourceCells,
@@ -401,7 +412,7 @@ Status Refiner::StartRoundOn(const TriangleMesh& surface,
     return this->Translate(std::move(status), sourceCells);
   }
 
-  // From here on the round counts.
+  // The round has succeeded so far: count it.
   ++this->Output.Report.Rounds;
   this->CollectReport();
   this->Interior.clear();
@@ -433,8 +444,9 @@ void Refiner::NoteState()
 }
 
 /**
- * Where splits that were requested would leave triangles without empty smallest spheres: the mesh as
- * it was before, whose boundary is split no more. Part of the splits may have been made already.
+ * Goes back to the last state in which all smallest spheres were empty, because the requested
+ * splits would leave triangles whose are not. From then on the boundary is not split. Part of the
+ * splits may have been made already.
  */
 Status Refiner::RestoreRound(const ExecutionContext& context)
 {
@@ -449,7 +461,10 @@ Status Refiner::RestoreRound(const ExecutionContext& context)
   return this->StartRoundOn(this->Noted.Surface, this->Noted.Interior, sources, context);
 }
 
-/** Whether there is little to be split, and facets are plane: curved ones may have to be tried. */
+/**
+ * Whether the mesh can be split in place: few splits are requested and all facets are plane. Curved
+ * ones may need several attempts.
+ */
 bool Refiner::CanSplitInPlace() const
 {
   return this->Options.StructuralEdges.AccuracyAngle == 0.0 &&
@@ -458,7 +473,10 @@ bool Refiner::CanSplitInPlace() const
     LargestSplitRatio * static_cast<double>(this->Surface.Triangles.size());
 }
 
-/** The next round on the same mesh, if it can be had. */
+/**
+ * Starts the next round: splits the boundary in the mesh itself if possible, otherwise makes a new
+ * mesh.
+ */
 Status Refiner::SplitBoundary()
 {
   if (!this->CanSplitInPlace())
@@ -492,8 +510,8 @@ Status Refiner::SplitBoundary()
 }
 
 /**
- * Sizes of those points of the surface that have none yet: from those around them, and from edges
- * and facets that come close to each other. Returns the first of them.
+ * Gives sizes to the surface points that have none yet: from the points around them, and from edges
+ * and facets that come close to each other. Returns the first such point.
  */
 std::size_t Refiner::CollectSurfaceSizes()
 {
@@ -535,7 +553,9 @@ std::size_t Refiner::CollectSurfaceSizes()
   return first;
 }
 
-/** The shortest edge at each point of the mesh, and how close parts of the surface are. */
+/**
+ * Measures the size at each point: its shortest edge, and how close features of the surface are.
+ */
 void Refiner::MeasureSizes()
 {
   this->Features = std::make_unique<FeatureSizes>(
@@ -558,8 +578,8 @@ Status Refiner::PerturbSlivers(SliverMeans means)
 }
 
 /**
- * Points that were put in for shapes after the slivers' points were moved leave slivers, too. Those
- * at sharp angles are moved once: each time would make other couplings negative.
+ * Perturbs the slivers that points inserted for shapes have left. Those at sharp angles are
+ * perturbed once only: each time would make other couplings negative.
  */
 Status Refiner::PerturbLastSlivers()
 {
@@ -596,9 +616,10 @@ void Refiner::CollectReport()
 }
 
 /**
- * Points of the input stay. Again and again, until a few tries in a row have not done away with a
- * quarter of the flat tetrahedra; the next time when there are others than those that were left.
- * False if there is nothing to be done.
+ * Perturbs the last bits of free surface points to remove numerically flat tetrahedra. Gives up
+ * when a few tries in a row have not removed a quarter of them, and starts again when there are
+ * flat tetrahedra other than those left. Points that are not free stay. False if there is nothing
+ * to do.
  */
 bool Refiner::RoundFlatTetrahedraAway()
 {
@@ -628,9 +649,9 @@ bool Refiner::RoundFlatTetrahedraAway()
 }
 
 /**
- * Points of slivers, but for those that have to stay. False if there is nothing to be done, or if a
- * few times in a row have not made slivers fewer: a move may turn facets that the mesh does not
- * show.
+ * Moves free surface points of slivers. False if there is nothing to do, or if a few tries in a row
+ * have not reduced the slivers: a move may spoil facets on the outer side of the boundary, which
+ * the mesh does not show.
  */
 bool Refiner::MoveSurfacePoints()
 {
@@ -645,7 +666,7 @@ bool Refiner::MoveSurfacePoints()
       this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges, *this->Round));
 }
 
-/** False if all points stay where they are. */
+/** Takes over new positions of the surface points. False if all points stay. */
 bool Refiner::MoveSurface(const std::vector<Vec3>& places)
 {
   bool isAnyMoved = false;
@@ -666,7 +687,7 @@ bool Refiner::MoveSurface(const std::vector<Vec3>& places)
   return isAnyMoved;
 }
 
-/** Of a tetrahedron of surface and interior points: in a thin layer, or at a sharp angle. */
+/** Whether a tetrahedron of the output is in a thin layer or at a sharp angle. */
 bool Refiner::IsInevitable(const TetrahedronIds& ids, Id region) const
 {
   const SharpAngles& sharp = this->Round->GetShape().Sharp;
@@ -702,7 +723,10 @@ void Refiner::FindFaults()
   }
 }
 
-/** The mesh of the round, which has the surface's points first, with the kept points first. */
+/**
+ * Reorders the mesh of the round, which has the surface points first: points kept from the input
+ * come first.
+ */
 void Refiner::MakeOutput()
 {
   this->FindFaults();
@@ -748,7 +772,7 @@ void Refiner::MakeOutput()
   }
 }
 
-/** Until no tetrahedron is too large. */
+/** Refines until no tetrahedron is too large. */
 Status Refiner::RefineSizes()
 {
   Status status = this->RefineRound(false);
@@ -767,7 +791,7 @@ Status Refiner::RefineSizes()
   return status;
 }
 
-/** Until nothing that may be done helps bad shapes and slivers. */
+/** Refines and perturbs until nothing helps bad shapes and slivers any more. */
 Status Refiner::RefineShapes()
 {
   Status status;
@@ -789,7 +813,7 @@ Status Refiner::RefineShapes()
     }
     if (outcome != Outcome::Moved && this->Output.Report.Rounds >= MaximumRounds)
     {
-      // Counts them only.
+      // No round is left to split them: this only counts the negative couplings.
       this->RequestCouplings();
       outcome = Outcome::Done;
     }
@@ -802,7 +826,7 @@ Status Refiner::RefineShapes()
   return status;
 }
 
-/** By points inside alone: the boundary is final. */
+/** Perturbs slivers by interior points alone, as the boundary is final. */
 Status Refiner::FinishSlivers()
 {
   Status status;
@@ -817,8 +841,8 @@ Status Refiner::FinishSlivers()
 }
 
 /**
- * Counts negative couplings. False if nothing is to be done, or if a few times in a row have not
- * made them fewer.
+ * Counts negative couplings and requests splits for them. False if there is nothing to split, or if
+ * a few tries in a row have not reduced them.
  */
 bool Refiner::RequestCouplings()
 {
@@ -835,7 +859,10 @@ bool Refiner::RequestCouplings()
   return true;
 }
 
-/** Where few shapes need the boundary split, or none that can be. */
+/**
+ * One round for slivers. Called when bad shapes request few boundary splits, or none that can be
+ * made.
+ */
 Status Refiner::MendSlivers(Outcome& outcome)
 {
   Status status;
@@ -866,7 +893,8 @@ Status Refiner::MendSlivers(Outcome& outcome)
   {
     return status;
   }
-  // The last passes, which take long, may make others.
+  // Couplings come before the last passes, which take long; those may make other couplings
+  // negative.
   outcome = this->RequestCouplings() ? Outcome::Requested : Outcome::Done;
   if (outcome == Outcome::Done && target > 0.0)
   {
@@ -876,7 +904,7 @@ Status Refiner::MendSlivers(Outcome& outcome)
   return status;
 }
 
-/** Moves of points inside, of points of the surface if these help, at last requests. */
+/** Moves interior points, then points of the surface, at last requests splits of the boundary. */
 Status Refiner::MoveOrRequest(Outcome& outcome)
 {
   const bool isFull = this->Round->IsFull();
@@ -890,7 +918,7 @@ Status Refiner::MoveOrRequest(Outcome& outcome)
     outcome = Outcome::Moved;
     return status;
   }
-  // Splits for shapes do away with slivers, too.
+  // Splits requested for shapes remove slivers, too: make those first.
   const std::size_t requests = this->CountRequests();
   if (this->IsStuck || requests == 0)
   {
@@ -982,8 +1010,7 @@ Status RunRefineBySteinerPoints(const SteinerPointRefinerInput& input,
   SteinerPointRefinerOutput& output)
 {
   output = SteinerPointRefinerOutput();
-  // How many rounds there will be nobody knows: a fraction counts where it is larger than those
-  // before.
+  // The number of rounds is not known: progress is the largest fraction reported so far.
   double largest = 0.0;
   bool isGoingOn = true;
   const ExecutionContext ascending(

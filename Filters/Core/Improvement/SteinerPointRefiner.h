@@ -4,8 +4,8 @@
  * @brief Stage 5: new points, inside and on the boundary, until sizes and shapes are as wanted.
  *
  * Method (thesis 5.6 and 6.5), in rounds:
- *  1. the boundary of the mesh is a surface, the points inside are mesh points; given points are
- *     added, others taken out;
+ *  1. the boundary of the mesh is taken as a surface and its interior points as mesh points; new
+ *     points are added to these, and unwanted ones are taken out;
  *  2. the surface is refined (DelaunaySurfaceRefiner.h) until its smallest spheres are empty and it
  *     is as fine as the sizing asks for, and split where the round before requested it; then it is
  *     tetrahedralized with the mesh points (AdvancingFrontTetrahedralizer.h). Where less than a
@@ -13,31 +13,30 @@
  *     (BoundarySplits.h), with the same result for the same points;
  *  3. for this boundary the inside is refined (VolumeRefinement.h): Steiner points in tetrahedra
  *     that are too large, then also in badly shaped ones, where each comes no closer to others than
- *     a twentieth of the shortest edge that was there before; what disturbs the boundary is
- *     requested to be split instead;
+ *     a twentieth of the shortest edge that was there before. If a point would encroach on the
+ *     boundary, a split of the boundary is requested instead;
  *  4. if little is requested any more: points of slivers are moved, taken out or added, first those
  *     inside (SliverPerturbation.h). Then new and free points of the surface are moved within their
  *     facets and along their edges, where that makes the smallest angle larger
- *     (SurfacePointMoves.h). Before that, where tetrahedra are flat because points lie on a circle
- *     but for rounding, such points are rounded in another way (PointRounding.h). The boundary is
- *     split for slivers that nothing else helps. At last points of tetrahedra across sharp angles
- *     are moved, as far as all others stay as good;
+ *     (SurfacePointMoves.h). Before that, the last bits of surface points are perturbed where
+ *     tetrahedra are numerically flat (PointRounding.h). The boundary is split for slivers that
+ *     nothing else helps. At last points of tetrahedra across sharp angles are moved, if no other
+ *     tetrahedron gets worse;
  *  5. where nothing else is requested, edges of the boundary with a negative coupling are to be
  *     split (NegativeCouplings.h), and it goes on from 3.
- * It ends when a round requests nothing, or nothing that can be done, or when forty rounds for
- * slivers in a row have not made these fewer.
+ * The refinement ends when a round requests nothing, or nothing that can be done, or when forty
+ * rounds for slivers in a row have not reduced their number.
  *
  * Guarantees: the mesh is Delaunay by the pulling rule and conforms to the same surface; facets on
- * it fulfil criterion 3.1 at least. (Where the surface refiner does not come to an end with that
- * criterion no points are put inside: the mesh is that of stage 3, and the report counts the
- * WeakTriangles.) No coupling of the box method is negative but for those that
- * the report counts. Points of the mesh that are not free keep their coordinates; those of the
- * surface that are stay in their facets and on their edges. Deterministic, whatever the number of
- * threads. Tetrahedra across thin layers (ThinLayers.h) and across sharp angles (SharpAngles.h),
- * which would be refined for ever, are not refined for their shape: Faults tells which tetrahedra
- * miss what was asked for, the report counts them.
- * Failure: InvalidInput names tetrahedra without a region, inverted or flat ones, triangles that
- * are no facets or facets that are missing among them, points that are not finite. Cells are
+ * it fulfil criterion 3.1 at least. (Where the surface refiner does not end with that criterion, no
+ * points are inserted: the mesh is that of stage 3, and the report counts the WeakTriangles.) The
+ * report counts the couplings of the box method that are still negative. Points of the mesh that
+ * are not free keep their coordinates; those of the surface that are stay in their facets and on
+ * their edges. Deterministic, whatever the number of threads. Tetrahedra across thin layers
+ * (ThinLayers.h) and across sharp angles (SharpAngles.h), which would be refined for ever, are not
+ * refined for their shape: Faults tells which tetrahedra miss what was asked for, the report counts
+ * them. Failure: InvalidInput names tetrahedra without a region, inverted or flat ones, triangles
+ * that are no facets or facets that are missing among them, points that are not finite. Cells are
  * tetrahedra if no boundary is given, otherwise its triangles. The output is then empty, as after
  * an abort.
  * Cost: about 15 microseconds for a tetrahedron of the result; 250 bytes at the peak.
@@ -58,7 +57,10 @@ struct SteinerPointRefinerOptions
 {
   /** Circumradius to shortest edge. 0 (off) or at least 1. */
   double RadiusEdgeRatio = 1.4;
-  /** Tetrahedra with a smaller dihedral angle are slivers. Degrees, 0 (off) to 30. */
+  /**
+   * Tetrahedra with a smaller dihedral angle are slivers. Degrees; 0: off. Any value is taken as it
+   * is. Up to 20 are reached nearly everywhere; the filters allow up to 40.
+   */
   double DihedralAngleTarget = 15.0;
   /** Cubic model units; 0: off. */
   double MaximumVolume = 0.0;
@@ -71,9 +73,9 @@ struct SteinerPointRefinerOptions
   /** What counts as flat, see StructuralEdges.h. */
   StructuralEdgeOptions StructuralEdges;
   /**
-   * The refinement stops when it has made about so many points. 0: no limit where sizes are asked
-   * for, otherwise 200 for each point of the mesh and 50000: shapes that need more are hardly to be
-   * had.
+   * The refinement stops when it has made about this many points. 0: no limit if sizes are asked
+   * for, otherwise 50000 and 200 for each point of the mesh. Shapes that need more can hardly be
+   * reached.
    */
   Id MaximumNewPoints = 0;
 };
@@ -82,11 +84,12 @@ struct SteinerPointRefinerInput
 {
   const TetMesh* Mesh = nullptr;
   /**
-   * May be null: the outer and interface facets. Otherwise these, and sheets inside of regions that
-   * are to be kept; on the points of the mesh, with labels.
+   * May be null: then the boundary consists of the outer and interface facets. A given boundary has
+   * these, and sheets inside of regions that are to be kept. It has labels and the points of the
+   * mesh.
    */
   const TriangleMesh* Boundary = nullptr;
-  /** Edges longer than the sizing are too long. May be empty. */
+  /** Tetrahedra with an edge longer than the sizing are too large. May be empty. */
   SizingField Sizing;
   /**
    * Empty, or one for each point of the mesh: whether it may be moved and removed if inside, or
@@ -107,11 +110,14 @@ enum class SteinerFault : unsigned char
   None = 0,
   /** Too large. */
   Size = 1,
-  /** Its ratio of circumradius to shortest edge. */
+  /** Its ratio of circumradius to shortest edge is too large. */
   Shape = 2,
-  /** Its smallest dihedral angle. */
+  /** Its smallest dihedral angle is below the target. */
   Sliver = 3,
-  /** Shape or angle at a sharp input angle or in a thin layer, where nothing is to be had. */
+  /**
+   * Badly shaped or a sliver, but at a sharp input angle or in a thin layer, where no better one
+   * exists.
+   */
   Inevitable = 4
 };
 
@@ -130,7 +136,10 @@ struct SteinerPointRefinerReport
   Id Inevitable = 0;
   /** Triangles of the boundary that break the criterion; see DelaunaySurfaceRefiner.h. */
   Id UnresolvedTriangles = 0;
-  /** Those of them whose smallest spheres are not empty. If there are any, nothing else is done. */
+  /**
+   * Unresolved triangles whose smallest spheres are not empty. If there are any, the volume is not
+   * refined.
+   */
   Id WeakTriangles = 0;
   /** Edges of the boundary with a negative coupling. */
   Id NegativeCouplings = 0;

@@ -89,7 +89,7 @@ SurfacePointMoves::SurfacePointMoves(DynamicTetrahedralization& mesh, const Tria
   this->Flatness = PlaneRatio * Distance(box.Low, box.High);
 }
 
-/** Other ends of the structural edges at a point. */
+/** The other ends of the structural edges at a point. */
 std::vector<Id> SurfacePointMoves::FindEdgeEnds(Id point) const
 {
   std::vector<Id> ends;
@@ -219,7 +219,7 @@ double SurfacePointMoves::MeasureStar(Id point, double& nearest) const
   return smallest;
 }
 
-/** Whether no triangle at the point would turn over. */
+/** Whether each triangle at the point keeps its orientation. */
 bool SurfacePointMoves::KeepsTurns(Id point, const Vec3& position) const
 {
   const auto isKept = [&](Id t)
@@ -246,7 +246,10 @@ bool SurfacePointMoves::IsOnSurface(const TriangleIds& ids) const
   return IsTriangle(this->Surface.Triangles, this->PointTriangles, ids);
 }
 
-/** What is at the point, and in conflict with the position; false if this is too much. */
+/**
+ * Collects the tetrahedra at the point and those in conflict with the position; false if these are
+ * too many or reach beyond the boundary.
+ */
 bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
 {
   const TetMesh& mesh = this->Mesh.GetMesh();
@@ -322,7 +325,9 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
   return true;
 }
 
-/** Of the triangles at the cavity and, where they count, of its structural edges. */
+/**
+ * Whether the smallest spheres of the triangles at the cavity, and of its kept edges, are empty.
+ */
 bool SurfacePointMoves::AreSpheresEmpty(Id point, const Vec3& position) const
 {
   const auto getPoint = [&](Id id) { return id == point ? position : this->Points[id]; };

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfacePointMoves.h
- * @brief Better places for points of a surface, in the facet or on the edge that they lie on.
+ * @brief Moves points of a surface within their facet or along their edge to remove slivers.
  *
- * A sliver whose points all lie on the surface is not mended by points inside. Often two sides of a
- * layer match but for one point: where that is put opposite its partner, the sliver is gone.
+ * Interior points do not improve a sliver whose points all lie on the surface. Often the two sides
+ * of a layer match but for one point: when it is moved opposite its partner, the sliver is gone.
  *
- * Method: a point moves in the plane that all triangles around it lie in, or along the two
- * structural edges that meet at it in a straight line. Places are tried opposite the sliver's other
- * points, then in a pattern search (PlaceSearch.h). For each, the tetrahedra around the point and
- * those that it would be in conflict with are a cavity, which is filled anew (CavityFilling.h), the
- * moved triangles being walls. The place is rated by the smallest dihedral angle of what fills it.
- * It is no place at all if a triangle is not there, if the smallest sphere of a triangle, or of an
- * edge where these count, is not empty, if the point comes too close to others, or if more
- * tetrahedra than before break a limit.
+ * Method: a point moves in the plane of all triangles around it, or along the two structural edges
+ * that meet at it in a straight line. Positions opposite the sliver's other points are tried first,
+ * then a pattern search (PlaceSearch.h). For each position, the tetrahedra around the point and
+ * those in conflict with it form a cavity, which is filled anew (CavityFilling.h) with the moved
+ * triangles as walls. A position is rated by the smallest dihedral angle of the new tetrahedra. It
+ * is rejected if a triangle of the surface is not among the new facets, if the smallest sphere of a
+ * triangle (or of an edge where these count) is not empty, if the point comes too close to others,
+ * or if more tetrahedra than before break a limit.
  *
- * What lies beyond outer facets is not looked at: the surface has to be checked again with the new
- * places (DelaunaySurfaceRefiner.h).
+ * The method does not look beyond outer facets: the surface has to be checked again with the new
+ * positions (DelaunaySurfaceRefiner.h).
  *
- * Floating point, but for the cavity. Deterministic. Cost: about 200 microseconds for each place
- * tried.
+ * Positions are rated in floating point; the cavity is filled exactly. Deterministic. Cost: about
+ * 200 microseconds for each position tried.
  */
 #ifndef cdmSurfacePointMoves_h
 #define cdmSurfacePointMoves_h
@@ -50,26 +50,25 @@ public:
 
   /**
    * The mesh has the surface's points first. The surface's triangles are those of outer facets and
-   * interfaces whose smallest spheres are empty and stay so; at a point that is moved there are no
-   * others. All have to outlive the object.
-   * @param edges structural ones, sorted
-   * @param keptEdges those whose smallest spheres stay empty, sorted
+   * interfaces whose smallest spheres are empty and stay so; a point with other outer facets cannot
+   * be moved. All have to outlive the object.
+   * @param edges structural edges, sorted
+   * @param keptEdges structural edges whose smallest spheres stay empty, sorted
    */
   SurfacePointMoves(DynamicTetrahedralization& mesh, const TriangleMesh& surface,
     const IdLists& pointTriangles, const std::vector<StructuralEdge>& edges,
     const std::vector<StructuralEdge>& keptEdges, Rules rules);
 
   /**
-   * Moves a point of a tetrahedron to the best place; false if none makes the smallest angle
-   * larger.
-   * @param target degrees that are enough
+   * Moves a point of a sliver to the best position; false if none increases the smallest angle.
+   * @param target an angle that is large enough, in degrees
    */
   bool Move(Id point, const TetrahedronIds& sliver, double target);
-  /** Where the surface's points are now; the surface itself stays as it is. */
+  /** The current positions of the surface's points; the surface itself stays as it is. */
   const std::vector<Vec3>& GetPoints() const { return this->Points; }
 
 private:
-  /** Where a point may go: along directions in a plane with a normal, or on a line. */
+  /** Where a point may move: in a plane, in several directions, or along a line. */
   struct Support
   {
     std::vector<Vec3> Directions;
@@ -94,11 +93,11 @@ private:
   const std::vector<StructuralEdge>& Edges;
   const std::vector<StructuralEdge>& KeptEdges;
   const Rules Given;
-  /** Across which triangles count as lying in one plane. */
+  /** Triangles count as coplanar if they deviate by less than this. Model units. */
   double Flatness = 0.0;
   /** Tetrahedra at the point that is moved. */
   std::vector<Id> Star;
-  /** Work space of one place: the tetrahedra that it changes, and facets around these. */
+  /** Work space for one position: the tetrahedra that it changes, and the facets around these. */
   std::vector<Id> Tetrahedra;
   Cavity Around;
   std::vector<Id> Outer;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TetrahedronFacts.h
- * @brief What is known of the tetrahedra of a changing mesh, each from when it was first asked for.
+ * @brief Caches facts about the tetrahedra of a changing mesh; each is computed when first asked
+ *   for.
  *
- * To ask again and again whether a tetrahedron is across a layer or a sharp angle, and breaks a
- * limit, was two fifths of the time of late rounds of Steiner points. About 40 bytes for each.
+ * Without the cache, tests for layers, sharp angles and limits took two fifths of the time of late
+ * rounds of Steiner points. About 40 bytes for each tetrahedron.
  */
 #ifndef cdmTetrahedronFacts_h
 #define cdmTetrahedronFacts_h
@@ -23,17 +24,17 @@ namespace cdm
 class TetrahedronFacts
 {
 public:
-  /** Both outlive the object. */
+  /** Mesh and limits have to outlive the object. */
   TetrahedronFacts(const DynamicTetrahedralization& mesh, const TetrahedronLimits& limits)
     : Mesh(mesh), Limits(limits)
   {
   }
 
-  /** The smallest dihedral one, in degrees. */
+  /** The smallest dihedral angle, in degrees. */
   double GetAngle(Id tetrahedron);
-  /** Of size or shape. */
+  /** The fault in size or shape, if there is one. */
   TetrahedronFault GetFault(Id tetrahedron, double& severity);
-  /** What splits of the boundary do not change, see BoundaryShape. */
+  /** Splits of the boundary do not change these two, see BoundaryShape. */
   bool IsInLayer(Id tetrahedron, const BoundaryShape& shape);
   bool IsAcrossSharp(Id tetrahedron, const BoundaryShape& shape);
 

@@ -16,7 +16,7 @@ namespace
 {
 /** A side is at least so many times as wide as a thin layer is thick. */
 constexpr double AspectRatio = 20.0;
-/** Of the angle between normals of one side: 45 degrees. */
+/** Cosine of 45 degrees, the largest angle between normals of neighboring triangles of one side. */
 constexpr double SmoothCosine = 0.7071067811865476;
 /**
  * Cosine of the angles between the sides of a layer, and of a side's normal and an upright edge.
@@ -29,7 +29,7 @@ constexpr double ThinRatio = 0.75;
 /** ... and thickness of the layer if the edge is not upright. */
 constexpr double VeryThinRatio = 0.35;
 
-/** Twice the area long, to the front. */
+/** Normal to the front, twice as long as the area. */
 Vec3 GetNormal(const TriangleMesh& surface, Id t)
 {
   const TriangleIds& ids = surface.Triangles[t];
@@ -127,7 +127,7 @@ void ThinLayers::MeasureWidths()
   }
 }
 
-/** As seen from a region; null if it does not bound it. */
+/** The face of a triangle as seen from a region; null if the triangle does not bound the region. */
 const ThinLayers::Face* ThinLayers::GetFace(Id triangle, Id region) const
 {
   const RegionPair& labels = this->Surface.Labels[triangle];

@@ -3,14 +3,16 @@
  * @file ThinLayers.h
  * @brief Which tetrahedra reach from one side of a thin layer to the other.
  *
- * A layer is thin if it is twenty times as wide as thick: to fill it with tetrahedra as long as it
- * is thick would take thousands of them. Its tetrahedra are flat on purpose.
+ * A layer is thin if it is at least twenty times as wide as thick (thesis 2: thin layer). Well
+ * shaped tetrahedra would be as long as the layer is thick, and thousands would be needed to fill
+ * it. So tetrahedra across thin layers are accepted although they are flat.
  *
- * Method: the boundary of each region falls into sides, which are what is connected across edges
- * that bend by less than 45 degrees. A side is as wide as a square with the same ratio of area to
+ * Method: the boundary of each region is divided into sides: triangles connected across edges that
+ * bend by less than 45 degrees. A side is as wide as a square with the same ratio of area to
  * perimeter, or with the same area if that is narrower. A tetrahedron is across a layer if all its
- * points lie on the boundary, two of them on sides that face each other, close to each other for
- * its size, and twenty times closer than either side is wide.
+ * points lie on the boundary and two of them lie on sides that face each other. The distance of
+ * these sides has to be small for the size of the tetrahedron, and at most a twentieth of the width
+ * of either side.
  *
  * Cost: O(n log n) to build; O(1) for a tetrahedron. About 100 bytes per triangle.
  */
@@ -27,23 +29,29 @@ namespace cdm
 class ThinLayers
 {
 public:
-  /** The surface has labels. Triangles at each of its points. Both have to outlive the object. */
+  /**
+   * Surface and lists have to outlive the object. The surface has labels; pointTriangles lists the
+   * triangles at each of its points.
+   */
   ThinLayers(const TriangleMesh& surface, const IdLists& pointTriangles);
   /**
-   * Of the same surface after some triangles have been split.
-   * @param parents of each triangle, one that was in its facet before
+   * The thin layers of the same surface after some triangles have been split.
+   * @param parents for each triangle one of the coarse surface in the same surface facet
    */
   ThinLayers(
     const ThinLayers& coarse, const IdLists& pointTriangles, const std::vector<Id>& parents);
 
-  /** Of a region; ids of points that the surface does not have are larger than its own. */
+  /**
+   * Whether a tetrahedron of a region is across a thin layer. Ids of interior points are larger
+   * than those of the surface.
+   */
   bool IsAcross(const TetrahedronIds& ids, Id region) const;
 
 private:
   /** A triangle as seen from the region on one side. */
   struct Face
   {
-    /** Out of the region, of length one. */
+    /** Unit normal that points out of the region. */
     Vec3 Normal;
     /** How wide the side is that the face belongs to. */
     double Width = 0.0;

@@ -3,10 +3,11 @@
  * @file VolumeRefinement.h
  * @brief Steiner points for tetrahedra that are too large or badly shaped.
  *
- * Method: tetrahedra that break a limit, the largest first, then the worst shaped, get a point at
- * the circumcenter or off-center (TetrahedronLimits.h); if it disturbs triangles or structural
- * edges of the boundary (BoundarySpheres.h), that which it disturbs most is requested to be split
- * instead. Which tetrahedra are left as they are, see RefinedMesh.h.
+ * Method: tetrahedra that break a limit get a point at the circumcenter or off-center
+ * (TetrahedronLimits.h), the largest first, then the worst shaped. If the point would encroach on
+ * triangles or structural edges of the boundary (BoundarySpheres.h), a split of the one it
+ * encroaches on most is requested instead. RefinedMesh.h says which tetrahedra are left as they
+ * are.
  *
  * Reference: J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998,
  * doi:10.1145/276884.276894 (what is split instead, and why it ends).
@@ -21,10 +22,13 @@
 
 namespace cdm
 {
-/** Free points closer to another one than this, or than 0.3 of the sizing, which may be empty. */
+/**
+ * Removes free points closer to another one than smallest or than 0.3 of the sizing, which may be
+ * empty.
+ */
 void RemoveClosePoints(double smallest, const SizingField& sizing, RefinedMesh& mesh);
 
-/** Until no tetrahedron breaks a limit, but for those that need the boundary split. */
+/** Refines until no tetrahedron breaks a limit, except those that need a split of the boundary. */
 Status RefineByLimits(bool isShapeTested, const ExecutionContext& context, RefinedMesh& mesh);
 } // namespace cdm
 

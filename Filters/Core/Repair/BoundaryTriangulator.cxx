@@ -352,7 +352,7 @@ private:
     return this->Triangles.empty() ? this->MakeNothingLeft() : Status();
   }
 
-  /** What is left where polygons overlap in whole triangles. */
+  /** Drops copies of triangles, which are left where polygons overlap in whole triangles. */
   Status DropDuplicateTriangles()
   {
     const Id n = static_cast<Id>(this->Triangles.size());
@@ -602,7 +602,7 @@ private:
 
   std::vector<Id> Representatives;
   PolygonOutlines Polygons;
-  /** Of each input polygon, united with those of its copies. */
+  /** Labels of each input polygon, united with those of its copies. */
   std::vector<RegionPair> Labels;
   std::vector<TriangleIds> Triangles;
   std::vector<Id> Sources;

@@ -17,7 +17,7 @@
  *  6. find all pairs of triangles that cross, overlap or touch other than in a common edge or
  *     vertex, exactly (TriangleIntersection.h); as an option split them along their intersections
  *     (IntersectionResolver.h);
- *  7. turn over the triangles that are reversed, where labels or closure tell
+ *  7. reverse the triangles whose orientation is wrong, where labels or closure tell
  *     (SurfaceOrientation.h).
  *
  * What a tolerance of zero does not mend: a vertex beside an edge, off by a rounding error (as when
@@ -34,8 +34,9 @@
  * keep their exact coordinates. Deterministic.
  * Uniting labels: a side labelled OutsideRegion takes the region that a copy of the polygon has on
  * that side; two different regions on one side contradict each other.
- * Failure: InvalidInput names the cells (self-intersections: unless they are only to be reported)
- * or the points; the output is then empty except for Problems and Report.
+ * Failure: InvalidInput names cells or points, SelfIntersecting the cells that intersect (unless
+ * they are only to be reported); InvalidOption and LimitReached see Status.h. The output is then
+ * empty except for Problems and Report.
  * Cost: O(n log n) for n triangles of bounded overlap.
  */
 #ifndef cdmBoundaryTriangulator_h
@@ -84,7 +85,7 @@ enum class SurfaceProblemKind : unsigned char
   PatchedGap,
   /** An open edge left as it is. */
   OpenEdge,
-  /** A polygon against the orientation of the others; the triangles were turned over. */
+  /** A polygon against the orientation of the others; its triangles were reversed. */
   ReversedPolygon
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CoincidentPoints.h
- * @brief Which points are to be merged: equal ones, and those closer than a tolerance.
+ * @brief Finds points to be merged: equal ones, and those closer than a tolerance.
  *
  * Guarantees: the lowest id of equal points stays; with a tolerance points are taken in the order
  * of their ids, and each is merged into the lowest one within the tolerance that stays, or stays

@@ -124,7 +124,7 @@ std::vector<TriangleIds> CuttingRound::Cut(Id t, std::size_t& safe) const
   {
     if (!patch.AddOutline(loop))
     {
-      // Rounding has turned a narrow loop over: what it holds is settled in the next round.
+      // Rounding has reversed a narrow loop: what it holds is settled in the next round.
       for (std::size_t i = 2; i < loop.size(); ++i)
       {
         fans.push_back({ loop[0], loop[i - 1], loop[i] });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CuttingRound.h
- * @brief One round of cutting triangles along their intersections: what meets, and the pieces.
+ * @brief One round of cutting triangles along their intersections.
  *
  * Method: add all pairs that intersect, connect the chains, then cut the triangles that change.
  *  1. points where an edge pierces a triangle or crosses an edge are made once (PointGrid.h);
@@ -64,7 +64,7 @@ private:
   using EdgeRange =
     std::pair<std::vector<EdgeTriangle>::const_iterator, std::vector<EdgeTriangle>::const_iterator>;
   /**
-   * Points on a line that two triangles have in common, or that is an edge of one: the other NoId.
+   * Points on the common line of two triangles, or on an edge of one: then the other one is NoId.
    */
   struct Chain
   {

@@ -40,7 +40,10 @@ struct Piece
   UnionPiece History;
   /** Changed since the last search for intersections. */
   bool IsActive = true;
-  /** On one line, or a triangle of the input narrower than the tolerance; removed next. */
+  /**
+   * Whether its points lie on one line, or it is a triangle of the input narrower than the
+   * tolerance; removed next.
+   */
   bool IsDegenerate = false;
 };
 
@@ -466,9 +469,9 @@ private:
   IntersectionResolverReport& Report;
   std::vector<Vec3> Points;
   std::vector<TriangleIds> Triangles;
-  /** One for each triangle. */
+  /** What is known of each triangle. */
   std::vector<Piece> Pieces;
-  /** For each triangle of the input. */
+  /** Marks the triangles of the input that were cut. */
   std::vector<char> IsCut;
   double Tolerance = 0.0;
 };

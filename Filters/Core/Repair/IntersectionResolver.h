@@ -32,9 +32,10 @@
  * those of intersecting triangles merged if nearer than the tolerance; a triangle without
  * intersections is changed only where a neighbour's cut divides its edge, or if it is narrower than
  * the tolerance. Deterministic.
- * Failure: InvalidInput names the cells that still intersect after MaximumRounds (seen where many
- * triangles cross at angles of some hundred tolerances over their length), or that cover each other
- * with different regions on the same side; the surface is then left as it was.
+ * Failure: SelfIntersecting names the cells that still intersect after MaximumRounds (seen where
+ * many triangles cross at angles of some hundred tolerances over their length); InvalidInput those
+ * that cover each other with different regions on the same side; InvalidOption is for options out
+ * of range. The surface is then left as it was.
  * Cost: O(n log n) per round for n triangles of bounded overlap, k^2 in a triangle with k cuts.
  *
  * Reference: D. Halperin, E. Packer, "Iterated snap rounding", Computational Geometry 23 (2002),
@@ -76,7 +77,7 @@ struct IntersectionResolverReport
   /** Rounds that cut or merged. */
   int Rounds = 0;
   Id MergedPoints = 0;
-  /** Of the input. */
+  /** Triangles of the input that were cut. */
   Id CutTriangles = 0;
   /** Pieces left out because they do not bound the outside. */
   Id InternalTriangles = 0;

@@ -25,7 +25,10 @@ bool IsEdgeLess(const VertexOnEdge& a, const VertexOnEdge& b)
   return a.Edge < b.Edge;
 }
 
-/** For a point that lies in the box of the edge and is none of its ends. */
+/**
+ * Whether a point lies on an edge. The point has to lie in the box of the edge and must not be one
+ * of its ends.
+ */
 bool IsOnEdge(const std::vector<Vec3>& points, const EdgeIds& edge, const Vec3& p, double tolerance)
 {
   const Vec3& a = points[edge[0]];

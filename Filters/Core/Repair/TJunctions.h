@@ -23,7 +23,7 @@ namespace cdm
 /** A vertex that lies on an edge of a polygon. */
 struct TJunction
 {
-  /** That of the polygon at the edge. */
+  /** The cell of the polygon at the edge. */
   Id Cell = NoId;
   Id Vertex = NoId;
 };

@@ -17,10 +17,10 @@ namespace cdm
 {
 namespace
 {
-/** After so many attempts all edges of curved facets are structural. */
+/** After this many attempts the edges of all triangles are judged without the accuracy angle. */
 constexpr int LargestNumberOfAttempts = 20;
 
-/** One attempt. */
+/** One attempt to refine the surface, by one plan. */
 class SurfaceRefiner
 {
 public:
@@ -34,8 +34,8 @@ public:
   Status Run();
 
   /**
-   * Marks the triangles of the input that refinement did not come to an end with because their
-   * facet is curved. Returns whether there are any that were not marked before.
+   * Marks triangles of the input where the refinement did not end because their facet is curved.
+   * Returns whether any of them was not marked before.
    */
   bool FindCrumpled(std::vector<char>& isExact) const;
 
@@ -56,16 +56,16 @@ private:
   const SurfaceRefinementPlan& Plan;
   const ExecutionContext& Context;
   DelaunaySurfaceRefinerOutput& Output;
-  /** None if the input is not valid. */
+  /** Null if the input is not valid. */
   std::unique_ptr<SurfaceRefinement> Refinement;
-  /** Points of the surface, and with mesh points. */
+  /** Number of points of the surface, and of these together with mesh points. */
   Id NumberOfSurfacePoints = 0;
   Id NumberOfGivenPoints = 0;
-  /** Triangles of the input of which flips have made two sheets the same. */
+  /** Triangles of the input where flips have made two sheets equal. */
   std::vector<Id> Duplicates;
 };
 
-/** Those that keep clear of the surface. */
+/** Selects the mesh points that keep clear of the surface. */
 std::vector<Vec3> SurfaceRefiner::CollectMeshPoints(int numberOfThreads)
 {
   std::vector<Vec3> kept;
@@ -110,7 +110,10 @@ Status SurfaceRefiner::Prepare(int numberOfThreads)
   return Status();
 }
 
-/** One by one, so that points which match those are made before the next one. */
+/**
+ * Splits the requested edges and triangles one by one, so that points which match one split are
+ * made before the next split.
+ */
 Status SurfaceRefiner::SplitRequested()
 {
   const ExecutionContext part = this->Context.Part(0.1, 0.95);
@@ -285,8 +288,8 @@ Status SurfaceRefiner::Run()
 }
 
 /**
- * The attempts at one surface: with the usual rules, with those for corners and thin layers,
- * and by the criterion Delaunay alone, until one comes to its end.
+ * Attempts to refine one surface: with the usual rules, with those for corners and for thin layers,
+ * and by the criterion Delaunay alone, until one attempt ends.
  */
 class SurfaceAttempts
 {
@@ -311,7 +314,7 @@ private:
   ExecutionContext GetNextPart();
 
   const DelaunaySurfaceRefinerInput& Input;
-  /** Structural edges become more. */
+  /** The options, whose IsExact is extended from attempt to attempt. */
   DelaunaySurfaceRefinerOptions Options;
   const ExecutionContext& Context;
   DelaunaySurfaceRefinerOutput& Best;
@@ -321,7 +324,7 @@ private:
   double Begin = 0.0;
 };
 
-/** How many attempts there will be nobody knows: each gets a part of what is left. */
+/** Progress of the next attempt. Their number is not known: each gets a part of what is left. */
 ExecutionContext SurfaceAttempts::GetNextPart()
 {
   const double part = this->Options.StructuralEdges.AccuracyAngle > 0.0 ? 0.5 : 0.9;
@@ -329,7 +332,10 @@ ExecutionContext SurfaceAttempts::GetNextPart()
   return this->Context.Part(begin, this->Begin);
 }
 
-/** Where curvature, or flips, keep a plan from its end, the edges there become structural. */
+/**
+ * Refines by one plan. If curved facets or flips keep it from ending, the edges there become
+ * structural, and it is tried again.
+ */
 Status SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
 {
   for (int attempt = 0;; ++attempt)
@@ -356,7 +362,10 @@ Status SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
   }
 }
 
-/** If it is better than what there is: of two that can be meshed the one with fewer faults. */
+/**
+ * Keeps an output if it is better than the best so far: fewer triangles that cannot be meshed, then
+ * fewer that miss the criterion.
+ */
 void SurfaceAttempts::Keep(DelaunaySurfaceRefinerOutput&& output)
 {
   const auto rate = [](const DelaunaySurfaceRefinerOutput& x)

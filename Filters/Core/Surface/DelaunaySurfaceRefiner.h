@@ -13,28 +13,28 @@
  *  2. test each triangle by the chosen criterion, with the double sphere (Crit. 6.1) in at most two
  *     searches of the point octree, and remember the sphere that proves it. For criterion 3.2 the
  *     structural edges come before all triangles, the shortest first, then the smallest triangle;
- *     for 3.1 those of triangles that fail, the one first whose disturbing point is closest to its
- *     middle;
- *  3. for a triangle that fails: flip; or split the structural edge that is disturbed at the foot
- *     or the partner of the disturbing point (types P and R); or mirror the disturbing point into
- *     the triangle's facet, about the edge or corner where the facets meet or along the normal; or
+ *     for 3.1 only edges of triangles that fail are tested, and the edge comes first whose
+ *     encroaching point is closest to its middle;
+ *  3. for a triangle that fails: flip; or split an encroached structural edge, at the foot or the
+ *     partner of the encroaching point (types P and R); or mirror the encroaching point into the
+ *     triangle's facet, about the edge or corner where the facets meet or along the normal; or
  *     insert the projected circumcenter found by the walk (Fig. 6.10); or split the longest edge.
  *     Points in facets come last, when no edge is left to split.
- *     The rules and why they end: Filters/Core/README.md;
+ *     Filters/Core/README.md has the rules, and says why they end;
  *  4. test again the triangles whose proving sphere holds the new point;
- *  5. if that does not end within the limits: all anew with the rules for corners, then with those
- *     for thin layers (MatchingRules in PartnerPoints.h), then by the criterion Delaunay alone;
- *  6. with an accuracy angle, facets are curved, and points that mend one triangle may disturb its
- *     neighbors for ever. Triangles of the input where points come much closer than the input's are
- *     set aside; their edges become structural, and all begins anew. So do those of sheets within
- *     FlatnessRatio of each other that flips have made the same.
+ *  5. if that does not end within the limits: start again with the rules for corners, then with
+ *     those for thin layers (MatchingRules in PartnerPoints.h), then with the criterion Delaunay;
+ *  6. with an accuracy angle surface facets are curved, and points that mend one triangle may
+ *     encroach on its neighbors without end. Where new points come much closer to each other than
+ *     those of the input, the edges of the input triangles become structural, and the refinement
+ *     starts again. The same is done where flips have made two sheets within FlatnessRatio equal.
  *
  * Guarantees: exact decisions; input points keep their coordinates and ids; new points follow them.
  * Deterministic.
- * Failure: InvalidInput for a surface that breaks the invariants of TriangleMesh.h, or of which two
- * sheets within FlatnessRatio become the same triangles whatever edges are structural. Triangles
- * that miss the criterion are listed in UnresolvedTriangles, never silently; those that cannot even
- * be meshed in NonDelaunayTriangles.
+ * Failure: InvalidInput for a surface that breaks the invariants of TriangleMesh.h, or that has two
+ * sheets within FlatnessRatio which become the same triangles whatever edges are structural.
+ * Triangles that miss the criterion are listed in UnresolvedTriangles; those that cannot even be
+ * meshed also in NonDelaunayTriangles.
  * Cost: a triangle that is Delaunay takes one search of the octree, O(log n); a new point takes a
  * few searches and one query of the spheres that prove the other triangles. About 350 bytes per
  * triangle. Measured in Testing/Benchmarks/Surface.md.
@@ -53,13 +53,14 @@ namespace cdm
 {
 enum class SurfaceCriterion
 {
-  /** Criterion 5.2 by the double sphere 6.1: the surface is part of the Delaunay mesh. */
+  /** Criterion 5.2 by the double sphere 6.1: every triangle is part of the Delaunay mesh. */
   Delaunay = 0,
-  /** Criterion 3.1: the smallest sphere of each triangle is empty. */
+  /** Criterion 3.1: the smallest sphere of each triangle is empty (it is Gabriel). */
   SmallestSphere = 1,
   /**
-   * Criterion 3.2: those of each triangle and of its structural edges are: closed control volumes.
-   * Edges inside of a facet are left out: the criterion for them would forbid obtuse angles.
+   * Criterion 3.2: the smallest spheres of each triangle and of its structural edges are empty.
+   * This closes the control volumes. Edges inside of a surface facet are left out: the criterion
+   * would forbid obtuse angles there.
    */
   SmallestSphereAndEdges = 2
 };
@@ -80,10 +81,10 @@ struct DelaunaySurfaceRefinerOptions
   /** No edge is made shorter than this ratio of the diagonal. >= 0. */
   double MinimumEdgeRatio = 1e-9;
   /**
-   * The refinement stops when it has made so many points, but for what the criterion Delaunay
-   * needs. 0: 50 for each triangle, at least 20000, or 1000000 where sizes or angles are asked for,
-   * and one for each mesh point. Surfaces that need more are hardly meant: sheets a hair apart that
-   * run into each other.
+   * The refinement stops when it has made this many points, except for what the criterion Delaunay
+   * needs. 0: 50 for each triangle, at least 20000, or 1000000 where sizes or angles are asked for;
+   * and one for each mesh point. Surfaces that need more are hardly intended: they have sheets a
+   * hair apart that run into each other.
    */
   Id MaximumNewPoints = 0;
 };
@@ -94,13 +95,13 @@ struct DelaunaySurfaceRefinerInput
   /** May be null. */
   const std::vector<Vec3>* MeshPoints = nullptr;
   /**
-   * May be empty. Of anisotropic spacing the largest length counts: Delaunay triangles that were as
-   * long as that in one direction and shorter in another would need points to match on all sides.
+   * May be empty. If the spacing is anisotropic, its largest length counts: Delaunay triangles that
+   * were long in one direction and short in another would need matching points on all sides.
    */
   SizingField Sizing;
   /**
-   * Triangles and structural edges to be split once each, if the criterion and the flips have not
-   * changed them before: what a stage after this one wants finer.
+   * Triangles and structural edges that a later stage wants split once each, unless the criterion
+   * and the flips have changed them before.
    */
   std::vector<Id> TrianglesToSplit = {};
   std::vector<EdgeIds> EdgesToSplit = {};
@@ -128,9 +129,9 @@ struct DelaunaySurfaceRefinerOutput
   std::vector<Id> KeptMeshPoints;
   /** Triangles that do not fulfil the criterion, or have an edge that does not, ascending. */
   std::vector<Id> UnresolvedTriangles;
-  /** Those of them whose smallest spheres are not empty though the criterion asks for it. */
+  /** Unresolved triangles whose smallest spheres are not empty though the criterion asks for it. */
   std::vector<Id> WeakTriangles;
-  /** Those that are not strongly Delaunay: no mesh can be made with them. */
+  /** Unresolved triangles that are not strongly Delaunay: no mesh can be made with them. */
   std::vector<Id> NonDelaunayTriangles;
   DelaunaySurfaceRefinerReport Report;
   std::vector<Warning> Warnings;

@@ -12,9 +12,9 @@ namespace cdm
 {
 namespace
 {
-/** So many triangles a walk may take. */
+/** Largest number of triangles on a walk. */
 constexpr int LongestWalk = 10000;
-/** Among the edges around so many triangles one is looked for that a new point would disturb. */
+/** Largest number of triangles whose edges are searched for one that a new point encroaches on. */
 constexpr std::size_t LargestCavity = 1000;
 } // namespace
 
@@ -76,7 +76,7 @@ bool FacetWalk::Run(Id t, Id mirrored, const Vec3& target, Landing& landing) con
       }
       else
       {
-        // It may have been made before on the other side of a layer.
+        // The point may have been made already, for the other side of a layer.
         NearestPointVisitor visitor(
           position, NoId, std::max(2.0 * Distance(position, this->Points[ids[0]]), SamePoint));
         this->Octree.Visit(visitor, visitor.GetReach());

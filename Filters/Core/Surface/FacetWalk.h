@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FacetWalk.h
- * @brief Where in a facet a point is to be put that a triangle needs, and what would be in its way.
+ * @brief Finds where to insert a point in a surface facet, and which edge it would encroach on.
  *
- * Method (thesis 6.3, "Locate Triangle"): from triangle to triangle, always over the edge that
- * faces the target most, to the triangle above or below the target, or to a structural edge. In
- * plane facets that is the way to the target itself.
+ * Method (thesis 6.3, "Locate Triangle"): walks from triangle to triangle, always across the edge
+ * that faces the target most. The walk ends in the triangle above or below the target, or at a
+ * structural edge. In plane facets it ends at the target itself.
  *
- * Floating point, but for spheres. Deterministic. Cost: one step for each triangle on the way.
+ * Floating point; only spheres are tested exactly. Deterministic. Cost: one step for each triangle
+ * on the way.
  */
 #ifndef cdmFacetWalk_h
 #define cdmFacetWalk_h
@@ -25,14 +26,20 @@ namespace cdm
 class FacetWalk
 {
 public:
-  /** All have to outlive the object. @param diagonal of the surface */
+  /**
+   * All arguments have to outlive the object.
+   * @param diagonal of the surface
+   */
   FacetWalk(const RefinableSurface& surface, const PartnerPoints& partners,
     const std::vector<Vec3>& points, const PointOctree& octree, double diagonal)
     : Surface(surface), Partners(partners), Points(points), Octree(octree), Diagonal(diagonal)
   {
   }
 
-  /** At a position in or on an edge (0 to 2) of a triangle, or at a segment. */
+  /**
+   * Where a walk ends: at a position inside of a triangle or on one of its edges (0 to 2), or at a
+   * segment.
+   */
   struct Landing
   {
     Id Triangle = NoId;
@@ -42,16 +49,16 @@ public:
   };
 
   /**
-   * From a triangle to a target in its facet. False if that leads nowhere, as it may on curved
-   * facets.
+   * Walks from a triangle to a target in its facet. False if the walk does not arrive, as may
+   * happen on curved facets.
    * @param mirrored the point that the target is to match, or NoId
    */
   bool Run(Id triangle, Id mirrored, const Vec3& target, Landing& landing) const;
 
   /**
-   * A segment whose diametral sphere holds a position, among those around the triangles whose
-   * smallest spheres hold it, too, from one of them: these are the triangles that a point there
-   * would replace.
+   * A segment on which a position would encroach. Looks only at edges of the triangles that a point
+   * there would replace: those whose smallest spheres hold the position, connected to the given
+   * one.
    */
   Id FindEncroachedSegment(Id triangle, const Vec3& position);
 

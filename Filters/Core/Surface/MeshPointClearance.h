@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshPointClearance.h
- * @brief Which mesh points keep clear of a surface and of each other (thesis 6.2).
+ * @brief Finds the mesh points that keep clear of a surface and of each other (thesis 6.2).
  *
- * Points closer to a triangle than the clearance are of no use, nor are all but the first of those
- * that coincide, nor points that are no numbers. Cost: O(n log n).
+ * Dropped are points closer to a triangle than the clearance, all but the first of coincident
+ * points, and points that are not finite. Cost: O(n log n).
  */
 #ifndef cdmMeshPointClearance_h
 #define cdmMeshPointClearance_h

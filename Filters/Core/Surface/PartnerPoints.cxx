@@ -31,13 +31,13 @@ constexpr double CloseEndRatio = 0.25;
  * is matched instead. */
 constexpr double CloseMatchRatio = 0.5;
 /**
- * Lines and planes whose cosine is not above this are perpendicular: no point has a partner there.
- * Of turned devices rounding would make partners of them here and there, and a quarter more points.
+ * Lines and planes with a cosine up to this are perpendicular: no point has a partner there.
+ * Otherwise rounding would make a few partners in rotated devices, and a quarter more points.
  */
 constexpr double PerpendicularCosine = 1e-9;
 /** Facets at 60 degrees or less are mirrored onto each other at the plane between them. */
 constexpr double MirrorCosine = 0.5;
-/** In the last place of the coordinates: no search for a match that is to be so exact. */
+/** If a match had to be more exact than this, in units in the last place, none is searched. */
 constexpr double HopelessMatch = 0.02;
 
 // The ratios that follow belong to the rules for thin layers.
@@ -47,17 +47,17 @@ constexpr double PassingSquaredSine = 0.01;
 constexpr double PassingGapRatio = 0.1;
 /** ... and than this part of the disturbing point's way along its edge from there. */
 constexpr double PassingWayRatio = 0.5;
-/** In place of NeedleGapRatio and CloseEndRatio. */
+/** Used instead of NeedleGapRatio and CloseEndRatio. */
 constexpr double LayerGapRatio = 0.1;
 constexpr double LayerEndRatio = 0.1;
 } // namespace
 
 /**
  * The partner of a point on another edge: the point of this edge's line that is as far from the
- * common perpendicular of the two lines; passing: where the edges pass each other, or -1. If the edges meet, that is type R about their corner; if
- * they are parallel it is type P. Being partners is mutual, so that two edges never climb up a
- * ladder between them, and a point is outside of the diametral spheres of all pieces that end at
- * its partner.
+ * common perpendicular of the two lines. That is type R about the common corner if the edges meet,
+ * and type P if they are parallel. Being partners is mutual. So two edges never climb up a ladder
+ * between them, and a point is outside of the diametral spheres of all pieces that end at its
+ * partner. passing: where the edges pass each other, or -1.
  */
 bool PartnerPoints::PlaceOnLine(
   Id segment, Id disturbing, double& way, Vec3& along, double& passing) const
@@ -122,8 +122,9 @@ bool PartnerPoints::PlaceOnLine(
 }
 
 /**
- * The partner of a point in a facet that shares a corner with the edge: as far from the corner. The
- * foot would be nearer to it, and what matches that nearer still, in turns about the corner.
+ * The partner on an edge of a point in a facet with which the edge shares a corner: the point as
+ * far from the corner. The foot of the perpendicular would be nearer to the corner, the point
+ * matching the foot nearer still, and so on around the corner.
  */
 bool PartnerPoints::RotateToSegment(Id segment, Id disturbing, double& way) const
 {
@@ -227,7 +228,7 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id disturbing) const
       {
         return position;
       }
-      // A point that is much nearer is the one to match exactly.
+      // Another point that is much nearer to the position is matched exactly instead.
       NearestPointVisitor visitor(position, NoId, CloseMatchRatio * height);
       this->Octree.Visit(visitor, visitor.GetReach());
       if (attempt == 0 && visitor.Nearest != NoId && visitor.Nearest != disturbing &&
@@ -341,7 +342,7 @@ bool PartnerPoints::RotateAboutCorner(Id t, Id disturbing, Vec3& target) const
     const Vec3 across = cosine < 0.0 ? normal - own : normal + own;
     target = p - (Dot(arm, normal) / (1.0 + std::abs(cosine))) * across;
   }
-  // Steep or far beyond the triangle, the turned point would do nothing for it.
+  // If the facets are steep, or the rotated point is far beyond the triangle, it would not help.
   return SquaredNorm(inPlane) > 0.25 * SquaredNorm(arm) && InEquatorialSphere(a, b, c, target) > 0;
 }
 
@@ -388,7 +389,7 @@ bool PartnerPoints::Project(Id t, Id disturbing, Vec3& target) const
 
 bool PartnerPoints::PlaceInFacet(Id t, Id disturbing, Vec3& target) const
 {
-  // A point of the same facet, which is curved then, would be matched by ones ever closer to it.
+  // The point lies in the same (curved) facet: matches would come ever closer to it.
   const IdLists::Range facets = this->Incidences.GetFacets(disturbing);
   if (std::find(facets.begin(), facets.end(), this->Surface.GetTriangle(t).Facet) != facets.end())
   {

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PartnerPoints.h
- * @brief Where a new point goes so that it and the point that disturbs leave each other alone.
+ * @brief Partner points: where to split an encroached edge or facet so that refinement ends.
  *
- * A point that disturbs an edge or a triangle is answered by its partner there (thesis 5.2.2, types
- * P and R; Filters/Core/README.md has the proofs): two features never disturb each other for ever.
+ * A point that encroaches on an edge or a triangle is answered by its partner there (thesis 6.3,
+ * types P and R). Neither of the two encroaches on the pieces that end at the other, so two
+ * features cannot keep encroaching on each other. Filters/Core/README.md has the proofs. The
+ * thesis, and names in the code, call the encroaching point the disturbing one.
  *
- *  1. On an edge: the point as far from the common perpendicular of the disturbing point's edge and
- *     this one; for edges with a corner in common that is a rotation about it (type R), for
- *     parallel ones a projection (type P). Without an edge the point's projection; near an acute
- *     corner a power of two of the unit of length, so that all edges there end up alike; otherwise
- *     the middle.
- *  2. In a facet: the disturbing point is rotated about the edge that the two facets share, or
- *     about a corner that they share, or projected along the normal, in this order.
- *  3. The last digits are chosen so that the two match exactly (MatchingPoints.h).
+ *  1. Partner on an edge: the point as far from the common perpendicular as the encroaching point
+ *     is on its own edge. If the edges have a common corner, this is a rotation about it (type R);
+ *     if they are parallel, a projection (type P). If the encroaching point lies on no edge, its
+ *     projection is taken. Edges split for no point are split near an acute corner at a power of
+ *     two of the unit of length (concentric shells), so that all edges there end up alike;
+ *     otherwise in the middle.
+ *  2. Partner in a facet: the encroaching point is rotated about the edge that the two facets
+ *     share, or about a corner that they share, or projected along the normal, in this order.
+ *  3. The last bits are chosen so that the two points match exactly (MatchingPoints.h).
  *
  * Cost: constant, but for the search of shared edges and corners.
  */
@@ -30,20 +33,24 @@
 
 namespace cdm
 {
-/** Which places for new points are tried; surfaces that one does not end on may need the other. */
+/**
+ * Which positions for new points are tried. A surface on which one set of rules does not end may
+ * need another.
+ */
 enum class MatchingRules : char
 {
   /** Feet on edges, projections in facets: fewest points where sheets and edges are few. */
   Usual,
   /**
-   * For bodies that touch in corners and edges: what matches a point is as far from a common corner
-   * as it is, and mirrored at the plane between two facets.
+   * For bodies that touch in corners and edges. A partner is as far from a common corner as the
+   * encroaching point, and mirrored at the plane midway between two facets.
    */
   Corners,
   /**
    * For stacks of sheets that are much closer to each other than their triangles are wide. Edges
-   * that pass each other are split where they do; points that match those of several sheets keep
-   * away from each other; around corners new points in facets keep to the distances that there are.
+   * that pass each other are split where they do. Partners keep away from points that match those
+   * of other sheets. Around corners, new points in facets keep to the distances that are there
+   * already.
    */
   ThinLayers
 };
@@ -51,7 +58,10 @@ enum class MatchingRules : char
 class PartnerPoints
 {
 public:
-  /** All are shared with the caller, who may append to them. Diagonal: of the bounding box. */
+  /**
+   * All arguments are shared with the caller, who may append to them. Diagonal: of the bounding
+   * box.
+   */
   PartnerPoints(const RefinableSurface& surface, SurfaceIncidences& incidences,
     const std::vector<Vec3>& points, const PointOctree& octree, double diagonal,
     MatchingRules rules)
@@ -61,15 +71,18 @@ public:
   }
 
   /**
-   * Where to split a segment that a point disturbs; NoId: that has to be split for other reasons.
+   * Where to split a segment on which a point encroaches; NoId: the segment is split for another
+   * reason.
    */
   Vec3 PlaceOnSegment(Id segment, Id disturbing) const;
 
-  /** The partner in the plane of a triangle, maybe beyond its facet. False if there is none. */
+  /**
+   * The partner in the plane of a triangle, which may lie beyond its facet. False if there is none.
+   */
   bool PlaceInFacet(Id triangle, Id disturbing, Vec3& target) const;
 
   /**
-   * Moves a point in the plane of a triangle by rounding errors, so that it matches the disturbing
+   * Moves a point in the plane of a triangle by rounding errors, so that it matches the encroaching
    * point exactly. Radius: of the circumcircle of the triangle that is refined.
    */
   Vec3 MatchAcross(Id triangle, Id disturbing, const Vec3& position, double radius) const;

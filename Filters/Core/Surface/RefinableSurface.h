@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RefinableSurface.h
- * @brief A surface with adjacency whose smooth edges flip and whose edges and triangles split.
+ * @brief A surface with adjacency whose smooth edges can be flipped and whose edges and triangles
+ *   can
+ * be split.
  *
- * Triangles meet across smooth edges, always two and two, turned alike; structural edges are made
- * of segments, each of which knows all triangles at it. A facet is a set of triangles connected
- * across smooth edges. Edge i of triangle t runs from its vertex i to vertex i + 1; 3 * t + i is
- * its use.
+ * Two triangles with equal orientation meet across each smooth edge. Structural edges are made of
+ * segments, each of which knows all triangles at it. In this file a facet is a surface facet: a set
+ * of triangles connected across smooth edges (the facet of a piecewise linear complex, PLC; curved
+ * if there is an accuracy angle). Edge i of triangle t runs from its vertex i to vertex i + 1; its
+ * use is 3 * t + i.
  *
  * Invariants: Adjacent[i] of a triangle is the use at the other side of a smooth edge, whose
  * Adjacent points back, or -1 - s for segment s, one of whose uses it then is. Triangles and
@@ -35,7 +38,7 @@ public:
     Id Facet = NoId;
     Id Source = NoId;
     RegionPair Labels;
-    /** The input turns the other way; set back by Export(). */
+    /** Reversed against the input; Export() sets it back. */
     bool IsTurned = false;
   };
 
@@ -47,7 +50,7 @@ public:
     double DihedralAngle;
     /** The input edge that the segment is a piece of: index into GetInputEdges(). */
     Id InputEdge;
-    /** Its uses are side by side in one list of all; their number never changes. */
+    /** The segment's uses are a range of one list of all uses; their number never changes. */
     Id FirstUse;
     Id NumberOfUses;
   };
@@ -79,11 +82,11 @@ public:
   /** Whether the two triangles at a smooth edge form a strictly convex quadrilateral (exact). */
   bool IsConvex(Id use) const;
 
-  /** Turn the diagonal of the quadrilateral at a smooth edge. */
+  /** Flip the diagonal of the quadrilateral at a smooth edge. */
   void Flip(Id use);
 
   /**
-   * Whether every triangle at the segment stays turned as it is if the segment is split at a
+   * Whether every triangle at the segment keeps its orientation if the segment is split at a
    * position (exact in the projection along the normal).
    */
   bool CanSplitSegment(Id segment, const Vec3& position) const;
@@ -106,7 +109,7 @@ public:
   /** Split the two triangles at a smooth edge at a point on it. */
   void SplitSmoothEdge(Id use, Id point, std::vector<Id>& uses);
 
-  /** Triangles, labels and sources, turned as in the input. */
+  /** Triangles, labels and sources, with the orientations of the input. */
   void Export(TriangleMesh& surface) const;
 
 private:

@@ -12,7 +12,7 @@ namespace cdm
 {
 namespace
 {
-/** So much less than 60 degrees, or than the limit of plane angles, is rounding. */
+/** Tolerance in degrees: angles less than this below a limit are at the limit up to rounding. */
 constexpr double AngleTolerance = 1e-7;
 constexpr double SharpDihedralAngle = 60.0 - AngleTolerance;
 
@@ -21,10 +21,13 @@ double GetCosine(double degrees)
   return std::cos(degrees / DegreesPerRadian);
 }
 
-/** Edges with a smaller sine of the angle between them go straight on: their points are rounded. */
+/**
+ * Edges with a smaller sine of the angle between them go straight on, up to rounding of their
+ * points.
+ */
 constexpr double StraightSine = 1e-6;
 
-/** Of the way from one point to another one, of length one. */
+/** Unit vector from one point to another. */
 Vec3 GetDirection(const TriangleMesh& surface, Id from, Id to)
 {
   const Vec3 way = surface.Points[to] - surface.Points[from];
@@ -250,7 +253,10 @@ void SharpAngles::ListFacets(const IdLists& pointTriangles)
   this->PointFacets.Build(numberOfPoints, pairs);
 }
 
-/** Of the edge to another point, in the facets of the first edge that are on its side. */
+/**
+ * Finds the shadows of the edge from the corner to other, on the facets of the edge to first that
+ * are on its side.
+ */
 void SharpAngles::FindShadows(Id corner, Id first, Id other, const IdLists::Range& triangles,
   std::vector<Shadow>& shadows) const
 {

@@ -3,20 +3,23 @@
  * @file SharpAngles.h
  * @brief Which tetrahedra lie in sharp angles of a surface.
  *
- * Sharp are dihedral angles below 60 degrees between two facets at a structural edge, and below 30
- * degrees plane angles between two structural edges at a point, and angles between two facets that
- * come together at a point, but not at an edge there. Where edges have to have empty smallest
- * spheres, these two are sharp below 60 degrees as well: each edge is split where the other one is.
- * In sharp angles, points of one side ask for points of the other side, closer to the corner and so
- * without end: refinement for shape has to stop there, and the tetrahedra from one side to the
- * other keep the shape that they have.
+ * Three kinds of input angles are sharp:
+ *  - dihedral angles below 60 degrees, between two surface facets at a structural edge;
+ *  - plane angles below 30 degrees, between two structural edges at a point;
+ *  - tips: angles below 30 degrees between two surface facets that meet at a point but at no edge
+ *    there.
+ * Where edges have to have empty smallest spheres, the last two are sharp below 60 degrees as well,
+ * because each edge is split where the other one is. In a sharp angle, points of one side ask for
+ * points of the other side that are closer to the corner, without end. So refinement for shape
+ * stops there, and tetrahedra from one side to the other ("across") keep the shape that they have.
  *
- * A side is a facet (triangles that no structural edge separates), or a structural edge with the
- * edges that go straight on from it. Facets that come together at a point may be far apart
- * elsewhere: only what the point sees less than that angle apart is across. Of two edges with a
- * sharp plane angle, each casts a shadow on the facets of the other one that are on its side: its
- * points are in the spheres of triangles there, and are matched by points as close to the other
- * edge (PartnerPoints.h). Those and the points of that edge are across, too.
+ * A side is a surface facet (triangles that no structural edge separates), or a structural edge
+ * with the edges that go straight on from it. Facets that meet in a tip may be far apart elsewhere:
+ * two points are across only if the tip sees them less than the sharp angle apart. Each of two
+ * edges with a sharp plane angle casts a shadow on the facets of the other edge that are on its
+ * side. The points of the first edge lie in the spheres of triangles there, and are matched by
+ * points as close to the other edge (PartnerPoints.h). A point in the shadow and a point of the
+ * first edge are across, too.
  *
  * Cost: O(n log n) to build; O(1) for a tetrahedron. About 60 bytes per triangle.
  */
@@ -33,21 +36,24 @@
 
 namespace cdm
 {
-/** Degrees; plane angles below are sharp. */
+/** Degrees: smaller plane angles, and smaller angles at tips, are sharp. */
 constexpr double UsualSharpPlaneAngle = 30.0;
-/** Where the smallest spheres of structural edges have to be empty. */
+/** The same where the smallest spheres of structural edges have to be empty. */
 constexpr double SharpPlaneAngleOfEmptySpheres = 60.0;
 
 class SharpAngles
 {
 public:
-  /** Triangles at each point of the surface, which outlives the object. */
+  /**
+   * The surface has to outlive the object. pointTriangles lists the triangles at each of its
+   * points.
+   */
   SharpAngles(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
     const IdLists& pointTriangles, double sharpPlaneAngle = UsualSharpPlaneAngle);
   /**
-   * Of the same surface after some triangles have been split: points have been added, the others
-   * are where they were. To find all angles again was a sixth of the time of many small rounds.
-   * @param parents of each triangle, one that was in its facet before
+   * The sharp angles of the same surface after some triangles have been split: points have been
+   * added, none was moved. This saves a sixth of the time of many small rounds.
+   * @param parents for each triangle one of the coarse surface in the same surface facet
    */
   SharpAngles(SharpAngles&& coarse, const std::vector<StructuralEdge>& edges,
     const IdLists& pointTriangles, const std::vector<Id>& parents);
@@ -61,11 +67,14 @@ public:
   bool IsAcross(const TetrahedronIds& ids) const;
 
 private:
-  /** Of an edge that makes a sharp plane angle with another one, on a facet of that one. */
+  /**
+   * The shadow that an edge casts on a surface facet of another edge with which it makes a sharp
+   * plane angle.
+   */
   struct Shadow
   {
     Id Facet;
-    /** Of the angle. */
+    /** Sine of the plane angle. */
     double Sine;
   };
 
@@ -73,12 +82,12 @@ private:
   struct Arm
   {
     Id Corner;
-    /** From the corner, of length one. */
+    /** Unit vector from the corner. */
     Vec3 Direction;
     std::vector<Shadow> Shadows;
   };
 
-  /** Two facets, the smaller one first, and a point at which they come together. */
+  /** A tip: two surface facets, the smaller one first, and the point at which they meet. */
   struct Tip
   {
     std::pair<Id, Id> Facets;
@@ -113,18 +122,18 @@ private:
   const double SharpPlaneCosine;
   /** Other ends of the structural edges at each point. */
   IdLists Neighbors;
-  /** Of each triangle. */
+  /** The surface facet of each triangle. */
   std::vector<Id> Facets;
   /** One for each point of the surface. */
   std::vector<char> IsCorner;
-  /** Of each point; those without a sharp angle are left out. */
+  /** Surface facets at each point; facets without a sharp angle are left out. */
   IdLists PointFacets;
   /** Pairs of facets with a sharp angle, the smaller one first; sorted. */
   std::vector<std::pair<Id, Id>> FacetPairs;
   /** Sorted. */
   std::vector<Tip> Tips;
   std::vector<Arm> Arms;
-  /** Of each point, but of corners only if it lies on the arm of another one. */
+  /** Arms that each point lies on. A corner is listed only on arms of other corners. */
   IdLists PointArms;
 };
 } // namespace cdm

@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file StructuralEdges.h
- * @brief Stage 1: the edges of a surface that a mesh has to keep (thesis Def. 6.2).
+ * @brief Stage 1: structural edges, the edges of a surface that a mesh has to keep (thesis Def.
+ *   6.2;
+ * "feature edges" or "sharp edges" in the literature).
  *
  * An edge is structural if it is open (one triangle), shared by more than two triangles, a border
  * between different BoundaryLabels, or if its dihedral angle differs from 180 degrees by more than
  * the accuracy angle. Two triangles count as flat, whatever the accuracy angle, if they bend by
- * less than one degree and if each opposite vertex lies within FlatnessRatio of the size of the
- * surface of the other's plane: coordinates in files are rounded.
+ * less than one degree and if each opposite vertex is no farther from the other's plane than
+ * FlatnessRatio times the size of the surface: coordinates in files are rounded.
  *
- * Exactly: let n and m be the normals of the two triangles, turned so that the triangles are
- * oriented consistently along their edge; the edge bends by the angle between n and m (0 is flat,
- * 180 folded back). The edge is smooth if it bends by no more than the accuracy angle, or by no
- * more than one degree with both distances within FlatnessRatio * diagonal. A triangle without area
- * has no normal: its edges are never smooth. Labels are compared after turning them with the
- * triangle; surfaces without labels have no label change. Where triangles have been refined, small
- * ones bend within FlatnessRatio at edges that were structural: facets known from before keep them.
+ * Exactly: let n and m be the normals of the two triangles, reversed where needed so that the
+ * triangles are oriented consistently along their edge; the edge bends by the angle between n and m
+ * (0 is flat, 180 folded back). The edge is smooth if it bends by no more than the accuracy angle,
+ * or by no more than one degree with both distances within FlatnessRatio * diagonal. A triangle
+ * without area has no normal: its edges are never smooth. Labels are compared after the triangles
+ * have been oriented consistently; surfaces without labels have no label change. After a
+ * refinement, small triangles may bend within FlatnessRatio at edges that were structural: the
+ * option Facets keeps these edges.
  *
  * Method:
  *  1. sort all edges of all triangles, judge each group of equal edges;
@@ -70,8 +73,8 @@ struct StructuralEdgeOptions
   /** Distance, as a ratio of the bounding box diagonal, within which triangles count as flat. */
   double FlatnessRatio = 1e-9;
   /**
-   * Facet of each triangle, as from NumberFacets() for the surface that this one refines: edges
-   * between different ones are structural; empty: not known.
+   * Surface facet of each triangle, as NumberFacets() gave it for the surface that this one
+   * refines: edges between different facets are structural. Empty: not known.
    */
   std::vector<Id> Facets = {};
   /** Marks triangles at whose edges the accuracy angle does not count; empty: none. */
@@ -90,8 +93,9 @@ Status ExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeO
   const ExecutionContext& context, StructuralEdgesOutput& output);
 
 /**
- * Facets are what is connected across edges that are not structural: one number for each triangle,
- * from 0, in the order of their first triangles.
+ * Numbers the surface facets (the facets of a PLC): sets of triangles connected across edges that
+ * are not structural. One number for each triangle, from 0, in the order of the facets' first
+ * triangles.
  * @param uses of the surface's triangles
  */
 std::vector<Id> NumberFacets(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceChecks.h
- * @brief What a surface has to be to be refined.
+ * @brief Checks whether a surface can be refined.
  *
  * Coordinates are finite, points do not coincide, triangles have an area; there are triangles, and
  * as many points as ids reach. Exact. Cost: O(n log n).
@@ -16,7 +16,10 @@
 
 namespace cdm
 {
-/** InvalidInput names points or triangles. @param numberOfMeshPoints beside those of the surface */
+/**
+ * InvalidInput names points or triangles.
+ * @param numberOfMeshPoints mesh points beside those of the surface
+ */
 Status CheckRefinableSurface(const TriangleMesh& surface, std::size_t numberOfMeshPoints);
 } // namespace cdm
 

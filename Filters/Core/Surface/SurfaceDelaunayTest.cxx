@@ -16,7 +16,7 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double Epsilon = std::numeric_limits<double>::epsilon();
 
-/** Of points in a sphere so many are looked for. */
+/** The search in a sphere stops after this many points. */
 constexpr std::size_t EnoughPoints = 64;
 
 /** Collects the points in and on the smallest sphere through a triangle. */
@@ -33,7 +33,7 @@ public:
     const Vec3 u = this->B - this->A;
     const Vec3 v = this->C - this->A;
     const double condition = Norm(u) * Norm(v) / Norm(Cross(u, v));
-    // Relative error of center and radius (see FourthPointSearch.cxx), with room to spare.
+    // Relative error of center and radius with room to spare.
     const double error = 64.0 * Epsilon * condition * condition;
     const double reach = this->Radius + Norm(u) + Norm(v);
     const double size = std::abs(this->A.X) + std::abs(this->A.Y) + std::abs(this->A.Z);
@@ -107,9 +107,9 @@ public:
 
   Vec3 Center;
   double Radius;
-  /** How far off center and radius may be. */
+  /** Bound of the error of center and radius. */
   double Slack;
-  /** Where the points strictly inside lie, and those on the sphere. */
+  /** Sides of the triangle with points strictly inside of the sphere, and with points on it. */
   bool IsFrontInside = false;
   bool IsBackInside = false;
   bool IsCoplanarInside = false;
@@ -123,7 +123,7 @@ private:
     (side > 0 ? isFront : side < 0 ? isBack : isCoplanar) = true;
   }
 
-  /** One point inside of the sphere settles the matter. */
+  /** Whether one point inside of the sphere is enough to end the search. */
   bool IsOneEnough;
   TriangleIds Triangle;
   Vec3 A;
@@ -254,7 +254,7 @@ void SurfaceDelaunayTest::Run(
     return;
   }
 
-  // All disturbing points lie on one side, from now on the front.
+  // All points inside lie on one side, from now on the front.
   const TriangleIds turned =
     visitor.IsFrontInside ? triangle : TriangleIds{ triangle[0], triangle[2], triangle[1] };
   const Vec3& a = this->Points[turned[0]];

@@ -30,24 +30,27 @@ class SurfaceDelaunayTest
 public:
   struct Result
   {
-    /** Strongly Delaunay, Cocircular points apart. */
+    /** Strongly Delaunay, if the Cocircular points are left aside. */
     bool IsDelaunay = false;
     /**
-     * Strictly inside of the smallest sphere through the triangle, the deepest one first; if there
-     * are many, and the triangle is not Delaunay, some of those near its center.
+     * Points strictly inside of the smallest sphere through the triangle, the deepest one first. If
+     * there are many and the triangle is not Delaunay, only some of those near its center.
      */
     std::vector<Id> InsideSmallestSphere;
-    /** On that sphere, but not in the plane of the triangle. */
+    /** Points on that sphere, but not in the plane of the triangle. */
     std::vector<Id> OnSmallestSphere;
-    /** On the circumcircle, ascending. */
+    /** Points on the circumcircle, ascending. */
     std::vector<Id> Cocircular;
     /**
-     * A ball that contains an empty sphere through the triangle: as long as no point is added
-     * within, the answer stays.
+     * A ball that contains an empty sphere through the triangle. The answer stays valid until a
+     * point is added within.
      */
     Vec3 ProofCenter;
     double ProofRadius = 0.0;
-    /** Of such a needle that its sphere may hold any point: the search was a long one. */
+    /**
+     * Whether the triangle is such a needle that its sphere may hold any point: the search took
+     * long.
+     */
     bool IsNeedle = false;
   };
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceFlips.h
- * @brief The recursive triangle flip (thesis Def. 6.1): diagonals of a surface turned to
- * saturation.
+ * @brief The recursive triangle flip (thesis Def. 6.1): flips diagonals of a surface to saturation.
  *
- * A smooth edge is turned if one of its triangles has the other's apex in its smallest sphere and
- * neither of the two that replace them has: it cannot be turned back at once. The edge has to be
- * convex, and either both diagonals are closer to each other than the flatness, or the surface
- * stays smooth by the accuracy angle. On curved facets flips may go in circles: their number is
+ * A smooth edge is flipped if one of its triangles has the other's apex in its smallest sphere and
+ * neither of the two that replace them has: so it cannot be flipped back at once. The edge has to
+ * be convex. Either both diagonals are closer to each other than the flatness, or the surface stays
+ * smooth by the accuracy angle. On curved facets flips may go in circles: their number is
  * bounded for each triangle and each new point.
  */
 #ifndef cdmSurfaceFlips_h
@@ -33,16 +32,17 @@ public:
   SurfaceFlips(RefinableSurface& surface, const std::vector<Vec3>& points, double flatness,
     double accuracyAngle);
 
-  /** Whether the diagonal of the two triangles at a use may be turned. */
+  /** Whether the diagonal of the two triangles at a use may be flipped. */
   bool CanFlip(Id use) const;
 
-  /** Whether that makes a locally bad edge a good one. */
+  /** Whether a flip makes a locally bad edge a good one. */
   bool ShouldFlip(Id use) const;
 
   void Flip(Id use);
 
   /**
-   * Turns all that should be, beginning with some uses; calls onFlip(triangle) for both triangles.
+   * Flips all diagonals that should be, beginning with some uses; calls onFlip(triangle) for both
+   * triangles.
    */
   template <typename OnFlip>
   void Saturate(std::vector<Id>& uses, const OnFlip& onFlip)
@@ -79,7 +79,7 @@ private:
   double Flatness;
   double AccuracyAngle;
   Id NumberOfFlips = 0;
-  /** So many flips are left. */
+  /** Number of flips that are left. */
   std::int64_t Budget;
 };
 } // namespace cdm

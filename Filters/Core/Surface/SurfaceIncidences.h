@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceIncidences.h
- * @brief On which facets and structural edges each point of a surface lies while it is refined.
+ * @brief Knows on which surface facets and structural edges each point lies while a surface is
+ * refined.
  *
  * Facets and input edges are those of RefinableSurface and stay the same: splits and flips change
  * neither. Points are numbered as the refiner has them: those of the surface, mesh points, which
@@ -38,7 +39,7 @@ public:
   SurfaceIncidences(const RefinableSurface& surface, const std::vector<Vec3>& points,
     Id numberOfSurfacePoints, double flatness);
 
-  /** The next new point: its facet, or NoId and its input edge; neither for a mesh point. */
+  /** Adds the next new point: its facet, or NoId and its input edge; neither for a mesh point. */
   void AddPoint(Id facet, Id inputEdge);
 
   /** Facets that a point lies on, ascending; none for a mesh point. */

@@ -20,11 +20,14 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t ReportInterval = 256;
 
-/** In curved facets, points closer than that to others, in shortest edges of the input there. */
+/**
+ * In curved facets, points closer to others than this are too close, in shortest edges of the input
+ * triangle.
+ */
 constexpr double CrumplingRatio = 1.0 / 8.0;
 /**
- * Points closer to a match than this part of the disturbing point's distance from it are match
- * enough: it is the triangle that is too large, and a match would disturb what lies between.
+ * If another point is closer to a match than this part of the encroaching point's distance, it is
+ * match enough. The triangle is too large then: a match would encroach on what lies between.
  */
 constexpr double CloseMatchRatio = 0.1;
 /** A plan that may give up does so after this part as many needles that are bad as points. */
@@ -512,7 +515,7 @@ Id SurfaceRefinement::AddPoint(
   return point;
 }
 
-/** What a new point may disturb. */
+/** Puts triangles and edges on which a new point may encroach into the queues again. */
 void SurfaceRefinement::TestAgainAround(const Vec3& position)
 {
   this->Proofs.Find(position, this->Reached);
@@ -639,7 +642,7 @@ bool SurfaceRefinement::ResolveInFacet(Id t, Id disturbing, const Vec3& target, 
       this->SplitSegment(landing.Segment, isDisturbed || isTargetPartner ? disturbing : NoId);
   }
 
-  // A point that does not disturb the triangle would not remove it (on curved facets).
+  // A point that does not encroach on the triangle would not remove it (on curved facets).
   const Vec3& position = landing.Position;
   if (this->HasPointNear(position, this->MinimumEdge) ||
     InEquatorialSphere(
@@ -665,7 +668,7 @@ bool SurfaceRefinement::ResolveInFacet(Id t, Id disturbing, const Vec3& target, 
     return this->SplitSegment(surface.GetSegmentAt(current, landing.Edge), disturbing);
   }
 
-  // A point that would disturb an edge of the facet must not be made: split the edge instead.
+  // A point that would encroach on an edge of the facet must not be made: split the edge instead.
   const Id encroached = this->Walk->FindEncroachedSegment(current, position);
   if (encroached != NoId)
   {
@@ -756,9 +759,9 @@ bool SurfaceRefinement::FindTooCoarse(Id t, Id& segment) const
 }
 
 /**
- * In a curved facet a point that mends one triangle may disturb its neighbors, which are bent
- * against it, and so on with ever smaller triangles. Points much closer than the input's are a sign
- * of that.
+ * Notes where points come too close to each other in a curved facet. There a point that mends one
+ * triangle may encroach on its neighbors, which are bent against it, and so on with ever smaller
+ * triangles. Points much closer to each other than those of the input are a sign of that.
  */
 void SurfaceRefinement::NoteCrumpling(Id t, Id newPoint)
 {
@@ -777,7 +780,7 @@ void SurfaceRefinement::NoteCrumpling(Id t, Id newPoint)
 }
 
 /**
- * Whether an end of a segment matches the disturbing point as well as the position does. The usual
+ * Whether an end of a segment matches the encroaching point as well as the position does. The usual
  * rules do not ask for it.
  */
 bool SurfaceRefinement::IsMatchedByEnd(Id segment, Id disturbing, const Vec3& position) const
@@ -790,10 +793,12 @@ bool SurfaceRefinement::IsMatchedByEnd(Id segment, Id disturbing, const Vec3& po
 }
 
 /**
- * With the rules for thin layers: in place of the circumcenter of a triangle at a corner of the
- * input, whose other points are as far from it as the nearest ones on its edges, the point between
- * them at the same distance; if one is farther away, that distance on the way there. Nearer points
- * would ask for nearer ones in all sheets that meet in the corner.
+ * Finds a point on a shell around a corner of the input, to be used instead of the circumcenter of
+ * a triangle at that corner. Only with the rules for thin layers. The triangle's other two points
+ * have to be about as far from the corner as the nearest points on its edges: then the point midway
+ * between them at that distance is taken. If one is farther away, the point at that distance on the
+ * way to it is taken. Nearer points would ask for nearer ones in all sheets that meet in the
+ * corner.
  */
 bool SurfaceRefinement::FindShellPoint(Id t, Vec3& target) const
 {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceRefinement.h
- * @brief Flips and splits a surface until all its triangles are good; more can be asked of it then.
+ * @brief Flips and splits a surface until all its triangles are good, and keeps it so afterwards.
  *
- * What DelaunaySurfaceRefiner.h does to a surface whose structural edges are known (its steps 2 to
- * 4), in an object that lives on: mesh points may come, move and go, triangles and segments may be
- * split, and only what that concerns is looked at again. Triangles and segments keep their index,
- * see RefinableSurface.h.
+ * These are steps 2 to 4 of DelaunaySurfaceRefiner.h, for a surface whose structural edges are
+ * known. The object lives on after the refinement: mesh points may come, move and go, and triangles
+ * and segments may be split; only what such a change concerns is tested again. Triangles and
+ * segments keep their index, see RefinableSurface.h.
  *
  * Cost: see DelaunaySurfaceRefiner.h; a split takes about 100 microseconds, whatever the surface's
  * size.
@@ -34,15 +34,15 @@
 
 namespace cdm
 {
-/** How a surface is refined; one that a plan does not come to an end with may need another one. */
+/** How a surface is refined. A surface on which one plan does not end may need another plan. */
 struct SurfaceRefinementPlan
 {
   MatchingRules Rules = MatchingRules::Usual;
   /** Whether triangles only have to fulfil the criterion Delaunay, and edges none. */
   bool IsRelaxed = false;
   /**
-   * What to do when as many points have been made as may be: go on with what the criterion Delaunay
-   * needs, or give up.
+   * Whether to give up at the largest number of points. Otherwise the refinement then goes on with
+   * what the criterion Delaunay needs.
    */
   bool GivesUp = false;
 };
@@ -51,8 +51,8 @@ class SurfaceRefinement
 {
 public:
   /**
-   * @param edges structural ones, sorted
-   * @param meshPoints follow the surface's points
+   * @param edges structural edges, sorted
+   * @param meshPoints their ids follow those of the surface's points
    * @param sizing as in DelaunaySurfaceRefinerInput
    * @param isSaturated whether the surface has been refined before: only bad triangles are flipped
    */
@@ -61,50 +61,58 @@ public:
     SizingField sizing, bool isSaturated, SurfaceRefinementPlan plan = {});
 
   /**
-   * All triangles and, where they count, edges; then again what has been changed. When as many
-   * points have been made as may be, what is left gets only what the criterion Delaunay needs, or
-   * is left as it is, see the plan.
+   * Refines all triangles and, where they count, edges; later calls only what has changed since. At
+   * the largest number of points, the plan says what is done with the rest.
    */
   Status Refine(const ExecutionContext& context);
 
   /**
-   * Splits a segment, or a triangle by a point in its facet, and refines what that disturbs. They
-   * may stay as they are if a limit forbids it.
+   * Splits a segment, or a triangle by a point in its facet, and refines what the new point
+   * encroaches on. Nothing is split if a limit forbids it.
    */
   Status SplitSegment(Id segment, const ExecutionContext& context);
   Status SplitTriangle(Id triangle, const ExecutionContext& context);
 
-  /** Id of the new point. What it disturbs is refined next time. */
+  /** Adds a mesh point and returns its id. What it encroaches on is refined next time. */
   Id AddMeshPoint(const Vec3& position);
   void RemoveMeshPoint(Id point);
-  /** Mesh points or points of the surface, which stay in their facets and on their edges. */
+  /** Moves mesh points, or points of the surface within their facets and along their edges. */
   void MovePoints(const std::vector<std::pair<Id, Vec3>>& moves);
 
   /**
-   * Turns diagonals of quadrilaterals whose corners lie on one circle, exactly, to the corner with
-   * the smallest id, as the pulling rule has them, from the triangles given on.
+   * Flips diagonals of exactly cocircular quadrilaterals to the corner with the smallest id, as the
+   * pulling rule asks for. Starts from the given triangles.
    */
   void PullCocircular(const std::vector<Id>& triangles);
 
   const RefinableSurface& GetSurface() const { return *this->Surface; }
-  /** Of the surface, then mesh points, then in the order in which they have come. */
+  /** Points of the surface, then mesh points, then further ones in the order in which they came. */
   const std::vector<Vec3>& GetPoints() const { return this->Points; }
-  /** One for each new point of the surface. */
+  /** The parents of each new point of the surface. */
   const std::vector<PointParents>& GetNewPoints() const { return this->NewPoints; }
   Id GetNumberOfEdgePoints() const { return this->NumberOfEdgePoints; }
   Id GetNumberOfFlips() const { return this->Flips->GetNumberOfFlips(); }
-  /** Whether it has made as many points as it may, but for what the criterion Delaunay needs. */
+  /**
+   * Whether as many points have been made as allowed. Then only the criterion Delaunay is refined
+   * for.
+   */
   bool IsFull() const
   {
     return static_cast<Id>(this->NewPoints.size()) >= this->MaximumNewPoints || this->HasGivenUp;
   }
 
-  /** Whether triangles only have to fulfil the criterion Delaunay, by the plan or by now. */
+  /**
+   * Whether triangles only have to fulfil the criterion Delaunay, by the plan or because the object
+   * is full.
+   */
   bool IsRelaxed() const { return this->Plan.IsRelaxed || this->IsRescuing(); }
-  /** Finds out which of those miss the criterion asked for; what follows does not know before. */
+  /**
+   * After a relaxed refinement: finds the triangles that miss the criterion asked for.
+   * IsUnresolved() and IsWeak() need it.
+   */
   void JudgeRelaxed();
 
-  /** Whether a triangle misses the criterion asked for, or lies at a disturbed edge. */
+  /** Whether a triangle misses the criterion asked for, or has an encroached edge. */
   bool IsUnresolved(Id triangle) const;
   /** How many triangles and edges are not as they are to be, whatever the plan has relaxed. */
   Id GetNumberOfFailures() const { return this->NumberOfFailures; }
@@ -116,12 +124,12 @@ public:
   }
   /** Whether a triangle is larger than asked for, whatever its angles. */
   bool IsTooLarge(Id triangle) const;
-  /** Whether nothing could be done for a triangle that is to be better. */
+  /** Whether a triangle should be better but nothing could be done for it. */
   bool IsBadTriangle(Id triangle) const
   {
     return static_cast<std::size_t>(triangle) < this->IsBad.size() && this->IsBad[triangle] != 0;
   }
-  /** Whether it may be only that: its smallest sphere is not empty. */
+  /** Whether the triangle is only Delaunay: its smallest sphere is not empty. */
   bool IsWeak(Id triangle) const
   {
     return static_cast<std::size_t>(triangle) < this->WeakTriangles.size() &&
@@ -134,8 +142,8 @@ public:
       this->Incidences->IsCurved(this->Surface->GetTriangle(triangle).Facet);
   }
   /**
-   * Empty, or marks triangles of the input in curved facets where points come too close: they are
-   * left as they are.
+   * Marks triangles of the input in curved facets where points come too close to each other; empty
+   * if there are none. These triangles are not refined further.
    */
   const std::vector<char>& GetCrumpled() const { return this->IsCrumpled; }
 
@@ -144,15 +152,16 @@ public:
 
 private:
   /**
-   * Unless all edges have been made fine enough before, triangles that only a point in their facet
-   * would mend come last, when no edge is left to split: what edges need is needed anyway, and
-   * points in facets match those on edges then. In thin parts that saves up to 40 % of the points.
+   * States of a triangle in the queue. Unless all edges have been made fine enough before,
+   * triangles that only a point in their facet would improve come last, when no edge is left to
+   * split: what edges need is needed anyway, and points in facets then match those on edges. In
+   * thin parts that saves up to 40 % of the points.
    *
    * Edges of triangles whose smallest spheres have to be empty are split in the order of how close
-   * the disturbing point is to the middle, whatever the order of the triangles: up to 47 % fewer
-   * points (2.5 % in the mean), and within 5 % as many if the surface is turned. For the Delaunay
-   * criterion it would save as much, but all points in a sphere have to be looked for there, and
-   * needles, looked at after each split, take five times as long.
+   * the encroaching point is to the edge's middle, whatever the order of the triangles. That saves
+   * up to 47 % of the points (2.5 % in the mean), and makes rotated surfaces need as many points
+   * within 5 %. For the Delaunay criterion it would save as much. But then all points in a sphere
+   * have to be searched, and needles, tested after each split, take five times as long.
    */
   enum class QueueState : char
   {
@@ -165,7 +174,7 @@ private:
   struct DisturbedEdge
   {
     Id Segment = NoId;
-    /** That disturbs the segment, and how far it is from the middle. */
+    /** The point that encroaches on the segment, and its distance from the middle. */
     Id Point = NoId;
     double Distance = 0.0;
   };
@@ -211,7 +220,7 @@ private:
   bool IsCocircularFacet(Id t, const SurfaceDelaunayTest::Result& found) const;
   bool FindTooCoarse(Id t, Id& segment) const;
 
-  /** Of those of a triangle that is bad, the one disturbed most, or none. */
+  /** The edge of a bad triangle that is encroached on most, or none. */
   DisturbedEdge FindDisturbedEdge(Id t) const;
 
   // Each returns true if it has changed the surface.
@@ -231,7 +240,7 @@ private:
   void Enqueue(Id t, QueueState state, double order);
   double GetNextNumber() { return static_cast<double>(this->NumberOfEnqueued++); }
   void EnqueueEdge(Id segment);
-  /** Whether there is a point at the position or nearer than that. */
+  /** Whether there is a point nearer to the position than a distance, or at the position. */
   bool HasPointNear(const Vec3& position, double distance, Id except = NoId) const
   {
     NearestPointVisitor visitor(position, except, std::max(distance, SamePoint));
@@ -248,7 +257,7 @@ private:
   const double MinimumEdge;
   Id MaximumNewPoints = 0;
   bool HasLeftTooCoarse = false;
-  /** As many as without a limit of the user's; and so many in all, from when that is reached. */
+  /** The limit if the user gives none; and the limit in all once the first one is reached. */
   Id UsualMaximum = 0;
   Id MaximumRescuePoints = 0;
   PointOctree Octree;
@@ -260,38 +269,42 @@ private:
   std::vector<PointParents> NewPoints;
   Id NumberOfEdgePoints = 0;
   Id NumberOfFailures = 0;
-  /** Tests of needles, which a refinement that has come down to rounding errors makes many of. */
+  /**
+   * Number of tests of needles. A refinement that has come down to rounding errors makes many of
+   * them.
+   */
   Id NumberOfNeedles = 0;
   bool HasGivenUp = false;
 
-  /** These are made when the first triangle has to be refined. */
+  /** The next three are made when the first triangle has to be refined. */
   std::unique_ptr<SurfaceIncidences> Incidences;
   std::unique_ptr<PartnerPoints> Partners;
   std::unique_ptr<FacetWalk> Walk;
-  /** Of each triangle of the input; empty if all facets are plane. */
+  /** Shortest edge of each triangle of the input; empty if all facets are plane. */
   std::vector<double> ShortestEdges;
   std::vector<char> IsCrumpled;
   BallIndex Proofs;
-  /** Triangles to be looked at, a heap. */
+  /** Triangles to be tested, as a heap. */
   std::vector<QueueEntry> Queue;
   std::int64_t NumberOfEnqueued = 0;
-  /** Of each triangle; entries that differ are stale. */
+  /** Current state of each triangle; queue entries with another state are stale. */
   std::vector<QueueState> States;
   /** Whether a triangle has passed the test since it or something around it has changed. */
   std::vector<char> IsProven;
   bool AreAllTested = false;
   std::vector<char> IsBad;
-  /** Of each triangle once they have been judged; empty if all have to fulfil the criterion. */
+  /** Marks weak triangles once they have been judged; empty if all have to fulfil the criterion. */
   std::vector<char> WeakTriangles;
   std::vector<char> IsTouched;
   std::vector<Id> Touched;
   std::vector<Id> Reached;
   /**
-   * Length and number of segments to be looked at, a heap; diametral spheres of those that were.
+   * Segments to be tested, as a heap of (length, segment); and the empty diametral spheres of those
+   * that were tested.
    */
   std::vector<std::pair<double, Id>> EdgeQueue;
   BallIndex EmptyEdges;
-  /** Segments that are disturbed and cannot be split. */
+  /** Marks segments that are encroached on and cannot be split. */
   std::vector<char> IsDisturbed;
 };
 } // namespace cdm
