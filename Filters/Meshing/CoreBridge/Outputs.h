@@ -33,16 +33,16 @@ template <typename Function>
 vtkSmartPointer<vtkCellArray> MakeCells(std::size_t count, int size, const Function& getPoint)
 {
   vtkNew<vtkIdTypeArray> offsets;
-  offsets->SetNumberOfValues(static_cast<vtkIdType>(count + 1));
+  offsets->SetNumberOfValues(static_cast<vtkIdType>(count) + 1);
   vtkNew<vtkIdTypeArray> points;
-  points->SetNumberOfValues(static_cast<vtkIdType>(size * count));
+  points->SetNumberOfValues(size * static_cast<vtkIdType>(count));
   vtkIdType* const offset = offsets->GetPointer(0);
   vtkIdType* const point = points->GetPointer(0);
   offset[0] = 0;
   ForEach(count,
     [&](std::size_t i)
     {
-      offset[i + 1] = static_cast<vtkIdType>(size * (i + 1));
+      offset[i + 1] = size * (static_cast<vtkIdType>(i) + 1);
       for (int j = 0; j < size; ++j)
       {
         point[size * i + j] = getPoint(i, j);
