@@ -78,7 +78,7 @@ public:
   ///@}
 
   ///@{
-  /** Of the last run. */
+  /** Counts of the last run. */
   vtkGetMacro(NumberOfRegions, vtkIdType);
   vtkGetMacro(NumberOfUnusedMeshPoints, vtkIdType);
   vtkGetMacro(NumberOfUnusedTriangles, vtkIdType);

@@ -6,10 +6,10 @@
  * Method (Fleischmann 1999, section 6.3):
  *  1. find the structural edges (Def. 6.2), flip the others to saturation (Def. 6.1);
  *  2. test each triangle by the chosen criterion, exactly;
- *  3. for a triangle that fails: flip, split a disturbed structural edge (type P or R), mirror the
- *     disturbing point (thin layers, sharp angles), or insert the projected circumcentre (Fig.
+ *  3. for a triangle that fails: flip, split an encroached structural edge (type P or R), mirror
+ *     the encroaching point (thin layers, sharp angles), or insert the projected circumcentre (Fig.
  *     6.10);
- *  4. test again the triangles that the new point disturbs.
+ *  4. test again the triangles that the new point encroaches on.
  *
  * Inputs: port 0: vtkPolyData of triangles (run vtkBoundaryTriangulator first), optionally with the
  * two-component cell array BoundaryLabels and the cell array StructuralFacetId of an output of this
@@ -141,7 +141,7 @@ public:
   ///@}
 
   ///@{
-  /** Of the last run. */
+  /** Counts of the last run. */
   vtkGetMacro(NumberOfEdgePoints, vtkIdType);
   vtkGetMacro(NumberOfFacetPoints, vtkIdType);
   vtkGetMacro(NumberOfFlips, vtkIdType);

@@ -178,7 +178,7 @@ public:
   ///@}
 
   ///@{
-  /** Of the last run; dropped are points of layers that had no place. */
+  /** Counts of the last run. Dropped are points of layers for which there was no room. */
   vtkGetMacro(NumberOfLayerPoints, vtkIdType);
   vtkGetMacro(NumberOfDroppedLayerPoints, vtkIdType);
   ///@}

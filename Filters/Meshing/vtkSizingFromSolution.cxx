@@ -30,7 +30,7 @@ vtkStandardNewMacro(vtkSizingFromSolution);
 
 namespace
 {
-/** One finite number for each point, and what can have a gradient. */
+/** Checks the solution: one finite number for each point of a data set that can have a gradient. */
 cdm::Status CheckSolution(vtkDataSet* input, vtkDataArray* solution)
 {
   const cdm::Status status = cdm::CheckIdRange(input->GetNumberOfPoints(), "points");

@@ -41,7 +41,7 @@ SortedTetrahedra Sort(const cdm::RawVector<cdm::TetrahedronIds>& tetrahedra)
   return sorted;
 }
 
-/** For each tetrahedron the one with the same points before, or -1. */
+/** For each tetrahedron the one before that has the same points, or -1. */
 std::vector<vtkIdType> FindSurvivors(const cdm::RawVector<cdm::TetrahedronIds>& before,
   const cdm::RawVector<cdm::TetrahedronIds>& after)
 {

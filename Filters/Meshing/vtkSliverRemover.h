@@ -105,7 +105,7 @@ public:
   ///@}
 
   ///@{
-  /** Of the last run; angles in degrees; a point counts as often as it is moved. */
+  /** Results of the last run. Angles are in degrees; a point counts as often as it is moved. */
   vtkGetMacro(NumberOfPeeledTetrahedra, vtkIdType);
   vtkGetMacro(NumberOfFlips, vtkIdType);
   vtkGetMacro(NumberOfMovedPoints, vtkIdType);

@@ -8,7 +8,7 @@
  *  1. the boundary of the mesh is refined until its smallest spheres are empty and it is as fine as
  *     asked for, and tetrahedralized anew with the points inside;
  *  2. tetrahedra that are too large or badly shaped get a point at their circumcenter or, for
- *     shape, on the way there; where it disturbs the boundary, the boundary is split instead;
+ *     shape, on the way there; where it encroaches on the boundary, the boundary is split instead;
  *  3. points of slivers are moved, inside of their region, each move with a local update of the
  *     Delaunay mesh, and only if the smallest dihedral angle around it grows; where that does not
  *     help points are taken out or added, then points of the boundary moved in their facet or along
@@ -155,7 +155,7 @@ public:
   ///@}
 
   ///@{
-  /** Of the last run. */
+  /** Counts of the last run. */
   vtkGetMacro(NumberOfBoundaryPoints, vtkIdType);
   vtkGetMacro(NumberOfInteriorPoints, vtkIdType);
   vtkGetMacro(NumberOfMovedPoints, vtkIdType);

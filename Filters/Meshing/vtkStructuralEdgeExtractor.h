@@ -58,7 +58,7 @@ public:
   ///@}
 
   ///@{
-  /** Of the last run. */
+  /** Counts of the last run. */
   vtkGetMacro(NumberOfChains, vtkIdType);
   vtkGetMacro(NumberOfCorners, vtkIdType);
   ///@}

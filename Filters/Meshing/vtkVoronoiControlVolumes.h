@@ -63,7 +63,7 @@ public:
   vtkBooleanMacro(GenerateBoxes, bool);
   ///@}
 
-  /** Of the last run: couplings that are negative by more than rounding. */
+  /** Number of couplings in the last run that are negative by more than rounding. */
   vtkGetMacro(NumberOfNegativeCouplings, vtkIdType);
 
   ///@{

@@ -58,7 +58,7 @@ double GetSeconds()
   return double(std::clock()) / CLOCKS_PER_SEC;
 }
 
-/** Of one part. */
+/** The cost of one part. */
 struct Cost
 {
   double First = 0.0;

@@ -314,7 +314,7 @@ struct Entry
   int Copies = 1;
 };
 
-/** Where it is known. */
+/** The version of a program, where it is known. */
 const char* GetVersion(const std::string& name)
 {
 #ifdef CDM_HAS_CGAL_TRIANGULATION

@@ -169,7 +169,7 @@ inline Measurement Measure(const Work& work, int copies = 1)
   return hasFailed ? Measurement() : slowest;
 }
 
-/** Of each quantity by itself. */
+/** The median of each quantity by itself. */
 inline Measurement GetMedian(std::vector<Measurement> results)
 {
   const auto middle = results.begin() + static_cast<std::ptrdiff_t>(results.size() / 2);

@@ -63,7 +63,7 @@ struct Patch
   std::vector<std::vector<std::size_t>> Triangles;
 };
 
-/** By regions, 0 outside: behind and in front, the order of CGAL. */
+/** Patches by their regions behind and in front, the order of CGAL; 0 is outside. */
 std::map<std::pair<int, int>, Patch> MakePatches(vtkPolyData* surface)
 {
   std::map<std::pair<int, int>, Patch> patches;

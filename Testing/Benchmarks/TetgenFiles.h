@@ -25,7 +25,7 @@ struct TetgenMesh
   std::vector<double> Marks;
 };
 
-/** To name.node and name.ele. Ends the program if they cannot be written. */
+/** Writes name.node and name.ele. Ends the program if they cannot be written. */
 inline void WriteTetgenFiles(const TetgenMesh& mesh, const std::string& name)
 {
   std::FILE* nodes = std::fopen((name + ".node").c_str(), "w");

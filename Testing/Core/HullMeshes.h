@@ -31,7 +31,8 @@ inline cdm::TetMesh MakeHullMesh(const std::vector<cdm::Vec3>& points)
 }
 
 /**
- * Those tetrahedra of it that are given a region by their centroids; OutsideRegion leaves them out.
+ * The tetrahedra of the hull that getRegion gives a region by their centroids; OutsideRegion leaves
+ * them out.
  */
 template <typename GetRegion>
 cdm::TetMesh MakeRegionMesh(const std::vector<cdm::Vec3>& points, GetRegion&& getRegion)
@@ -54,7 +55,7 @@ cdm::TetMesh MakeRegionMesh(const std::vector<cdm::Vec3>& points, GetRegion&& ge
   return mesh;
 }
 
-/** In the unit cube; rounding: coordinates are multiples of it. */
+/** Random points in the unit cube. rounding: coordinates are multiples of it. */
 inline std::vector<cdm::Vec3> MakeRandomPoints(int count, unsigned seed, double rounding = 0.0)
 {
   std::mt19937_64 random(seed);

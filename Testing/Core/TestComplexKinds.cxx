@@ -38,7 +38,7 @@ struct Counts
   std::vector<std::uint64_t> Missed;
 };
 
-/** Of each criterion. */
+/** The counts of each criterion. */
 using KindCounts = std::array<Counts, 3>;
 
 std::uint64_t GetFromEnvironment(const char* name, std::uint64_t otherwise)

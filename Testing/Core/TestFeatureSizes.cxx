@@ -25,9 +25,7 @@ StructuralEdge MakeEdge(Id a, Id b)
   return edge;
 }
 
-/**
- * By sampling: an upper bound of the distance, good to the square of the spacing of the samples.
- */
+/** Distance by sampling: an upper bound, good to the square of the spacing of the samples. */
 double SampleDistance(const Vec3& position, const Vec3& a, const Vec3& b)
 {
   double distance = std::numeric_limits<double>::infinity();
@@ -178,7 +176,8 @@ void CompareWithAllPairs(std::uint64_t seed)
       features.push_back(
         { { ends[0], ends[1] }, SampleDistance(position, points[ends[0]], points[ends[1]]) });
     }
-    // What is closer than a hundredth of the limit is left out; sampled distances are true to 0.001.
+    // What is closer than a hundredth of the limit is left out; sampled distances are true to
+    // 0.001.
     constexpr double limit = 3.0;
     constexpr double precision = 1e-3;
     double smallest = limit;

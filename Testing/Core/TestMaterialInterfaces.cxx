@@ -153,7 +153,7 @@ void ExpectTriangulatorTakes(const TriangleMesh& surface)
   EXPECT_EQ(output.Surface.Triangles.size(), surface.Triangles.size());
 }
 
-/** Of points spread over the triangles of one surface from another one. */
+/** Largest distance from a surface of points spread over the triangles of another one. */
 double GetLargestDistance(const TriangleMesh& from, const TriangleMesh& to, double reach)
 {
   std::vector<Box> boxes(to.Triangles.size());

@@ -124,7 +124,7 @@ void ExpectVolumes(const std::map<Id, double>& volumes, const std::map<Id, doubl
   }
 }
 
-/** Where points of the input are now. */
+/** The new positions of points of the input. */
 std::map<Id, Vec3> GetPlaces(const TetMesh& before, const MovingBoundaryOutput& output)
 {
   std::map<Id, Vec3> places;

@@ -39,7 +39,7 @@ double GetArea(const std::vector<Vec3>& points, const std::vector<Id>& polygon)
   return area;
 }
 
-/** For polygons in the plane z = 0, counter-clockwise: all that a triangulation promises. */
+/** Checks all that a triangulation promises, for counter-clockwise polygons in the plane z = 0. */
 void ExpectTriangulated(const std::vector<Vec3>& points, const std::vector<Id>& polygon)
 {
   std::vector<TriangleIds> triangles;

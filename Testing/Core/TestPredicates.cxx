@@ -54,7 +54,7 @@ int GetInDiametralSphere(const Vec3& a, const Vec3& b, const Vec3& p)
   return -sgn(GetDot(GetDifference(a, p), GetDifference(b, p)));
 }
 
-/** By the circumcenter, a rational point. */
+/** Computed by the circumcenter, a rational point. */
 int GetInEquatorialSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p)
 {
   const Vector u = GetDifference(b, a);

@@ -19,7 +19,7 @@ double GetFieldValue(vtkUnstructuredGrid* grid, const char* name)
   return criteria->GetOutput()->GetFieldData()->GetArray(name)->GetComponent(0, 0);
 }
 
-/** As printed in Fig. 3.10: two digits, the others cut off. */
+/** Cuts off all but two digits, as printed in Fig. 3.10. */
 double CutOff(double value)
 {
   const double size = std::abs(value);

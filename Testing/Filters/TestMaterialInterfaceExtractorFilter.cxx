@@ -61,7 +61,7 @@ Volumes CountVoxels(vtkImageData* image, int background = -1)
   return counts;
 }
 
-/** What the labelled sides enclose. */
+/** The volumes that the labelled sides enclose. */
 Volumes GetEnclosedVolumes(vtkPolyData* surface)
 {
   Volumes volumes;

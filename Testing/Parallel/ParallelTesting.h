@@ -87,7 +87,7 @@ std::vector<CellKey<N>> GetCells(vtkDataSet* data, const char* regionName, bool 
   return cells;
 }
 
-/** Those of all processes, on all processes. */
+/** The keys of all processes, on all processes. */
 template <typename Key>
 std::vector<Key> GatherCells(const std::vector<Key>& own)
 {

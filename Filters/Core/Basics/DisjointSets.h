@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file DisjointSets.h
- * @brief Which of the numbers from 0 on belong together, if some pairs of them do.
+ * @brief Sets of numbers that are united pair by pair (union-find).
  *
  * Cost: O(log n) for an operation, less on average; 4 bytes per number.
  */
@@ -44,7 +44,7 @@ public:
     this->Parents[std::max(i, j)] = std::min(i, j);
   }
 
-  /** The smallest number of each one's set; ends the object. */
+  /** For each number the smallest of its set. Ends the use of the object. */
   std::vector<Id> TakeNames()
   {
     // A parent is smaller than its children.

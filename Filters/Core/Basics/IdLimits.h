@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file IdLimits.h
- * @brief What 32-bit ids can count: asked wherever numbers of things enter the engine.
+ * @brief Checks that 32-bit ids can count the things that enter the engine.
  */
 #ifndef cdmIdLimits_h
 #define cdmIdLimits_h
@@ -16,9 +16,9 @@ namespace cdm
 {
 constexpr std::uint64_t LargestId = std::numeric_limits<Id>::max();
 
-/** Ids made from that of a tetrahedron: 6 * tetrahedron + i for its edges. */
+/** Edges of tetrahedra have ids 6 * tetrahedron + i. */
 constexpr std::uint64_t EdgesOfTetrahedron = 6;
-/** Ids made from that of a triangle: 3 * triangle + i for its edges. */
+/** Edges of triangles have ids 3 * triangle + i. */
 constexpr std::uint64_t EdgesOfTriangle = 3;
 
 /** LimitReached if there are too many of them; what names them. */
@@ -57,7 +57,7 @@ inline Status CheckNumberOfPoints(std::uint64_t ofSurface, std::uint64_t ofMesh)
   return CheckIdRange(ofSurface + ofMesh + 1, "points, those of the surface and mesh points");
 }
 
-/** Asked before each step of a refinement: are there ids for what the step may make? */
+/** Checked before each step of a refinement: whether there are ids for what the step may make. */
 inline Status CheckRefinement(std::uint64_t numberOfPoints, std::uint64_t numberOfTriangles)
 {
   // Far more than a step makes.

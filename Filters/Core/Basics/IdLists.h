@@ -33,7 +33,10 @@ public:
     std::size_t size() const { return static_cast<std::size_t>(this->Last - this->First); }
   };
 
-  /** From pairs (owner, id): a list has the order of the pairs, without repetitions in a row. */
+  /**
+   * Builds the lists from pairs (owner, id). A list has the order of the pairs, without repetitions
+   * in a row.
+   */
   void Build(Id numberOfOwners, const std::vector<std::pair<Id, Id>>& pairs)
   {
     std::vector<Id> next(static_cast<std::size_t>(numberOfOwners) + 1, 0);

@@ -8,7 +8,7 @@
  * asks for aborts. Results are the same for any number of threads if what a block writes depends on
  * its items only, and no two blocks write to the same place.
  *
- * ForAll(), ForEach() and HoldForAll() are loops that end so soon that nobody need be asked.
+ * ForAll(), ForEach() and HoldForAll() are for loops too short to report progress or to be aborted.
  */
 #ifndef cdmParallelLoop_h
 #define cdmParallelLoop_h
@@ -83,8 +83,8 @@ bool ParallelLoop(std::size_t count, const ParallelLoopOptions& options,
 }
 
 /**
- * work(begin, end) for parts of the numbers below size. The parts are large: what is close in
- * number is close in memory, and threads that write to the same place wait for each other.
+ * Calls work(begin, end) for parts of the numbers below size. The parts are large, because threads
+ * that write close to each other in memory wait for each other.
  */
 template <typename Work>
 void ForAll(std::size_t size, int numberOfThreads, const Work& work)
@@ -95,7 +95,7 @@ void ForAll(std::size_t size, int numberOfThreads, const Work& work)
     [&work](std::size_t begin, std::size_t end, std::size_t) { work(begin, end); });
 }
 
-/** work(i) for the numbers below size. */
+/** Calls work(i) for all numbers below size. */
 template <typename Work>
 void ForEach(std::size_t size, int numberOfThreads, const Work& work)
 {

@@ -39,7 +39,7 @@ struct RawAllocator : std::allocator<T>
       return std::allocator<T>::allocate(count);
     }
     void* const memory = ::operator new(count * sizeof(T), std::align_val_t(LargePage));
-    // Only a wish: it does not matter if it fails.
+    // A hint only: it does not matter if it fails.
     madvise(memory, count * sizeof(T), MADV_HUGEPAGE);
     return static_cast<T*>(memory);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SortedIds.h
- * @brief Ids in ascending order: of a list, of a triangle, and of the two ends of an edge; whether
- * one is among others.
+ * @brief Ids in ascending order: those of a list, a simplex or an edge; and whether one is among
+ * others.
  */
 #ifndef cdmSortedIds_h
 #define cdmSortedIds_h
@@ -14,7 +14,7 @@
 
 namespace cdm
 {
-/** Ascending, each once. Also for edges, pairs and the like. */
+/** Sorts a list and drops repetitions. Also for edges, pairs and the like. */
 template <typename T>
 void SortUnique(std::vector<T>& ids)
 {
@@ -22,7 +22,7 @@ void SortUnique(std::vector<T>& ids)
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
 }
 
-/** Of a triangle or tetrahedron, as a key. */
+/** The sorted ids of a triangle or tetrahedron, as a key. */
 template <typename Ids>
 Ids Sorted(Ids ids)
 {
@@ -37,7 +37,7 @@ bool Contains(const Ids& ids, Id id)
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
-/** The same for both directions. */
+/** The ends of an edge in ascending order, so that both directions give the same. */
 inline EdgeIds MakeEdge(Id a, Id b)
 {
   return a < b ? EdgeIds{ a, b } : EdgeIds{ b, a };

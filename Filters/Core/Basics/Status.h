@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Status.h
- * @brief How a stage of the engine ended, and what it holds against its input.
+ * @brief How a stage of the engine ended, and what is wrong with its input.
  *
  * The engine never prints, throws across its boundary, or exits: it returns a Status. The message
  * says what is wrong and what to do; Cells and Points say where, in ids of the stage's input. The

@@ -17,14 +17,14 @@
 
 namespace cdm
 {
-/** What an option asks for; 0: one for each processor core. */
+/** Number of threads that an option asks for; 0: one for each processor core. */
 inline std::size_t GetNumberOfThreads(int option)
 {
   return option > 0 ? static_cast<std::size_t>(option)
                     : std::max(1U, std::thread::hardware_concurrency());
 }
 
-/** work(i) for i = 0 to count - 1 at the same time, i = 0 on the calling thread. */
+/** Calls work(i) for i = 0 to count - 1 at the same time, i = 0 on the calling thread. */
 template <typename Work>
 void RunOnThreads(int count, const Work& work)
 {

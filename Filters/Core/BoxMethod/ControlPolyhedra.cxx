@@ -88,7 +88,7 @@ private:
     const auto found = std::lower_bound(this->BorderEdges.begin(), this->BorderEdges.end(), edge);
     return this->FirstEdge + static_cast<Id>(found - this->BorderEdges.begin());
   }
-  /** Points of a border facet, its normal turned out of the region with the larger id. */
+  /** Points of a border facet, with the normal out of the region with the larger id. */
   TriangleIds GetBorderFacet(Id border) const
   {
     const Id facet = this->BorderFacets[border];
@@ -106,7 +106,10 @@ private:
   const ControlVolumes& Volumes;
   ControlPolyhedra& Polyhedra;
   ParallelLoopOptions LoopOptions;
-  /** By facet id: index of a border facet, the same from both sides of an interface, or NoId. */
+  /**
+   * For each facet id: the index of its border facet (the same from both sides of an interface), or
+   * NoId.
+   */
   std::vector<Id> BorderIndices;
   /** A facet id of each border facet, in the region with the larger id. */
   std::vector<Id> BorderFacets;
@@ -117,9 +120,9 @@ private:
   Id FirstEdge = 0;
   Id FirstTetrahedron = 0;
   Id FirstPoint = 0;
-  /** Of each dual vertex the lowest one at the same place. */
+  /** For each dual vertex the lowest one at the same position. */
   std::vector<Id> Names;
-  /** Those of each block of points, then those of the border. */
+  /** Polygons of each block of points, then those of the border. */
   std::vector<Polygons> Blocks;
 };
 
@@ -291,7 +294,7 @@ bool PolyhedronMaker::UniteVertices(const ExecutionContext& context)
       const EdgeIds& flat = this->FlatEdges[edge - this->FirstEdge];
       if (flat[0] == border)
       {
-        // Triangles of one circle.
+        // Triangles with a common circumcircle.
         const TriangleIds other = this->GetBorderFacet(flat[1]);
         const Id opposite = other[0] + other[1] + other[2] - a - b;
         if (Orientation(points[a], points[b], points[c], points[opposite]) == 0 &&

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ControlPolyhedra.h
- * @brief The boxes of the box method as polyhedra, to look at.
+ * @brief Makes polyhedra of the boxes of the box method, for display.
  *
  * Method (thesis 3.2.1, Fig. 3.4 and 5.1): the dual of the mesh. Around each edge, in each region,
  * the circumcenters of its tetrahedra form a polygon that separates the boxes of its ends; where it
@@ -12,8 +12,8 @@
  * coincide, as an exact sign tells, are one point; polygons that shrink to fewer than three points
  * are left out.
  *
- * Guarantees: each polyhedron is closed, its polygons turned outwards; the volume within is that of
- * ControlBox. On a Delaunay mesh without negative couplings the polyhedra are the Voronoi boxes
+ * Guarantees: each polyhedron is closed, its polygons oriented outwards; the volume within is that
+ * of ControlBox. On a Delaunay mesh without negative couplings the polyhedra are the Voronoi boxes
  * clipped to the regions; otherwise they fold over and overlap. Polygons are plane to rounding.
  * The same for any number of threads.
  * Cost: O(n log n); 300 bytes per tetrahedron.
@@ -32,12 +32,15 @@ struct ControlPolyhedra
   /** Polygon i has the points Connectivity[Offsets[i]] to Connectivity[Offsets[i + 1] - 1]. */
   std::vector<Id> Offsets{ 0 };
   std::vector<Id> Connectivity;
-  /** Likewise the polygons of the boxes; ~i stands for polygon i turned around. */
+  /**
+   * Box b has the polygons BoxPolygons[BoxOffsets[b]] to BoxPolygons[BoxOffsets[b + 1] - 1]; ~i
+   * stands for polygon i with the opposite orientation.
+   */
   std::vector<Id> BoxOffsets{ 0 };
   std::vector<Id> BoxPolygons;
 };
 
-/** The mesh and what ComputeControlVolumes() made of it. */
+/** Makes the polyhedra of a mesh from what ComputeControlVolumes() computed for it. */
 Status MakeControlPolyhedra(const TetMesh& mesh, const ControlVolumes& volumes,
   const ExecutionContext& context, ControlPolyhedra& polyhedra);
 } // namespace cdm

@@ -16,7 +16,7 @@ namespace cdm
 {
 namespace
 {
-/** Of the edges of a tetrahedron: plain numbers, which nobody has to set to zero first. */
+/** Shares of the six edges of a tetrahedron, as plain numbers that need not be initialized. */
 struct EdgeShares
 {
   std::array<double, 6> High;
@@ -59,7 +59,7 @@ private:
   SimplexIncidence Incidence;
   ParallelLoopOptions LoopOptions;
   std::vector<char> IsPositive;
-  /** Of each tetrahedron in the couplings of its edges, later in six times the volumes there. */
+  /** Shares of each tetrahedron in the couplings of its edges; later its six-fold volumes there. */
   RawVector<EdgeShares> Shares;
 };
 

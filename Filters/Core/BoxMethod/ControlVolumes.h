@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ControlVolumes.h
- * @brief What the box method needs of a mesh: Voronoi boxes clipped to regions, and their
- * couplings.
+ * @brief Control volumes for the box method: Voronoi boxes clipped to regions, and their couplings.
  *
  * Method (thesis 3.2.1):
  *  1. for each tetrahedron and each of its edges the signed area of the Voronoi facet within
@@ -65,11 +64,11 @@ struct ControlVolumes
   std::vector<EdgeCoupling> Couplings;
   /** Ascending by point, then by regions. */
   std::vector<BoundaryArea> BoundaryAreas;
-  /** By more than rounding. */
+  /** Number of couplings that are negative by more than rounding. */
   Id NegativeCouplings = 0;
 };
 
-/** Neighbors are used. */
+/** Computes boxes, couplings and boundary areas. The mesh needs its Neighbors. */
 Status ComputeControlVolumes(
   const TetMesh& mesh, const ExecutionContext& context, ControlVolumes& volumes);
 } // namespace cdm

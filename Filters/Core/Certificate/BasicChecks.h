@@ -18,11 +18,11 @@ struct BorderFacet
 {
   /** Ascending. */
   TriangleIds Points;
-  /** Of its two sides, ascending. */
+  /** Regions of its two sides, ascending. */
   RegionPair Regions;
 };
 
-/** What the steps after these need to know. */
+/** The findings that the later steps need. */
 struct BasicFindings
 {
   /** Exact orientation of each tetrahedron. */
@@ -34,7 +34,10 @@ struct BasicFindings
   std::vector<char> HasEmptyFacetSphere;
   /** Edges of these facets, ascending. */
   std::vector<EdgeIds> BorderEdges;
-  /** Those where they do not go straight on, ascending, and whether Crit. 3.2 holds there. */
+  /**
+   * Border edges where the facets do not go straight on, ascending; and whether Crit. 3.2 holds
+   * there.
+   */
   std::vector<EdgeIds> StructuralEdges;
   std::vector<char> HasEmptySphere;
 };

@@ -13,7 +13,7 @@ namespace cdm
 namespace
 {
 constexpr Id LeafSize = 8;
-/** Up to so many points are a tree for one thread. */
+/** Up to this many points one thread builds the tree. */
 constexpr Id FewPoints = 1 << 14;
 } // namespace
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EmptySphereSearch.h
- * @brief The mesh checker's own search: which points may lie inside of a sphere?
+ * @brief Finds points that may lie inside of a sphere: the search that only the certificate uses.
  *
  * Method: boxes of a k-d tree that the sphere surely does not touch (SphereForm.h) are left out.
  *
@@ -82,7 +82,7 @@ private:
     Id Right = NoId;
   };
 
-  /** The points [Begin, End) of the order and the place of its root. */
+  /** A range of points [Begin, End) in the order, and the index of its root node. */
   struct Subtree
   {
     Id Begin;
@@ -91,9 +91,9 @@ private:
   };
 
   static Id CountNodes(Id numberOfPoints);
-  /** Makes the root only; the first point of its right child, or NoId if it is a leaf. */
+  /** Makes the root only. Returns the first point of its right child, or NoId if it is a leaf. */
   Id Split(const std::vector<Vec3>& points, const Subtree& subtree);
-  /** The place after the last node. */
+  /** Builds all nodes; returns the index after the last one. */
   Id Build(const std::vector<Vec3>& points, const Subtree& subtree);
 
   std::vector<Node> Nodes;

@@ -28,7 +28,7 @@ constexpr double SumTolerance = 1e-12;
 /** Bound of the relative error of a product of four lengths that is a sum of some ten terms. */
 constexpr double ProductError = 1e-14;
 
-/** What a block of points finds; joined in the order of the blocks. */
+/** The results of a block of points; joined in the order of the blocks. */
 struct BlockResult
 {
   std::vector<MeshViolation> Violations;

@@ -3,7 +3,7 @@
  * @file MeshCertificate.h
  * @brief The certificate: evaluates any tetrahedral mesh, whoever made it.
  *
- * Basic level, what every run checks of its result:
+ * Basic level, which every run checks for its result:
  *  1. exact orientation of every tetrahedron, its dihedral angles, its volume;
  *  2. all facets sorted by their points: shared by at most two tetrahedra, on opposite sides, and
  *     Neighbors, if there are any, says so; outer and interface facets are the triangles of the
@@ -15,7 +15,7 @@
  *     where these facets do not go straight on (Def. 6.2: an edge of other than two of them, with
  *     different regions, or bent by more than a degree). On the other edges a sphere can be filled
  *     by points of the same facet only, which is harmless.
- * Full level, what solvers want to know, besides:
+ * Full level, which solvers need, in addition:
  *  5. shape of every tetrahedron (thesis 3.1), Crit. 5.2 of facets where no tetrahedron is
  *     Delaunay, and whether the circumcenter of a tetrahedron lies beyond an outer or interface
  *     facet (which opens control volumes, Fig. 3.4), that is whether the facet's smallest sphere
@@ -24,14 +24,15 @@
  *     the Voronoi facet within the region. If all tetrahedra around an edge inside of a region are
  *     Delaunay that facet is a convex polygon, and nothing is computed.
  *
- * What is about spheres is decided by exact predicates, against all points of the mesh. 3.3 and the
- * couplings are sums of quotients, judged with a tolerance of 1e-12 of the lengths (squared: of the
- * areas) involved: on a rotated grid, where both are zero, rounded points alone leave more than
- * exact arithmetic could forgive. A coupling is not called negative either if rounding the
- * coordinates can make it so, which far from the origin is more.
+ * Criteria about spheres are decided by exact predicates, against all points of the mesh. Crit. 3.3
+ * and the couplings are sums of quotients, judged with a tolerance of 1e-12 of the lengths
+ * (squared: of the areas) involved: on a rotated grid both should be zero, but the rounded points
+ * alone can make them negative. Nor does a coupling count as negative if rounding of the
+ * coordinates can make it so; far from the origin this allows for more.
  *
- * Independent of what it judges: of the stages' code it has containers, formulas of Geometry, the
- * exact predicates and incidences, nothing that searches or decides (core.Layers looks for it).
+ * The certificate is independent of the stages that it judges. It shares with them containers,
+ * formulas of Geometry, the exact predicates and incidences, but nothing that searches or decides
+ * (the test core.Layers checks it).
  *
  * Points of the boundary are those of the mesh with the same id if they coincide, otherwise those
  * with equal coordinates. With labels the boundary is to be kept completely; without, triangles
@@ -70,7 +71,7 @@ enum class MeshVerdict
   CleanForFiniteVolumes
 };
 
-/** What a simplex can be at fault with. */
+/** The faults that a simplex can have. */
 enum class MeshFault
 {
   InvertedTetrahedron,
@@ -101,11 +102,11 @@ struct MeshViolation
   std::array<Id, 4> Points{ NoId, NoId, NoId, NoId };
   /** The tetrahedron, or one that has the facet or edge. */
   Id Tetrahedron = NoId;
-  /** Its region; of couplings, the region of the coupling. */
+  /** Its region; for couplings, the region of the coupling. */
   Id Region = NoId;
 };
 
-/** Thesis 3.1. Of a flat tetrahedron R is infinite; greater Q are better. */
+/** Quality measures of thesis 3.1. R is infinite for a flat tetrahedron; larger Q are better. */
 struct TetrahedronQuality
 {
   /** l_min / R, r / l_max, r / R, l_min / l_max, V / l_max^3 (signed). */
@@ -143,7 +144,7 @@ struct InterfaceSpheres
   /** Front <= Back. */
   RegionPair Regions;
   Id Facets = 0;
-  /** Those whose smallest sphere holds a point (Crit. 3.1). */
+  /** Facets whose smallest sphere holds a point (Crit. 3.1). */
   Id Violations = 0;
 };
 
@@ -151,7 +152,9 @@ struct InterfaceSpheres
 struct FlatterTetrahedra
 {
   Id Count = 0;
-  /** Those with all points on outer and interface facets: the input's shape is why. */
+  /**
+   * Tetrahedra with all points on outer and interface facets: the shape of the input causes them.
+   */
   Id BetweenBoundaries = 0;
 };
 
@@ -249,8 +252,8 @@ struct MeshCertificate
 };
 
 /**
- * InvalidInput for what nobody can look at: ids out of range, arrays of the wrong length,
- * coordinates that are not finite. Neighbors are left alone; boundary may be null.
+ * InvalidInput for a mesh that cannot be checked: ids out of range, arrays of the wrong length,
+ * coordinates that are not finite. Neighbors are not looked at; boundary may be null.
  */
 Status CheckMeshInput(const TetMesh& mesh, const TriangleMesh* boundary);
 

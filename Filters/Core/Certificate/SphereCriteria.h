@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SphereCriteria.h
- * @brief The thesis's criteria about empty spheres for one simplex of a mesh, decided exactly.
+ * @brief The criteria of the thesis about empty spheres, for one simplex of a mesh, decided
+ *   exactly.
  *
  * A sphere is empty if no point lies strictly inside of it: on cospherical points, where several
  * Delaunay meshes exist, all of them pass. The points are all those of the mesh, used or not, also

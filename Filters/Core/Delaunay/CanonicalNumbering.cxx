@@ -13,7 +13,7 @@ void CollectTetrahedra(DelaunayTetrahedralization& all, RawVector<Id>& regions,
   const std::vector<Id>& points, int numberOfThreads, TetMesh& mesh)
 {
   const std::size_t slots = all.Tetrahedra.size();
-  // How each is turned: the place of its first vertex and, after that, of the second one.
+  // The even permutations: index of the first vertex and of the second one after it.
   static constexpr unsigned char Turns[12][4] = { { 0, 1, 2, 3 }, { 0, 2, 3, 1 }, { 0, 3, 1, 2 },
     { 1, 0, 3, 2 }, { 1, 3, 2, 0 }, { 1, 2, 0, 3 }, { 2, 0, 1, 3 }, { 2, 1, 3, 0 }, { 2, 3, 0, 1 },
     { 3, 0, 2, 1 }, { 3, 2, 1, 0 }, { 3, 1, 0, 2 } };
@@ -112,7 +112,7 @@ void CollectTetrahedra(DelaunayTetrahedralization& all, RawVector<Id>& regions,
           items[i] = { points[vertex], points[item[0]], points[item[1]], points[item[2]] };
           const Id place = starts[vertex] + i;
           mesh.Regions[place] = regions[item[3]];
-          // From here on its place.
+          // From here on regions holds the new index.
           regions[item[3]] = place;
         }
       }

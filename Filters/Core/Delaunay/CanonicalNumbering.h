@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CanonicalNumbering.h
- * @brief Numbers tetrahedra by their vertices alone, in whatever order they were made.
+ * @brief Numbers tetrahedra by their vertices alone, independent of the order they were made in.
  *
  * Method: each tetrahedron starts with its first vertex along the curve, then the first of the
  * others, and all are in the order of their vertices. A counting sort by the first vertex; the few

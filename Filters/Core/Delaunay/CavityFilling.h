@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CavityFilling.h
- * @brief The Delaunay tetrahedra of a few points that lie within a polyhedron of their facets.
+ * @brief Fills a cavity in a Delaunay mesh with Delaunay tetrahedra of the points on its border.
  *
- * Where a point of a Delaunay mesh is taken out or moved, the tetrahedra around leave a cavity.
- * What fills it are tetrahedra of the points at the cavity alone.
+ * Where a point of a Delaunay mesh is removed or moved, the tetrahedra around it leave a cavity. It
+ * can be filled with tetrahedra of the points at the cavity alone.
  *
  * Method: all points are tetrahedralized. From each facet of the border a flood goes inwards, from
  * tetrahedron to tetrahedron, to walls (facets between two regions, which have to be there) and the
@@ -29,14 +29,16 @@ namespace cdm
 {
 struct Cavity
 {
-  /** Numbers of the points, ascending, and where they are. */
+  /** Numbers of the points, ascending, and their positions. */
   std::vector<Id> Numbers;
   RawVector<Vec3> Points;
-  /** The border, by numbers; the inside is in front of each. */
+  /** Facets around the cavity, by numbers; the inside is in front of each. */
   std::vector<TriangleIds> Border;
   /** One for each facet of the border: the region in front of it. */
   std::vector<Id> Regions;
-  /** By numbers; what is behind a wall need not be inside. */
+  /**
+   * Facets between two regions, by numbers; the far side of a wall need not be inside the cavity.
+   */
   std::vector<TriangleIds> Walls;
 };
 
@@ -49,8 +51,8 @@ public:
     TetrahedronIds Ids;
     Id Region;
     /**
-     * 4 * cell + facet, or OutOf(k) behind facet k of the border, or NoId behind a wall without
-     * cell.
+     * 4 * cell + facet; or OutOf(k) behind border facet k; or NoId behind a wall without a cell
+     * there.
      */
     std::array<Id, 4> Neighbors;
   };
@@ -68,7 +70,7 @@ public:
 
 private:
   std::vector<Cell> Cells;
-  /** Work space: facets of local tetrahedra, by their points' places in the cavity. */
+  /** Work space: facets of local tetrahedra, by their points' indices in the cavity. */
   std::vector<std::pair<std::uint64_t, Id>> Facets;
 };
 } // namespace cdm

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CurvePart.h
- * @brief A part of a closed curve that vertices lie on, which a thread has for itself.
+ * @brief The part of the closed space-filling curve that one thread works on alone.
  */
 #ifndef cdmCurvePart_h
 #define cdmCurvePart_h
@@ -13,7 +13,9 @@
 
 namespace cdm
 {
-/** The vertices from First on, Count of them, around the end of the curve; and infinity. */
+/**
+ * Count vertices from First on, wrapped around the end of the curve; and the vertex at infinity.
+ */
 class CurvePart
 {
 public:
@@ -24,22 +26,22 @@ public:
   {
   }
 
-  /** How far along the part, or beyond it. */
+  /** Index of the vertex along the part, or beyond it. */
   Id GetPlace(Id vertex) const
   {
     const Id place = vertex - this->First;
     return place >= 0 ? place : place + this->Infinite;
   }
-  /** Asked all the time, and mostly answered by the first comparison. */
+  /** Called very often; the first comparison answers most calls. */
   bool Has(Id vertex) const
   {
     return static_cast<std::uint32_t>(vertex - this->First) <
       static_cast<std::uint32_t>(this->BeforeEnd) ||
       vertex < this->Count - this->BeforeEnd || vertex == this->Infinite;
   }
-  /** Without what is from a place on. */
+  /** The part up to an index. */
   CurvePart GetBegin(Id place) const { return { this->First, place, this->Infinite }; }
-  /** From a vertex of it on. */
+  /** The part from one of its vertices on. */
   CurvePart GetEnd(Id vertex) const
   {
     return { vertex, this->Count - this->GetPlace(vertex), this->Infinite };

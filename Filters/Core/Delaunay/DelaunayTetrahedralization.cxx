@@ -24,9 +24,9 @@ constexpr std::size_t SmallRound = 2048;
 /** The first round has about so many vertices, each of the others eight times more. */
 constexpr Id FirstRound = 100;
 constexpr const char* Activity = "Tetrahedralizing the points";
-/** How often the context is asked, in vertices. */
+/** Vertices between two calls of the context. */
 constexpr std::size_t ReportInterval = 4096;
-/** How often a thread looks whether another one has nothing left to do, in vertices. */
+/** Vertices after which a thread looks whether another one is idle. */
 constexpr std::size_t HandOverInterval = 64;
 /** Fewer vertices are not worth handing over. */
 constexpr std::size_t SmallestHandOver = 512;
@@ -55,8 +55,8 @@ private:
     Take
   };
   /**
-   * What a thread has for itself. Two of them on one line of the cache, or on a pair of lines that
-   * is fetched at once, would slow both threads down.
+   * The private data of a thread. If two of them shared a line of the cache, or a pair of lines
+   * that is fetched at once, both threads would slow down.
    */
   struct alignas(128) Worker
   {
@@ -78,7 +78,7 @@ private:
   const ExecutionContext& Context;
   DelaunayTetrahedralization& Output;
   VertexInsertion Insertion;
-  /** What was reported last. */
+  /** The progress reported last. */
   double Progress = 0.0;
   /** Vertices that need no insertion. */
   std::vector<bool> IsInserted;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file DelaunayTetrahedralization.h
- * @brief The Delaunay tetrahedralization of the convex hull of points, which knows the fourth point
- * of every facet.
+ * @brief The Delaunay tetrahedralization of the convex hull of points. The advancing front reads
+ *   the
+ * fourth point of every facet from it.
  *
  * Method:
  *  1. vertices are the points in the order of a Hilbert curve. Those of a block of a rectilinear
@@ -10,9 +11,9 @@
  *     about eight times larger than the one before, drawn by a hash of the vertex, and along the
  *     curve within a round;
  *  2. a vertex is located by a walk from the last one; the tetrahedra whose sphere holds it, and
- *     the facets of the hull that it sees, are removed, and the hole is filled with the cone from
- *     the vertex (VertexInsertion.h). Beyond each facet of the hull lies a tetrahedron with the
- *     vertex at infinity;
+ *     the facets of the hull that it sees, are removed, and the cavity is filled with the cone
+ *     from the vertex (VertexInsertion.h). Beyond each facet of the hull lies a tetrahedron with
+ *     the vertex at infinity;
  *  3. a sphere is tested in single precision with a bound of its error, then in double precision,
  *     then exactly. Points on one sphere are told apart as if each had been pulled into it
  *     infinitely little, the lowest numbered one most: that gives the cells of the Delaunay
@@ -50,7 +51,7 @@ struct DelaunayTetrahedralization
 {
   /**
    * Vertices of each tetrahedron; the number of points stands for the vertex at infinity. Entry 0
-   * is NoId in places that are not used.
+   * is NoId in unused slots.
    */
   RawVector<TetrahedronIds> Tetrahedra;
   /** Facet ids (4 * tetrahedron + i) of the neighbors, seen from these, as in TetMesh. */
@@ -63,14 +64,14 @@ struct DelaunayTetrahedralization
  * Points are distinct, finite, and follow a Hilbert curve (SortAlongHilbertCurve()); numbers are
  * distinct and decide the order of pulling. The block of a grid among them, if there is one
  * (FindGridBlock()), saves time and changes nothing else. InvalidInput if there are fewer than four
- * points, or all of them lie on a line or in a plane, and for more than 2^29 tetrahedra; Aborted
- * leaves nothing.
+ * points, or all of them lie on a line or in a plane; LimitReached for more than 2^29 tetrahedra.
+ * Aborted leaves nothing.
  */
 Status BuildDelaunayTetrahedralization(const RawVector<Vec3>& points,
   const std::vector<Id>& numbers, const GridBlock& block, int numberOfThreads,
   const ExecutionContext& context, DelaunayTetrahedralization& output);
 
-/** A tetrahedron that holds the position in its closure; NoId outside of the hull. */
+/** Finds a tetrahedron that holds the position in its closure; NoId outside of the hull. */
 Id LocateInTetrahedralization(const RawVector<Vec3>& points,
   const DelaunayTetrahedralization& tetrahedralization, const Vec3& position);
 } // namespace cdm

@@ -213,7 +213,7 @@ void DynamicTetrahedralization::Fill(Id point, const Hole& hole)
     this->Kill(*t);
   }
   this->Changed.clear();
-  // New tetrahedra meet in the facets of the point and an edge of the hole.
+  // New tetrahedra meet in the facets through the point and an edge of the cavity.
   this->Facets.clear();
   for (std::size_t i = 0; i < hole.Facets.size(); ++i)
   {

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file DynamicTetrahedralization.h
- * @brief A conforming Delaunay mesh that points can be put into, taken out of, and moved in.
+ * @brief A conforming Delaunay mesh in which points can be inserted, removed and moved.
  *
  * Method:
  *  - insertion: the tetrahedra whose circumsphere holds the point are replaced by the cone from the
- *    point over the facets around them (Bowyer 1981, Watson 1981), if no facet between two regions
- *    is among what would vanish. Looking at that hole first (FindHole()) tells how good the mesh
- *    would be, before anything is changed;
+ *    point over the facets around them (Bowyer 1981, Watson 1981), unless a facet between two
+ *    regions would vanish. These tetrahedra are the cavity of the point (class Hole). FindHole()
+ *    finds it before anything is changed, so that the new tetrahedra can be rated first;
  *  - removal: the tetrahedra around the point are replaced by the Delaunay tetrahedra of its
- *    neighbors that lie within the same hole;
+ *    neighbors that lie within the same cavity;
  *  - points on one sphere are told apart by the pulling rule of their numbers, which are their ids:
  *    a mesh that is Delaunay by this rule is at any time the one that stage 3 makes of the same
  *    points in the same order. One whose cospherical sets are split in another way stays Delaunay
  *    too: a new tetrahedron's sphere lies within the spheres of those on both sides of its facet.
  *
- * Requires: a Delaunay mesh with the invariants of TetMesh.h. Where a hole ends at an outer facet,
- * the smallest sphere of that has to be empty (Crit. 3.1), also of the point: then nothing beyond
- * it, which the mesh does not have, is in conflict with a point on this side.
- * Guarantees: these invariants; only points inside of a region are inserted, removed or moved, but
- * for Replace(), whose caller has to know that the cells fit.
+ * Requires: a Delaunay mesh with the invariants of TetMesh.h. Where a cavity ends at an outer
+ * facet, the smallest sphere of that facet has to be empty (Crit. 3.1), also of the new point. Then
+ * no point beyond the facet, which the mesh does not know, is in conflict with a point on this
+ * side. Guarantees: these invariants. Only points inside of a region are inserted, removed or
+ * moved; the exception is Replace(), whose caller has to know that the cells fit.
  * Cost: microseconds for an insertion, a few hundred for a removal; 44 bytes per tetrahedron and 32
  * per point beside the mesh.
  *
@@ -41,11 +41,11 @@ namespace cdm
 class DynamicTetrahedralization
 {
 public:
-  /** What an insertion replaces. */
+  /** The cavity of a point: what its insertion replaces. */
   struct Hole
   {
     std::vector<Id> Tetrahedra;
-    /** Around it; the point lies in front of each. */
+    /** Facets around the cavity; the point lies in front of each. */
     std::vector<TriangleIds> Facets;
     /** Facet ids of the tetrahedra beyond, NoId at the outer boundary. */
     std::vector<Id> Outer;
@@ -54,7 +54,8 @@ public:
   explicit DynamicTetrahedralization(TetMesh mesh);
 
   /**
-   * Tetrahedra that are gone have the vertex NoId at place 0, points that are gone no tetrahedron.
+   * The mesh with unused slots: dead tetrahedra have NoId as vertex 0, and removed points have no
+   * tetrahedron.
    */
   const TetMesh& GetMesh() const { return this->Mesh; }
   const Vec3& GetPoint(Id point) const { return this->Mesh.Points[point]; }
@@ -65,55 +66,60 @@ public:
   Id GetNumberOfPoints() const { return static_cast<Id>(this->Mesh.Points.size()); }
   Id GetNumberOfTetrahedra() const { return static_cast<Id>(this->Mesh.Tetrahedra.size()); }
   bool IsDead(Id tetrahedron) const { return this->Mesh.Tetrahedra[tetrahedron][0] == NoId; }
-  /** Of what is at this place: no other tetrahedron ever gets the same one. */
+  /**
+   * A stamp that identifies the tetrahedron in this slot: no other one ever gets the same stamp.
+   */
   std::int64_t GetStamp(Id tetrahedron) const { return this->Stamps[tetrahedron]; }
   /** A tetrahedron at the point, or NoId. */
   Id GetTetrahedronAt(Id point) const { return this->PointTetrahedra[point]; }
-  /** Between two regions or at the outside: never removed. */
+  /** Whether a facet lies between two regions or at the outside: it is never removed. */
   bool IsBoundary(Id tetrahedron, int facet) const;
 
-  /** All tetrahedra at a point; false if it lies on a boundary, then only those up to there. */
+  /**
+   * Lists all tetrahedra at a point. False if the point lies on a boundary: then only those up to
+   * there are listed.
+   */
   bool FindStar(Id point, std::vector<Id>& star);
 
   /**
-   * The tetrahedron that holds a position, by a straight walk that stays in the region of the
-   * first one; NoId if a boundary is in the way, or if cospherical sets lead the walk in a circle.
+   * Finds the tetrahedron that holds a position, by a straight walk that stays in the region of the
+   * first one. NoId if a boundary is in the way, or if cospherical sets lead the walk in a circle.
    */
   Id Locate(const Vec3& position, Id first) const;
 
   /**
-   * The hole of a point whose number is given, from a tetrahedron on whose sphere's inside it lies.
-   * False if the point cannot be inserted: the first one is not in conflict, a boundary would
-   * vanish, or the point lies on or beyond one.
+   * Finds the cavity of a point with the given number. The search starts from a tetrahedron whose
+   * circumsphere holds the point. False if the point cannot be inserted: it is not in conflict with
+   * the first tetrahedron, a boundary facet would vanish, or the point lies on or beyond one.
    */
   bool FindHole(const Vec3& position, Id number, Id first, Hole& hole);
 
-  /** Appends a point and returns its id. The hole must be that of this point and number. */
+  /** Appends a point and returns its id. The cavity must be that of this point and number. */
   Id Insert(const Vec3& position, const Hole& hole);
-  /** Puts a point back that was removed, to another position. */
+  /** Inserts a removed point again, at another position. */
   void Restore(Id point, const Vec3& position, const Hole& hole);
   /**
-   * False, and nothing changed, if the point lies on a boundary, or if cospherical neighbors are
-   * not told apart by the pulling rule. The id stays reserved.
+   * Removes a point; its id stays reserved. False, and nothing is changed, if the point lies on a
+   * boundary, or if cospherical neighbors are not split by the pulling rule.
    */
   bool Remove(Id point);
   /**
-   * Undoes the last removal, as long as nothing else has been changed: all tetrahedra are back in
-   * their places, with their stamps.
+   * Undoes the last removal, as long as nothing else has been changed: all tetrahedra get back
+   * their slots and stamps.
    */
   void UndoRemove();
 
-  /** A new place for a point, before all tetrahedra that this changes are replaced. */
+  /** Moves a point, before the caller replaces all tetrahedra that this changes. */
   void SetPoint(Id point, const Vec3& position) { this->Mesh.Points[point] = position; }
   /**
-   * Puts cells in the place of tetrahedra.
-   * @param outer one for each facet of the border that the cells were found in: the facet id of the
-   *   tetrahedron beyond, NoId at the outer boundary
+   * Replaces tetrahedra by cells.
+   * @param outer for each facet of the border of the cavity that the cells fill: the facet id of
+   *   the tetrahedron beyond, NoId at the outer boundary
    */
   void Replace(const std::vector<Id>& tetrahedra, const std::vector<Id>& outer,
     const std::vector<CavityFilling::Cell>& cells);
 
-  /** What lay beyond a facet is replaced by the outside. */
+  /** Makes a facet an outer one: the outside replaces what lay beyond. */
   void MakeOuter(Id facet) { this->Mesh.Neighbors[facet / 4][facet % 4] = NoId; }
 
   /** The tetrahedra made by the last change. */
@@ -133,12 +139,12 @@ private:
   std::vector<Id> PointTetrahedra;
   std::vector<Id> Free;
   std::vector<Id> Changed;
-  /** Search * 2, + 1 if in conflict. */
+  /** Marks of tetrahedra: search * 2, plus 1 if in conflict. */
   std::vector<std::uint32_t> Marks;
   std::uint32_t Search = 0;
   /** Work space. */
   std::vector<Id> Star;
-  /** A tetrahedron that the last removal has taken out. */
+  /** A tetrahedron that the last removal has removed. */
   struct Removed
   {
     Id Tetrahedron;
@@ -148,9 +154,9 @@ private:
   };
   std::vector<Removed> RemovedStar;
   Id RemovedRegion = NoId;
-  /** How many free places there were before. */
+  /** Number of free slots before the last removal. */
   std::size_t FormerlyFree = 0;
-  /** Facets at a new point, by their edges in the hole: smaller id * 2^32 + larger one. */
+  /** Facets at a new point, by their edges in the cavity: smaller id * 2^32 + larger one. */
   std::vector<std::pair<std::uint64_t, Id>> Facets;
   CavityFilling Filling;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FreePlaces.h
- * @brief Places in arrays that a thread may fill: of things removed, and ranges never used.
+ * @brief Free slots of arrays that a thread may fill: those of removed things, and unused ranges.
  */
 #ifndef cdmFreePlaces_h
 #define cdmFreePlaces_h
@@ -34,7 +34,7 @@ public:
     this->Size += static_cast<std::size_t>(end - begin);
   }
 
-  /** One of them; there has to be one. What was removed last comes first. */
+  /** Takes a free slot; there has to be one. The slot freed last comes first. */
   Id Take()
   {
     --this->Size;
@@ -53,7 +53,7 @@ public:
     return place;
   }
 
-  /** Gives away all places, as far as the other one wants more. */
+  /** Gives slots to another object, as many as that one still wants. */
   void MoveTo(FreePlaces& to, std::size_t wanted)
   {
     while (to.Size < wanted && !this->Removed.empty())

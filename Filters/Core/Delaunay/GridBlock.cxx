@@ -170,7 +170,7 @@ private:
     std::vector<bool> IsDropped;
     /** Points that are missing on each line, as long as it is kept. */
     std::vector<Id> Missing;
-    /** At least so many on each line: the worst first. */
+    /** Queue of the lines by how many points they miss at least: the worst line first. */
     std::priority_queue<std::pair<Id, Id>> Worst;
   };
   /** Lines from the first to before the second, on each axis. */
@@ -222,7 +222,7 @@ private:
   /** False if no point is missing. */
   bool DropWorstLine()
   {
-    // Lines of one axis have the same number of places.
+    // All lines of one axis have the same number of crossings.
     int worst = -1;
     double largest = 0.0;
     for (int i = 0; i < 3; ++i)
@@ -263,10 +263,13 @@ private:
 constexpr int NumberOfCorners = 8;
 /** Ways to pull the corners: the lowest one, and the diagonals of the faces opposite to it. */
 constexpr int NumberOfPatterns = 64;
-/** Places of the vertices of a facet, beyond which is infinity, in the tetrahedron there. */
+/**
+ * Indices of the vertices of a facet on the hull, in the tetrahedron with the vertex at infinity
+ * beyond it.
+ */
 constexpr Id BeyondPlaces[3] = { 1, 3, 2 };
 
-/** What one pattern makes of a box. */
+/** The tetrahedra that one pattern makes of a box. */
 struct BoxPattern
 {
   /** Corners of the six tetrahedra, the lowest one last. */

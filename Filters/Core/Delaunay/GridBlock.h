@@ -18,7 +18,7 @@
  *     Beyond the triangles of the hull lie tetrahedra with the vertex at infinity.
  *
  * Guarantees: the tetrahedra are those of the pulling rule (thesis 6.4.3,
- * DelaunayTetrahedralization.h), for any number of threads in the same places.
+ * DelaunayTetrahedralization.h), in the same order for any number of threads.
  * Failure: no block, if it would have less than an eighth of the points: a few points that are
  * missing here and there in a large grid leave none.
  * Cost: O(n). Beside the insertion of the points, which takes 3 to 7 us for each: 0.1 us per point
@@ -42,7 +42,7 @@ struct GridBlock
 {
   /** Lines on each axis, at least two; 0 if there is no block. */
   std::array<Id, 3> Sizes{ 0, 0, 0 };
-  /** The point at each place, the first axis first. */
+  /** The point at each crossing of lines, the first axis first. */
   std::vector<Id> Points;
 
   bool IsEmpty() const { return this->Points.empty(); }
@@ -55,8 +55,8 @@ GridBlock FindGridBlock(const RawVector<Vec3>& points);
 std::size_t GetNumberOfTetrahedra(const GridBlock& block);
 
 /**
- * Fills the first GetNumberOfTetrahedra() places of tetrahedra and neighbors, which are as in
- * DelaunayTetrahedralization; the number of points is the vertex at infinity, and the first one of
+ * Fills the first GetNumberOfTetrahedra() entries of tetrahedra and neighbors, which are as in
+ * DelaunayTetrahedralization. The number of points is the vertex at infinity, which comes first in
  * its tetrahedra. False if aborted.
  */
 bool MeshGridBlock(const GridBlock& block, const std::vector<Id>& numbers, int numberOfThreads,

@@ -10,7 +10,7 @@ namespace cdm
 {
 namespace
 {
-/** Whether two orders of the same three points turn the same way. */
+/** Whether two orders of the same three points have the same orientation. */
 bool TurnAlike(const TriangleIds& s, const TriangleIds& t)
 {
   const int first = static_cast<int>(std::find(t.begin(), t.end(), s[0]) - t.begin());

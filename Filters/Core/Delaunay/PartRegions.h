@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PartRegions.h
- * @brief Regions of the tetrahedra of one part of a mesh, whose surface bounds them.
+ * @brief Finds the regions of the tetrahedra of one part of a mesh from the surface that bounds
+ *   them.
  *
  * Method:
  *  1. triangles of the surface are facets of tetrahedra; tetrahedra that share another facet belong
  *     together (thesis, Lemma 6.1: the front stops at the surface);
- *  2. what borders on a side of a triangle has the region of that side;
- *  3. the rest hears it from parts that have the same tetrahedra, as often as something new is
- *     known. Every enclosed space borders on the surface: what is not known in the end lies
- *     outside.
+ *  2. tetrahedra at a side of a triangle have the region of that side;
+ *  3. regions that are still unknown come from other parts that have the same tetrahedra, in rounds
+ *     until nothing new is found. Every enclosed space borders on the surface: tetrahedra without a
+ *     region in the end lie outside.
  *
  * Guarantees: the regions are those that the front of AdvancingFrontTetrahedralizer.h reaches.
- * Failure: InvalidInput names triangles that are no facets of the mesh, and those where regions
- * contradict each other.
+ * Failure: NotDelaunay names triangles that are no facets of the mesh, NotClosed those where
+ * regions contradict each other.
  * Cost: O(n log n), 80 bytes per tetrahedron while it runs.
  */
 #ifndef cdmPartRegions_h
@@ -29,7 +30,7 @@ namespace cdm
 class PartRegions
 {
 public:
-  /** Of a side that does not tell what it borders on. */
+  /** Region of a side that does not tell what it borders on. */
   static constexpr Id Unknown = -2;
 
   /**
@@ -41,9 +42,9 @@ public:
   PartRegions(const TetMesh& mesh, Id numberOfOwnPoints, const std::vector<TriangleIds>& triangles,
     const std::vector<RegionPair>& regions);
 
-  /** What the surface tells. Cells of the status are triangles. */
+  /** Takes the regions that the surface tells. Cells of the status are triangles. */
   Status Start();
-  /** Those of the tetrahedra whose region has become known since the last call. */
+  /** The given tetrahedra whose region has become known since the last call. */
   std::vector<Id> TakeNews(const std::vector<Id>& tetrahedra);
   /** The region of a tetrahedron, and of the one on a side of a triangle, as far as it is known. */
   Id GetRegion(Id tetrahedron) const
@@ -55,7 +56,7 @@ public:
     return this->SideFacets[side] == NoId ? OutsideRegion
                                           : this->GetRegion(this->SideFacets[side] / 4);
   }
-  /** What another part tells. */
+  /** Takes a region that another part has found. */
   Status SetRegion(Id tetrahedron, Id region);
   /** The region of each tetrahedron, OutsideRegion included. */
   Status Finish(RawVector<Id>& regions) const;
@@ -78,7 +79,7 @@ private:
   Id NumberOfOwnPoints;
   const std::vector<TriangleIds>& Triangles;
   const std::vector<RegionPair>& Regions;
-  /** Sides of triangles: the facet of the tetrahedron there, or NoId. */
+  /** For each side of a triangle: the facet of the tetrahedron there, or NoId. */
   std::vector<Id> SideFacets;
   /** Bit i: facet i of the tetrahedron is a triangle of the surface. */
   std::vector<unsigned char> Barriers;

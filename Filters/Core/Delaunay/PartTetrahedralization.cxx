@@ -40,13 +40,14 @@ constexpr int LastDoubling = 20;
 constexpr std::size_t LargestWork = 64;
 /** Tetrahedra at a point whose neighbors are looked at for a tetrahedron that is not known. */
 constexpr Id LargestStar = 64;
-/**
- * How often the context is asked, in tetrahedra or queries: each may have to look at many points.
- */
+/** Tetrahedra or queries between two calls of the context: each may have to look at many points. */
 constexpr std::size_t ReportInterval = 64;
 constexpr const char* Activity = "Completing the tetrahedra between parts";
 
-/** Where points in conflict with a facet of the hull may be: beyond it, or in its plane. */
+/**
+ * Tests whether a box may hold points in conflict with a facet of the hull: beyond it, or in its
+ * plane.
+ */
 class FacetForm
 {
 public:
@@ -67,7 +68,7 @@ public:
   bool MayTouch(const Vec3& low, const Vec3& high) const
   {
     double largest = 0.0;
-    // What may underflow.
+    // Bound of what underflow may lose.
     double error = std::numeric_limits<double>::min();
     for (int axis = 0; axis < 3; ++axis)
     {

@@ -76,12 +76,15 @@ struct NumberedPoint
   std::int64_t Number = 0;
 };
 
-/** Which points are in conflict with a tetrahedron, or lie beyond a facet of the hull? */
+/**
+ * A question to other parts: which points are in conflict with a tetrahedron, or lie beyond a facet
+ * of the hull?
+ */
 struct ConflictQuery
 {
   /**
-   * Of a positive tetrahedron; or those of a facet, counter-clockwise seen from outside, and the
-   * apex of its tetrahedron, which decides about points in the plane of the facet.
+   * Vertices of a positive tetrahedron. Or those of a facet, counter-clockwise seen from outside,
+   * and the apex of its tetrahedron, which decides about points in the plane of the facet.
    */
   std::array<Vec3, 4> Vertices;
   std::array<std::int64_t, 4> Numbers;
@@ -94,7 +97,7 @@ struct ConflictAnswers
 {
   /** For each query: not 0 if there is a point in conflict. */
   std::vector<char> HasConflict;
-  /** Points in conflict, up to some for each query, each once. */
+  /** Points in conflict: a few for each query, each point once. */
   std::vector<NumberedPoint> Points;
 };
 
@@ -106,12 +109,14 @@ struct HaloPoints
   std::vector<NumberedPoint> Points;
 };
 
-/** The lowest numbered one of points at the same place stays; the result is in ascending order. */
+/**
+ * Drops all but the lowest numbered one of points at the same position; the result is ascending.
+ */
 void RemoveCopies(std::vector<NumberedPoint>& points);
 
 /**
- * The first of the points that is not in the line or the plane through the up to three points, or
- * equal to them; NoId if there is none. Four times so there is a tetrahedron for every part.
+ * The first of the points that is independent of up to three others: not equal to them, and not in
+ * their line or plane. NoId if there is none. Four such calls give a tetrahedron for every part.
  */
 Id FindIndependentPoint(
   const std::vector<NumberedPoint>& points, const std::vector<NumberedPoint>& others);
@@ -129,31 +134,34 @@ public:
 
   /** The boxes from which this part wants all points of each part. */
   std::vector<std::vector<Box>> GetHaloBoxes();
-  /** As the part that is asked. */
+  /** Answers another part: its points in the boxes. */
   HaloPoints GetPointsIn(const std::vector<Box>& boxes) const;
-  /** From each part. */
+  /** Takes the answers of all parts to GetHaloBoxes(). */
   void TakeHalo(const std::vector<HaloPoints>& halo);
-  /** Any points of other parts. */
+  /** Adds points of other parts. */
   void AddPoints(const std::vector<NumberedPoint>& points);
 
   /**
-   * A round: tetrahedralizes what is known, and makes the queries. The first one needs four points
-   * that are not coplanar. A part without points of its own has nothing to do.
+   * One round: tetrahedralizes the known points, and makes the queries. The first round needs four
+   * points that are not coplanar. A part without points of its own has nothing to do.
    */
   Status Update(const ExecutionContext& context);
   /** What each part is to be asked. */
   const std::vector<std::vector<ConflictQuery>>& GetQueries() const { return this->Queries; }
-  /** As the part that is asked. */
+  /** Answers the queries of another part. */
   Status Answer(const std::vector<ConflictQuery>& queries, const ExecutionContext& context,
     ConflictAnswers& answers);
   /** Whether looking for conflicts took too long in this round: answers are not complete then. */
   bool GaveUp() const;
-  /** From each part, if none gave up. False if the part has to be updated again. */
+  /**
+   * Takes the answers of all parts to GetQueries(), if none gave up. False if another round is
+   * needed.
+   */
   bool TakeAnswers(const std::vector<ConflictAnswers>& answers);
-  /** By all parts instead, if one gave up: from the next round on stars are compared. */
+  /** Called by all parts instead if one gave up: from the next round on stars are compared. */
   void CompareStars();
 
-  /** The own points, then the halo; what follows names them by their place here. */
+  /** The own points, then the halo. Ids in what follows are indices into this list. */
   const std::vector<NumberedPoint>& GetPoints() const { return this->Points; }
   Id GetNumberOfOwnPoints() const { return this->NumberOfOwnPoints; }
   bool IsOwn(Id point) const { return point < this->NumberOfOwnPoints; }
@@ -164,19 +172,19 @@ public:
     return *std::min_element(ids.begin(), ids.end(),
       [this](Id a, Id b) { return this->Points[a].Number < this->Points[b].Number; });
   }
-  /** All tetrahedra with an own point, and facets of the hull with one, fronts outside. */
+  /** All tetrahedra with an own point, and all facets of the hull with one; these face outside. */
   RawVector<TetrahedronIds>& GetTetrahedra() { return this->Tetrahedra; }
   std::vector<TriangleIds>& GetHull() { return this->Hull; }
 
 private:
-  /** What other parts are asked about: a tetrahedron, or a facet of the hull and the apex. */
+  /** A tetrahedron that other parts are asked about, or a facet of the hull and its apex. */
   struct Doubt
   {
     TetrahedronIds Ids;
     bool IsFacet;
     bool HasConflict;
 
-    /** How many of the ids it consists of. */
+    /** Number of ids that it consists of. */
     int GetSize() const { return this->IsFacet ? 3 : 4; }
   };
 
@@ -211,7 +219,7 @@ private:
   std::vector<Id> BlockOfPoint;
   /** For each part the blocks whose boxes it was asked for. */
   std::vector<std::vector<Id>> BlocksOfBoxes;
-  /** The place of each point of the halo among the points, by its number. */
+  /** Index of each point of the halo among the points, by its number. */
   std::unordered_map<std::int64_t, Id> HaloPlaces;
 
   int Round = 0;

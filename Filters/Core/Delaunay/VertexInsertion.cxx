@@ -176,10 +176,10 @@ bool VertexInsertion::Walk(Id vertex, const Workspace& space, Id& tetrahedron) c
 template <bool IsShared>
 bool VertexInsertion::FindHole(Id vertex, Id first, Workspace& space)
 {
-  // Without branches: whether a neighbor belongs to the hole is a matter of chance, and a wrongly
-  // predicted branch costs more than to test some neighbors twice. What is found is written in any
-  // case, and counted if it belongs there. Marks may alias anything, in the eyes of a compiler:
-  // what does not change is held here.
+  // Without branches: it is unpredictable whether a neighbor belongs to the cavity, and a wrong
+  // prediction costs more than testing some neighbors twice. Each finding is written, and counted
+  // only if it belongs there. For the compiler, marks may alias anything: so values that do not
+  // change are held here.
   const Vec3* const points = this->Points;
   const Vec3 position = points[vertex];
   const TetrahedronIds* const tetrahedra = this->Output.Tetrahedra.data();
@@ -206,7 +206,7 @@ bool VertexInsertion::FindHole(Id vertex, Id first, Workspace& space)
     HoleFacet* const holeFacets = space.Facets.data();
     const TetrahedronIds& ids = tetrahedra[cavity[k] / 4];
     const TetrahedronIds& neighbors = allNeighbors[cavity[k] / 4];
-    // Not where it was found from.
+    // Skip the neighbor from which the tetrahedron was found.
     for (int j = k == 0 ? 0 : 1; j < 4; ++j)
     {
       const int i = (cavity[k] + j) % 4;
@@ -219,8 +219,8 @@ bool VertexInsertion::FindHole(Id vertex, Id first, Workspace& space)
         sphere.Tolerance * (std::abs(d.X) + std::abs(d.Y) + std::abs(d.Z)) + SmallestCertainBound;
       const unsigned mark = marks[outer];
       unsigned isRemoved = power < 0.0 ? 1 : 0;
-      // Tetrahedra at the border belong to nobody: they are looked at, and never marked. The facet
-      // is owned.
+      // Tetrahedra at the border of a part belong to no thread: they are read, but never marked.
+      // The facet is owned.
       if (IsShared && !own.Has(tetrahedra[outer][neighbors[i] % 4]))
       {
         isWithin = isWithin && sphere.Tolerance < NoSphere.Tolerance &&
@@ -291,7 +291,7 @@ bool VertexInsertion::FillHole(Id vertex, Workspace& space)
     space.Free.Add(place);
   }
 
-  // Number the vertices of the hole. The one at infinity belongs to all threads: it is the last.
+  // Number the vertices of the cavity. The one at infinity belongs to all threads: it is the last.
   const Vec3 origin = this->Points[vertex];
   Id vertexCount = 0;
   double size = 0.0;

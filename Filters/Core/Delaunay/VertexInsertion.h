@@ -9,10 +9,10 @@
  *     are tested in single precision (RoughSphere.h), then in double precision (Determinants.h),
  *     then exactly; where small differences of all coordinates are exact in double precision, as on
  *     a lattice, that is known beforehand. Points on a sphere are told apart by PulledSphere.h;
- *  3. fill the hole with the cone from the vertex.
+ *  3. fill the cavity ("hole" in names of functions) with the cone from the vertex.
  *
  * Threads: each touches only tetrahedra with all vertices in its part of the curve (CurvePart.h),
- * so that none waits for another, and takes places for new ones from its own (FreePlaces.h).
+ * so that none waits for another, and takes slots for new ones from its own store (FreePlaces.h).
  *
  * Inputs: vertices are distinct, finite points; the vertex at infinity, their number, lies beyond
  * all facets of the hull. Parts of threads that work at the same time are disjoint.
@@ -46,7 +46,7 @@ public:
   /** Facet ids of 4 * tetrahedron + i have to fit into an Id. */
   static constexpr std::size_t MaximumTetrahedra = std::size_t(1) << 29;
 
-  /** A facet of the hole, counter-clockwise seen from within it. */
+  /** A facet of the cavity, counter-clockwise seen from within. */
   struct HoleFacet
   {
     Id A;
@@ -55,21 +55,21 @@ public:
     /** The facet id beyond; then the new tetrahedron. */
     Id Outer;
   };
-  /** What a thread has for itself: a part of the curve, and room for tetrahedra. */
+  /** The private data of a thread: its part of the curve, and slots for tetrahedra. */
   struct Workspace
   {
     CurvePart Own;
-    /** Places for new tetrahedra. */
+    /** Slots for new tetrahedra. */
     FreePlaces Free;
     /** Where the next walk starts. */
     Id Last = 0;
     bool HasInserted = false;
-    /** Five points that were compared lie on one sphere. */
+    /** Whether five points that were compared lie on one sphere. */
     bool HasTies = false;
 
     /**
-     * Tetrahedra of the hole, by the facet that each was found through, and facets of the hole: the
-     * first so many of the arrays.
+     * Tetrahedra of the cavity, by the facet through which each was found, and facets of the
+     * cavity. NumberOfRemoved and NumberOfFacets entries are used.
      */
     std::vector<Id> Cavity = std::vector<Id>(64);
     std::vector<HoleFacet> Facets = std::vector<HoleFacet>(64);
@@ -87,7 +87,7 @@ public:
   {
   }
 
-  /** Room for the tetrahedra to be expected. */
+  /** Reserves memory for the expected tetrahedra. */
   void Reserve();
 
   /**
@@ -99,19 +99,22 @@ public:
   /** Starts from what the output has: a complete tetrahedralization. False if aborted. */
   bool Start(int numberOfThreads, const ExecutionContext& context);
 
-  /** By one thread alone. False, and nothing has changed, if facet ids leave no more room. */
+  /**
+   * Inserts a vertex, on one thread alone. False, and nothing has changed, if facet ids leave no
+   * more room.
+   */
   bool Insert(Id vertex, Workspace& space);
 
   /**
-   * By one of several threads. False, and nothing has changed, if tetrahedra are concerned that are
-   * not the thread's own, or its places are used up.
+   * Inserts a vertex, on one of several threads. False, and nothing has changed, if tetrahedra
+   * outside of the thread's part are concerned, or if its slots are used up.
    */
   bool InsertWithinPart(Id vertex, Workspace& space);
 
   /** The tetrahedron that holds the vertex, or one beyond the hull whose facet it sees. */
   Id Locate(Id vertex, const Workspace& space) const;
 
-  /** The same by one of several threads; false if the walk leaves its part. */
+  /** The same on one of several threads; false if the walk leaves its part. */
   bool LocateWithinPart(Id vertex, const Workspace& space, Id& tetrahedron) const;
 
   /** Whether all vertices lie in a part; the one at infinity lies in all. */
@@ -121,10 +124,12 @@ public:
     return part.Has(ids[0]) && part.Has(ids[1]) && part.Has(ids[2]) && part.Has(ids[3]);
   }
 
-  /** By one thread alone. False if facet ids leave no room at all. */
+  /**
+   * Makes slots for more tetrahedra, on one thread alone. False if facet ids leave no room at all.
+   */
   bool AddRoom(std::size_t room, Workspace& space);
 
-  /** Tells places that were never used from tetrahedra. */
+  /** Marks slots that were never used, so that they can be told from tetrahedra. */
   void Finish(const Workspace& space);
 
 private:
@@ -147,7 +152,7 @@ private:
   bool FindHole(Id vertex, Id first, Workspace& space);
   template <bool IsShared>
   bool FillHole(Id vertex, Workspace& space);
-  /** What is marked is owned. */
+  /** Resets the mark of a tetrahedron. Only the thread that owns a tetrahedron marks it. */
   void ForgetMark(Id tetrahedron)
   {
     if (this->Marks[tetrahedron] != Unknown)
@@ -177,7 +182,7 @@ private:
   double ExactPositionBound = 0.0;
   RawVector<RoughSphere> Spheres;
   RawVector<unsigned char> Marks;
-  /** Where a vertex may stand among those of the hole. */
+  /** Work space: index of each vertex among those of the cavity. */
   std::vector<Id> Places;
 };
 } // namespace cdm

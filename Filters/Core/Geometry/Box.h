@@ -49,7 +49,7 @@ struct Box
     this->Add(box.Low);
     this->Add(box.High);
   }
-  /** Of a point to the nearest one of the box; 0 inside. */
+  /** Squared distance of a point from the box; 0 inside. */
   double GetSquaredDistance(const Vec3& p) const
   {
     double distance = 0.0;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file IntersectionPoints.h
- * @brief Where segments pierce triangles and cross each other: exact determinants, rounded once.
+ * @brief Points where segments pierce triangles or cross each other: exact determinants, rounded
+ *   once.
  *
  * Parameters are quotients of determinants with hardly any relative error, also where the segment
  * is nearly parallel to what it meets: so a computed point is off by roundings of its coordinates
@@ -22,18 +23,20 @@
 
 namespace cdm
 {
-/** The point that divides the way from a to b as heightA to -heightB; never outside of it. */
+/**
+ * The point that divides the way from a to b in the ratio heightA to -heightB; never outside of it.
+ */
 Vec3 DivideSegment(const Vec3& a, const Vec3& b, double heightA, double heightB);
 
 /**
- * Where the segment from a to b meets the plane of a triangle, on different sides of which they
- * lie.
+ * The point where the segment from a to b meets the plane of a triangle. a and b lie on different
+ * sides of it.
  */
 Vec3 PierceTriangle(const Vec3& a, const Vec3& b, const std::array<Vec3, 3>& triangle);
 
 /**
- * Where two segments cross that are coplanar, up to rounding: seen along an axis, a point of the
- * first one. Has exactly the coordinates that both ends of the second one have in common.
+ * The point where two segments cross that are coplanar up to rounding, seen along an axis; a point
+ * of the first one. Coordinates that both ends of the second one have in common are exact.
  */
 Vec3 CrossSegments(int axis, const std::array<Vec3, 2>& segment, const std::array<Vec3, 2>& other);
 } // namespace cdm

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MatchingPoints.h
- * @brief The last digits of points that have to match others (README.md, stage 2).
+ * @brief Chooses the last bits of points that have to match others (README.md, stage 2).
  */
 #ifndef cdmMatchingPoints_h
 #define cdmMatchingPoints_h
@@ -16,9 +16,9 @@
 namespace cdm
 {
 /**
- * Takes over each coordinate that differs from that of a matching point by rounding errors only:
- * what is parallel to an axis stays so exactly, and the cells in between become exactly
- * cospherical, which stage 4 can make good tetrahedra of.
+ * Takes over each coordinate that differs from that of a matching point by rounding errors only.
+ * Edges parallel to an axis stay exactly so, and the cells in between become exactly cospherical;
+ * stage 4 can make good tetrahedra of those.
  */
 inline Vec3 SnapToCoordinates(Vec3 position, const Vec3& model, double size)
 {
@@ -33,11 +33,11 @@ inline Vec3 SnapToCoordinates(Vec3 position, const Vec3& model, double size)
 }
 
 /**
- * Two points that match across a narrow gap leave the pieces at them alone only if they differ
- * along the gap by less than its squared width over the size of the pieces. Where that is less than
- * rounding leaves, one of the doubles next to the position is taken.
+ * Two points that match across a narrow gap do not encroach on the pieces at them only if they
+ * differ along the gap by less than its squared width over the size of the pieces. If rounding
+ * alone is larger than that, one of the doubles next to the position is taken.
  * @param getOffset distance from the model along the gap, in extended precision
- * @param range at most so many units in the last place are gone from the position
+ * @param range largest move from the position, in units in the last place
  */
 template <typename GetOffset>
 Vec3 MatchExactly(

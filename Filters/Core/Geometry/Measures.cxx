@@ -19,7 +19,9 @@ Vec3 Divide(const Vec3& vector, double divisor)
   return { vector.X / divisor, vector.Y / divisor, vector.Z / divisor };
 }
 
-/** What the dihedral angles at the edges ab, ac, ad, bc, bd, cd are made of. */
+/**
+ * Sines and cosines, up to a factor, of the dihedral angles at the edges ab, ac, ad, bc, bd, cd.
+ */
 struct DihedralSides
 {
   DihedralSides(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
@@ -42,14 +44,14 @@ struct DihedralSides
 
   double GetAngle(int edge) const
   {
-    // n x m of the facets at an edge is the edge times six volumes: the sine's share.
+    // n x m of the facets' normals is the edge times six volumes: that is the sine.
     return std::atan2(this->SixVolumes * this->Lengths[edge], 0.0 - this->Products[edge]) *
       DegreesPerRadian;
   }
 
   double SixVolumes;
   std::array<double, 6> Lengths;
-  /** Of the normals of the two facets at each edge. */
+  /** Scalar product of the normals of the two facets at each edge. */
   std::array<double, 6> Products;
 };
 } // namespace

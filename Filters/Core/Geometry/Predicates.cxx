@@ -139,7 +139,7 @@ int GetSign(const Int192& value)
 class IntegerDifferences
 {
 public:
-  /** From point 0; false if there is no unit that is small and large enough. */
+  /** Takes the differences from point 0. False if no unit is small enough and large enough. */
   template <int N>
   bool Set(const Vec3* const (&points)[N])
   {
@@ -294,7 +294,7 @@ private:
       this->GetDeterminant<Integer>(0, 1, 2) * this->GetSquare<Integer>(3));
   }
 
-  /** As GetEquatorialPower() in floating point. */
+  /** The same as GetEquatorialPower() in floating point. */
   Int128 GetEquatorialPower() const
   {
     const Int128 n[3] = { this->GetMinor<Int128>(0, 1, 1, 2), this->GetMinor<Int128>(0, 1, 2, 0),
@@ -385,9 +385,9 @@ bool AreCornersOfBox(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d,
 }
 
 /**
- * What the filter of InEquatorialSphere() cannot tell: most often points in the plane of the
- * triangle, on its circumcircle. Their tests by multiple precision numbers were half of the time of
- * refining surfaces made of rectangles.
+ * Decides what the filter of InEquatorialSphere() cannot tell: most often points in the plane of
+ * the triangle, on its circumcircle. Testing these by multiple precision numbers took half of the
+ * time of refining surfaces made of rectangles.
  */
 int ExactInEquatorialSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p)
 {

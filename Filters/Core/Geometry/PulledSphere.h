@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PulledSphere.h
- * @brief Inside or outside of a sphere that a point lies on: the pulling rule for cospherical
- * points.
+ * @brief The pulling rule: a symbolic perturbation that puts cospherical points inside or outside
+ *   of a
+ * sphere.
  *
  * Points on one sphere are told apart as if each had been pulled into it infinitely little, the
  * lowest numbered one most: the tetrahedra are then those of the pulling rule, and none is flat.
@@ -31,9 +32,10 @@ template <typename GetSide>
 int GetPulledPosition(const std::array<Vec3, 4>& vertices, const std::array<Id, 4>& numbers,
   const Vec3& point, Id own, GetSide&& getSide)
 {
-  // What is pulled most decides: the point comes to lie within; another one leaves the point
-  // outside where the tetrahedron is, and inside on the other side of its other three. If these are
-  // coplanar with the point the next one decides.
+  // The point that is pulled most decides. If it is the tested point, it comes to lie inside. If it
+  // is a vertex, the tested point lies outside on the tetrahedron's side of the other three
+  // vertices, and inside on their other side. If these three are coplanar with the tested point,
+  // the next point decides.
   Id limit = std::numeric_limits<Id>::min();
   for (;;)
   {

@@ -66,10 +66,10 @@ private:
   Vec3 Origin;
   /** Length by which the polynomials are scaled: a power of two near the size of the simplex. */
   double Size = 1.0;
-  /** D in units of Size; what rounding leaves of it. */
+  /** D in units of Size, and what rounding leaves of it. */
   double Curvature = 1.0;
   double CurvatureRest = 0.0;
-  /** 2 D (c - a), likewise. */
+  /** 2 D (c - a), and what rounding leaves of it. */
   Vec3 Gradient;
   Vec3 GradientRest;
   /** The center relative to Origin: along each axis where g is smallest. */

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleTolerances.h
- * @brief Which triangles are coplanar, overlap or have no area up to a tolerance.
+ * @brief Tests whether triangles are coplanar, overlap or have no area up to a tolerance.
  *
- * Rounded: these answers decide where points are pulled together, never how triangles lie.
+ * Answers are rounded: they decide where points are merged, never the topology.
  * Tolerances are lengths in model units.
  */
 #ifndef cdmTriangleTolerances_h

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WideVec3.h
- * @brief Vectors in the widest floating-point type, for what double leaves of almost equal
- * products.
+ * @brief Vectors in the widest floating-point type, for differences of almost equal products.
  *
- * The additional bits are what is left of the height of a needle over its long edge, for example.
- * They also keep the products of very small or large coordinates from leaving the range of the
- * exponent. Useless, but right, where that type is double.
+ * The height of a needle over its long edge, for example, is left in the additional bits only. The
+ * products of very small or large coordinates also stay in the range of the exponent. Where the
+ * widest type is double, results are right, but no better.
  */
 #ifndef cdmWideVec3_h
 #define cdmWideVec3_h

@@ -24,13 +24,13 @@ constexpr double SmallestDistance = 1e-6;
 /** A vertex of the refined surface, as seen from an interface. */
 struct LayerVertex
 {
-  /** Of any length. */
+  /** Normal of the interface, of any length. */
   Vec3 Normal;
-  /** The shortest at it. */
+  /** The shortest edge at the vertex. */
   double Edge = Infinity;
-  /** It has triangles of other interfaces, too. */
+  /** Whether the vertex has triangles of other interfaces, too. */
   bool IsRim = false;
-  /** Of the interface. */
+  /** Triangles of the interface at the vertex. */
   std::vector<Id> Triangles;
 };
 
@@ -45,7 +45,7 @@ struct LayerFoot
   bool IsRim;
 };
 
-/** One for each point of the refined surface; false if there is no such interface. */
+/** Measures each vertex of the refined surface; false if there is no such interface. */
 bool MeasureVertices(const PointLayers& layers, const RegionLocator& locator,
   const DelaunaySurfaceRefinerOutput& refined, std::vector<LayerVertex>& vertices)
 {

@@ -14,7 +14,8 @@
  * Above the same vertices these points make prisms, which are Delaunay however flat they are
  * (Filters/Core/README.md).
  *
- * Failure: InvalidInput for layers at an interface that is not there, or too many points.
+ * Failure: InvalidOption for layers at an interface that is not there, LimitReached for too many
+ * points.
  */
 #ifndef cdmLayerPoints_h
 #define cdmLayerPoints_h
@@ -23,7 +24,7 @@
 
 namespace cdm
 {
-/** Those that the placer's options ask for. */
+/** Places the layers that the placer's options ask for. */
 Status PlaceLayerPoints(const ExecutionContext& context, MeshPointPlacer& placer);
 } // namespace cdm
 

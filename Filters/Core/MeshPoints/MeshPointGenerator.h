@@ -74,9 +74,9 @@ struct PointLayers
   Id Region = 0;
   Id Neighbor = OutsideRegion;
   Id NumberOfLayers = 1;
-  /** Of the first layer from the interface. Model units, > 0. */
+  /** Distance of the first layer from the interface. Model units, > 0. */
   double FirstDistance = 1.0;
-  /** Each gap between two layers to the one before. > 0. */
+  /** Ratio of each gap between two layers to the one before. > 0. */
   double GrowthRatio = 1.0;
 };
 

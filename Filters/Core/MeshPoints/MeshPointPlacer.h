@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshPointPlacer.h
- * @brief Which positions inside of the regions mesh points may take, and the points that took one.
+ * @brief Decides which positions inside of the regions mesh points may take, and keeps these
+ *   points.
  *
  * Method:
  *  1. a position has to be clear of the boundary, by BoundaryClearance of its spacing
@@ -11,8 +12,8 @@
  *
  * Guarantees: points are added in the order of their candidates, for any number of threads. Queries
  * are thread safe.
- * Failure: InvalidInput for labels that contradict each other, a surface that encloses nothing, or
- * more points than allowed.
+ * Failure: NotClosed for labels that contradict each other or a surface that encloses nothing,
+ * LimitReached for more points than allowed.
  * Cost: some microseconds for a candidate.
  */
 #ifndef cdmMeshPointPlacer_h
@@ -30,7 +31,7 @@
 
 namespace cdm
 {
-/** Of a layer from its interface; they are numbered from 1 on. */
+/** Distance of a layer from its interface; layers are numbered from 1 on. */
 double GetLayerDistance(const PointLayers& layers, Id number);
 
 class MeshPointPlacer
@@ -39,9 +40,9 @@ public:
   struct Candidate
   {
     Vec3 Position;
-    /** That of the points around it. */
+    /** Spacing of the points around it. */
     LocalSpacing Spacing;
-    /** Where it lies, or MixedRegion if that is not known. */
+    /** Its region, or MixedRegion if that is not known. */
     Id Region;
   };
 
@@ -57,16 +58,16 @@ public:
   const RegionLocator& GetLocator() const { return this->Locator; }
   MeshPointGeneratorOutput& GetOutput() { return this->Output; }
 
-  /** Leaves as large as the sizing asks for, times a ratio. */
+  /** Builds an octree whose leaves are as large as the sizing asks for, times a ratio. */
   Status BuildOctree(double ratio, const ExecutionContext& context, SizingOctree& octree) const;
 
   /** The region of a point that may stay, or OutsideRegion; the known one may be MixedRegion. */
   Id FindRegion(const Vec3& position, const LocalSpacing& spacing, Id known) const;
 
-  /** A point with its region, of layer 0 if of none. */
+  /** Adds a point with its region; layer: 0 if it is in none. */
   Status Add(const Vec3& position, Id region, Id layer);
 
-  /** Adds those of so many candidates that may stay; all threads ask for them. */
+  /** Adds those of count candidates that may stay. getCandidate is called on all threads. */
   Status PlaceAll(std::size_t count, const ExecutionContext& context,
     const std::function<std::optional<Candidate>(std::size_t)>& getCandidate);
 

@@ -37,7 +37,7 @@ double GetLeafRatio(PointTemplate kind)
                                              : 0.9;
 }
 
-/** Of all leaves that are not outside, sorted; false if aborted. */
+/** Collects the template points of all leaves that are not outside, sorted; false if aborted. */
 bool MakeEntries(const SizingOctree& octree, const MeshPointGeneratorOptions& options,
   const ExecutionContext& context, RawVector<Entry>& entries)
 {

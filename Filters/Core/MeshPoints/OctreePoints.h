@@ -10,7 +10,7 @@
  *     several leaves have in common are found by sorting all of them by their place;
  *  3. the spacing of a point is that between the points of its smallest leaf, along each axis.
  *
- * Failure: InvalidInput if the sizing needs too many points.
+ * Failure: LimitReached if the sizing needs too many points.
  * Cost: O(n log n); 24 bytes for each point of each leaf.
  */
 #ifndef cdmOctreePoints_h

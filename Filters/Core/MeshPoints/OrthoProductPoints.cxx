@@ -17,14 +17,14 @@ namespace
 {
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 
-/** How many cells there are up to a position, if there could be parts of cells. */
+/** Number of cells up to a position; it need not be a whole number. */
 struct CellCount
 {
   double Position;
   double Count;
 };
 
-/** Along an axis, ascending; between them the count grows evenly. */
+/** Counts cells along an axis, ascending; between two entries the count grows evenly. */
 std::vector<CellCount> CountCells(
   const SizingOctree& octree, const MeshPointPlacer& placer, int axis)
 {
@@ -106,7 +106,10 @@ std::vector<double> FindTicks(const SizingOctree& octree, const MeshPointPlacer&
   return ticks;
 }
 
-/** Those that the options give, or as the sizing asks for; ascending. */
+/**
+ * Finds the planes across each axis, ascending: those that the options give, otherwise as the
+ * sizing asks for.
+ */
 Status FindPlanes(const ExecutionContext& context, const MeshPointPlacer& placer,
   std::array<std::vector<double>, 3>& ticks)
 {

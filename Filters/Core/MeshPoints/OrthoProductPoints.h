@@ -12,7 +12,7 @@
  *  3. the spacing of a point is that between the points around it, from the gap between its plane
  *     and the nearest one, along each axis.
  *
- * Failure: InvalidInput for more crossings of planes than points are allowed, inside or not.
+ * Failure: LimitReached for more crossings of planes than points are allowed, inside or not.
  * Cost: O(n log n) for n leaves, O(1) for each point.
  */
 #ifndef cdmOrthoProductPoints_h

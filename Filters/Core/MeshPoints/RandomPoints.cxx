@@ -20,7 +20,7 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 /** Darts are at least so many spacings apart. */
 constexpr double DartDistance = 0.62;
 constexpr int DartsPerLeaf = 12;
-/** Of Lloyd's iteration: about 60 samples for each point. */
+/** Samples of Lloyd's iteration in a leaf: about 60 for each point. */
 constexpr int SamplesAlongLeaf = 3;
 constexpr int SamplesOfLeaf = SamplesAlongLeaf * SamplesAlongLeaf * SamplesAlongLeaf;
 
@@ -44,13 +44,13 @@ private:
   {
     const SizingOctree::Leaf* Leaf;
     LocalSpacing Spacing;
-    /** Of a sample: a density of h^-5 gives a spacing of h. */
+    /** Mass of a sample: a density of h^-5 gives a spacing of h. */
     double Mass;
     /** No sample is near the boundary or layers. */
     bool IsInside;
   };
 
-  /** Of the samples nearest to a point, about it. */
+  /** Mass and first moment, about a point, of the samples nearest to it. */
   struct Moment
   {
     double Mass = 0.0;
@@ -58,15 +58,15 @@ private:
   };
 
   Status ThrowDarts(const ExecutionContext& context);
-  /** One dart into each of some leaves. */
+  /** Throws one dart into each of some leaves. */
   Status ThrowDarts(
     const Id* leaves, std::size_t count, const ExecutionContext& context, PointOctree& points);
 
   Status Smooth(const ExecutionContext& context);
   SmoothingCell MakeSmoothingCell(const SizingOctree::Leaf& leaf) const;
-  /** One iteration; false if aborted. */
+  /** One iteration of Lloyd; false if aborted. */
   bool MoveToCenters(const std::vector<SmoothingCell>& cells, const ExecutionContext& context);
-  /** One for each point; false if aborted. */
+  /** Finds the moment of each point; false if aborted. */
   bool FindMoments(const std::vector<SmoothingCell>& cells, const ExecutionContext& context,
     std::vector<Moment>& moments);
 
@@ -81,7 +81,7 @@ private:
   std::mt19937_64 Random;
 };
 
-/** In one of parts^3 parts of a leaf. */
+/** A random position in one of parts^3 parts of a leaf. */
 Vec3 RandomPlacement::GetRandomPosition(const SizingOctree::Leaf& leaf, int part, int parts)
 {
   Vec3 units;
@@ -100,7 +100,10 @@ Status RandomPlacement::ThrowDarts(
   {
     Vec3 Position;
     LocalSpacing Spacing = 1.0;
-    /** Where it may stay, as far as it does not meet others of its batch. */
+    /**
+     * Region of the dart, or OutsideRegion if it may not stay. Darts of the same batch are not
+     * regarded.
+     */
     Id Region = OutsideRegion;
   };
   const auto isNearOther = [&points](const Dart& dart)

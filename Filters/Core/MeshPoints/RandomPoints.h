@@ -13,7 +13,7 @@
  *
  * Guarantees: random numbers are drawn, and sums are made, on one thread: points are the same for
  * any number of threads.
- * Failure: InvalidInput if the sizing needs too many points.
+ * Failure: LimitReached if the sizing needs too many points.
  * Cost: about a millisecond for a point.
  * References: R. L. Cook, "Stochastic sampling in computer graphics", 1986,
  * doi:10.1145/7529.8927 (darts); Q. Du, V. Faber, M. Gunzburger, "Centroidal Voronoi

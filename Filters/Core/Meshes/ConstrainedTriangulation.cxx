@@ -33,7 +33,7 @@ int ConstrainedTriangulation::Turn(Id a, Id b, Id c) const
     ProjectedOrientation(this->Axis, this->Points[a], this->Points[b], this->Points[c]);
 }
 
-/** For a point on the line through from and to: whether it lies on the side of to. */
+/** Whether a point on the line through from and to lies on the side of to. */
 bool ConstrainedTriangulation::IsAhead(Id from, Id to, Id point) const
 {
   const Vec3& origin = this->Points[from];

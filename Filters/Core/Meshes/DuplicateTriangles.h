@@ -17,7 +17,7 @@ struct DuplicateTriangle
   Id Triangle = NoId;
   /** The first triangle with the same points. */
   Id Original = NoId;
-  /** The two turn their fronts to opposite sides. */
+  /** Whether the two have opposite orientations. */
   bool IsReversed = false;
 };
 

@@ -29,7 +29,7 @@ struct EdgeUse
   }
 };
 
-/** By edge, the uses of an edge in ascending order. */
+/** All uses, sorted by edge; the uses of an edge ascend. */
 std::vector<EdgeUse> SortEdgeUses(
   const std::vector<TriangleIds>& triangles, std::size_t numberOfPoints);
 } // namespace cdm

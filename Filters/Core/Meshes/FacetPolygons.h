@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FacetPolygons.h
- * @brief Triangles of a flat facet with a common circumcircle: a convex polygon, whose diagonals
- * are those of the pulling rule in a mesh (thesis 6.4.3, "flip triangles on the fly").
+ * @brief Convex polygons of cocircular triangles in a flat surface facet. In a mesh their diagonals
+ * have to be those of the pulling rule (thesis 6.4.3, "flip triangles on the fly").
  *
  * Cost: O(n log n) to build; 16 bytes per side of a triangle.
  */
@@ -20,7 +20,7 @@ namespace cdm
 class FacetPolygons
 {
 public:
-  /** The surface has to outlive this; triangles may be turned within their polygons. */
+  /** The surface has to outlive this; diagonals may be flipped within their polygons. */
   explicit FacetPolygons(const TriangleMesh& surface);
 
   /**
@@ -72,8 +72,8 @@ private:
 };
 
 /**
- * The fan from the lowest point of the convex polygon of a triangle and further points on its
- * circle, turned like the triangle.
+ * The triangles of a convex polygon by the pulling rule: the fan from its lowest point. The polygon
+ * is a triangle and further points on its circle; orientations are those of the triangle.
  */
 std::vector<TriangleIds> MakePulledFan(
   const std::vector<Vec3>& points, const TriangleIds& triangle, const std::vector<Id>& others);

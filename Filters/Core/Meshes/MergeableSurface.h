@@ -3,8 +3,8 @@
  * @file MergeableSurface.h
  * @brief A surface of which points are merged into their neighbors, one after the other.
  *
- * Says which merges keep the topology, and does them; which ones keep the shape is for those to
- * decide who merge (SurfaceCoarsening.h, SurfaceReduction.h).
+ * Says which merges keep the topology, and does them. The callers (SurfaceCoarsening.h,
+ * SurfaceReduction.h) decide which merges keep the shape.
  *
  * Inputs: the invariants of TriangleMesh.h. The surface must outlive this and not be changed by
  * others until Finish().
@@ -38,8 +38,9 @@ public:
   std::vector<Id> GetNeighbors(Id point) const;
 
   /**
-   * Whether nothing but the triangles at the edge between a point and its neighbor vanishes in a
-   * merge: what else is next to both would be folded onto itself (the link condition).
+   * Whether a merge of a point into its neighbor keeps the topology (the link condition): only
+   * triangles at the edge between the two may vanish. Anything else next to both would be folded
+   * onto itself.
    */
   bool KeepsTopology(Id point, Id target) const;
 

@@ -27,10 +27,10 @@ TriangleMesh ExtractBoundary(const TetMesh& mesh);
  */
 TriangleMesh UpdateBoundary(const TetMesh& mesh, const TriangleMesh& before);
 
-/** Drops the points that no triangle uses; the others' ids before, ascending. */
+/** Drops the points that no triangle uses. Returns the former ids of the others, ascending. */
 std::vector<Id> RemoveUnusedPoints(TriangleMesh& surface);
 
-/** The points of tetrahedra that are none of the boundary's, ascending. */
+/** The points of tetrahedra that are not on the boundary, ascending. */
 std::vector<Id> FindPointsInside(const TetMesh& mesh, const std::vector<Id>& boundaryPoints);
 } // namespace cdm
 

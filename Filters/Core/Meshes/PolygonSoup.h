@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PolygonSoup.h
- * @brief What comes in: one unsorted list of polygons, of any orientation and any connectivity.
+ * @brief The input: one unsorted list of polygons, of any orientation and any connectivity.
  */
 #ifndef cdmPolygonSoup_h
 #define cdmPolygonSoup_h

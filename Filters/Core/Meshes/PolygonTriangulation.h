@@ -9,7 +9,7 @@
  *     far from planar may do), the other axes are tried, in the order of the components;
  *  2. split off the ear (a triangle at a convex vertex that holds no other vertex, neither inside
  *     nor on its new edge) with the largest smallest angle until one triangle is left;
- *  3. turn diagonals where that makes the opposite angles smaller (Delaunay) and both new triangles
+ *  3. flip diagonals where that makes the opposite angles smaller (Delaunay) and both new triangles
  *     are positive. A quadrilateral gets its shorter diagonal instead.
  *
  * Why the result is right: the triangles are all strictly positive and have the outline as their

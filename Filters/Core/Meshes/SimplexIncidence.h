@@ -136,7 +136,10 @@ private:
   }
 
   const TetMesh& Mesh;
-  /** Of each point the first of its Corners, which are 4 * tetrahedron + vertex, ascending. */
+  /**
+   * For each point the index of its first entry in Corners, which are 4 * tetrahedron + vertex,
+   * ascending.
+   */
   std::vector<Id> Begin;
   RawVector<Id> Corners;
 };

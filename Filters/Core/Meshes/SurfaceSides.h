@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceSides.h
- * @brief Which sides of the triangles of a surface look into the same space.
+ * @brief Finds the sides of triangles that look into the same space.
  *
  * Side 2 * t is the front and 2 * t + 1 the back of triangle t. Around every edge the triangles are
  * sorted by angle, exactly; sides that face each other across the wedge between two neighbours are
@@ -20,7 +20,7 @@ namespace cdm
 {
 struct SurfaceSides
 {
-  /** For each side. */
+  /** The shell of each side. */
   std::vector<Id> Shells;
   /** For each shell: whether it is the outer one of its component. */
   std::vector<char> IsOuter;

@@ -18,7 +18,8 @@
 namespace cdm
 {
 /**
- * Facet i of a tetrahedron lies opposite to its vertex i. A facet id is 4 * tetrahedron + i.
+ * Facet i of a tetrahedron (its face) lies opposite to its vertex i. A facet id is 4 * tetrahedron
+ * + i. The facets of a surface (StructuralEdges.h) are something else: sets of triangles.
  *
  * Invariants: every tetrahedron is positively oriented (exact sign); Regions and Neighbors have one
  * entry for each tetrahedron; Neighbors[t][i] is the facet id, seen from the other tetrahedron, of
@@ -34,8 +35,8 @@ struct TetMesh
 };
 
 /**
- * Vertices of the facet opposite to each vertex of a tetrahedron, turned so that the front side
- * (the normal) looks out of the tetrahedron.
+ * Vertices of the facet opposite to each vertex of a tetrahedron, in the order for which the front
+ * side (the normal) looks out of the tetrahedron.
  */
 constexpr int FacetVertices[4][3] = { { 1, 2, 3 }, { 0, 3, 2 }, { 0, 1, 3 }, { 0, 2, 1 } };
 
@@ -49,7 +50,7 @@ inline TriangleIds GetFacet(const TetrahedronIds& tetrahedron, int facet)
     tetrahedron[FacetVertices[facet][2]] };
 }
 
-/** Where the vertices are. */
+/** The positions of the vertices. */
 inline std::array<Vec3, 4> GetCorners(
   const std::vector<Vec3>& points, const TetrahedronIds& tetrahedron)
 {

@@ -296,7 +296,7 @@ void AddCoplanarContacts(const Corners& s, const Corners& t, ContactPoints& cont
   }
 }
 
-/** Where the segment from p to q, which meets the plane of t, meets it. */
+/** The point where the segment from p to q meets the plane of t. */
 Vec3 PiercePlane(const Vec3& p, const Vec3& q, const Corners& t)
 {
   const Vec3 normal = Cross(t[1] - t[0], t[2] - t[0]);

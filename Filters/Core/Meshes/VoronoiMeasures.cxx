@@ -55,7 +55,7 @@ struct Frame
   DoubleDouble3 U;
   DoubleDouble3 V;
   DoubleDouble3 W;
-  /** Of the facet opposite to the vertex. */
+  /** Normals of the facets opposite to the vertices. */
   DoubleDouble3 NormalC;
   DoubleDouble3 NormalB;
   DoubleDouble3 NormalD;
@@ -68,7 +68,9 @@ bool IsPositive(const std::array<Vec3, 4>& corners)
   return Orientation(corners[0], corners[1], corners[2], corners[3]) > 0;
 }
 
-/** How much rounding can change the coupling of an edge, as in TetrahedronEdges. */
+/**
+ * Bound of how much rounding can change the coupling of an edge, numbered as in TetrahedronEdges.
+ */
 double GetRounding(const std::array<Vec3, 4>& corners, int edge)
 {
   double largest = 0.0;
@@ -108,7 +110,7 @@ std::array<DoubleDouble, 6> GetCouplings(const Vec3& a, const Vec3& b, const Vec
   const DoubleDouble3 center = frame.GetScaledCircumcenter();
   const DoubleDouble twelveVolumes = Scale(2.0, frame.SixVolumes);
   const DoubleDouble denominator = Scale(4.0, twelveVolumes);
-  // Of a facet: distance of the circumcenter, over four lengths of the normal.
+  // For a facet: distance of the circumcenter, over four lengths of the normal.
   const auto facet = [&](const DoubleDouble3& normal, const DoubleDouble3& fromVertex)
   { return Dot(fromVertex, normal) / (denominator * Dot(normal, normal)); };
   const DoubleDouble facetB = facet(frame.NormalB, center);
@@ -188,7 +190,7 @@ std::array<DoubleDouble, 3> GetVertexAreas(const Vec3& a, const Vec3& b, const V
   const DoubleDouble3 normal = Cross(ab, ac);
   // The square is eight times the length of the normal: the root is rounded, which is well enough.
   const DoubleDouble eightNormals = { 8.0 * std::sqrt(Dot(normal, normal).High), 0.0 };
-  // Of an edge: length times distance of the circumcenter over four, for either end.
+  // For an edge: length times distance of the circumcenter over four, for either end.
   const DoubleDouble shareAB = Dot(ab, ab) * Dot(ac, bc) / eightNormals;
   const DoubleDouble shareAC = -(Dot(ac, ac) * Dot(ab, bc)) / eightNormals;
   const DoubleDouble shareBC = Dot(bc, bc) * Dot(ab, ac) / eightNormals;

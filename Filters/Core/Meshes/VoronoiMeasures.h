@@ -37,9 +37,9 @@ std::array<DoubleDouble, 6> GetCouplings(
   const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /**
- * How much rounding the coordinates can change the coupling of an edge in a region, to first order:
- * the sum over the records of the edge. Far from the origin that is more than any given part of the
- * lengths, and it grows with obtuse angles. Inverted and flat tetrahedra have no part in it.
+ * Bound, to first order, of how much rounding of the coordinates can change the coupling of an edge
+ * in a region: the sum over the records of the edge. It grows with the distance from the origin and
+ * with obtuse angles. Inverted and flat tetrahedra have no part in it.
  */
 double GetCouplingRounding(const TetMesh& mesh,
   std::vector<SimplexIncidence::Record>::const_iterator begin,

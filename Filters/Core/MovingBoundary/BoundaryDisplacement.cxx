@@ -76,7 +76,7 @@ public:
 
 private:
   int Dimension = 3;
-  /** Of the plane's normal, or of the edge. */
+  /** Direction of the plane's normal, or of the edge. */
   Vec3 Direction;
 };
 
@@ -324,7 +324,7 @@ private:
   std::vector<char> IsOnBoundary;
   std::vector<Freedom> Freedoms;
   std::vector<Vec3> Displacements;
-  /** To the neighbors of free points; those of point p are from Begin[p] to Begin[p + 1]. */
+  /** Links from free points to their neighbors; those of point p are Begin[p] to Begin[p + 1]. */
   std::vector<Link> Links;
   std::vector<Id> Begin;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundaryDisplacement.h
- * @brief How the points of a mesh follow its boundary when that moves.
+ * @brief Spreads the displacement of a moving boundary to the other points of a mesh.
  *
  * Points on the boundary and the interfaces that are given a displacement have it. The others are
  * free as far as the shape of the boundary allows: inside in all directions; on flat parts of the

@@ -35,7 +35,7 @@ constexpr int MaximumNumberOfHalvings = 5;
 /** Distance of a point from a triangle to look from, in heights of the triangle. */
 constexpr double ProbeRatio = 1e-6;
 
-/** What becomes of the boundary if it moves. */
+/** The result of moving the boundary. */
 enum class Passage
 {
   Free,
@@ -696,7 +696,7 @@ Status Remeshing::Remesh(
   return {};
 }
 
-/** What a stage holds against a surface, with the input points of its triangles. */
+/** Completes an error about a surface: adds the input points of its triangles. */
 Status Remeshing::Describe(Status status, const Surface& surface) const
 {
   if (status.IsAborted())

@@ -20,7 +20,7 @@ constexpr double Rounding = 2e-6;
 /** Cells farther away than doubles tell apart are not used. */
 constexpr double LargestIndex = 4e15;
 
-/** Of a cell in its slot: most of those that are not looked for are told from it by that alone. */
+/** Mark of a cell in its slot: it tells most other cells from the one that is searched. */
 std::uint32_t GetMark(std::uint64_t hash)
 {
   return static_cast<std::uint32_t>(hash >> 32);

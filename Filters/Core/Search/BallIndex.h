@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BallIndex.h
- * @brief Which of many balls hold a point: the inverse of the point octree.
+ * @brief Finds those of many balls that hold a point: the inverse of the point octree.
  *
  * Balls of similar radius share a level, a hashed grid whose cells are as wide as its largest
  * balls; a ball lies in the cell of its center, so that at most eight cells of each level can hold
- * balls that reach a point. The cells are made by the first query: who never asks pays for a list.
- * Within a cell balls are kept in single precision, in units of the cell, a little too large.
+ * balls that reach a point. The first query makes the cells; before it, balls are only listed.
+ * Within a cell balls are kept in single precision, in units of the cell, a little too large, and
+ * are tested in blocks.
  *
- * Cost: O(1) to add or remove; O(levels) cells for a query, which looks at most balls in them: that
- * was a third of the time of refining a surface while they were in double precision and tested one
- * by one, and is an eighth now. About 100 bytes per ball.
+ * Cost: O(1) to add or remove; a query looks at most balls of O(levels) cells. About 100 bytes per
+ * ball.
  */
 #ifndef cdmBallIndex_h
 #define cdmBallIndex_h
@@ -44,7 +44,7 @@ private:
     Id Number;
   };
 
-  /** A multiple of what a vector register holds. */
+  /** Balls in a block: a multiple of what a vector register holds. */
   static constexpr std::size_t BlockSize = 16;
 
   /** Coordinates relative to the low corner of the cell, in widths of it. */
@@ -74,15 +74,15 @@ private:
   {
     CellPlace Place;
     Vec3 Corner;
-    /** A box that all its balls have been within, coordinates as in the blocks. */
+    /** A box that holds all balls of the cell, coordinates as in the blocks. */
     float Low[3];
     float High[3];
     std::vector<Id> Numbers;
-    /** As many as the numbers need. */
+    /** The balls themselves, in as many blocks as needed. */
     std::vector<Block> Blocks;
   };
 
-  /** Where a ball is. */
+  /** The cell of a ball, and its index there. */
   struct Place
   {
     Id Cell = NoId;
@@ -102,7 +102,7 @@ private:
   void Put(const Ball& ball);
   void Resize(std::size_t numberOfSlots);
 
-  /** By number of the ball. */
+  /** The cell and index of each ball, by its number. */
   std::vector<Place> Places;
   std::vector<Cell> Cells;
   /**
@@ -112,7 +112,7 @@ private:
   std::vector<Slot> Slots;
   /** Balls that wait for the first query. */
   std::vector<Ball> Waiting;
-  /** How many balls there are of each level in the cells. */
+  /** Number of balls of each level in the cells. */
   std::map<int, Id> Levels;
 };
 } // namespace cdm

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoxOctree.h
- * @brief Which of many boxes overlap a given one, where boxes come and go (BoxTree.h: where not).
+ * @brief Finds those of many boxes that overlap a given one; boxes may come and go (in BoxTree.h
+ *   they
+ * may not).
  *
  * A loose octree: a box lies in the cell of its center, on the deepest level where it is not larger
  * than the cell; so it reaches no further than half a cell beyond it. Boxes are closed: touching
@@ -24,10 +26,10 @@ namespace cdm
 class BoxOctree
 {
 public:
-  /** bounds: of all boxes that will come; ids are 0 to capacity - 1. */
+  /** bounds holds all boxes that will come; ids are 0 to capacity - 1. */
   BoxOctree(const Box& bounds, Id capacity);
 
-  /** An id that is not in. */
+  /** Adds a box under an id that is not in use. */
   void Add(Id id, const Box& box);
 
   void Remove(Id id);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PlaceSearch.h
- * @brief A better place for a point: the one that makes the smallest dihedral angle largest.
+ * @brief Searches a better position for a point: one that increases the smallest dihedral angle.
  *
- * Method: pattern search, in given directions (of a cube, where a point may go anywhere) around the
- * best place so far, in steps that become shorter where none helps. A moved point first tries the
- * mean of its neighbors (Laplacian smoothing, thesis 3.4.6), and half the way there.
+ * Method: pattern search around the best position so far, in given directions (those of a cube if
+ * the point may go anywhere), in steps that become shorter when none helps. A moved point first
+ * tries the mean of its neighbors (Laplacian smoothing, thesis 3.4.6), and half the way there.
  *
  * Deterministic. Cost: about a hundred ratings.
  */
@@ -19,19 +19,22 @@
 
 namespace cdm
 {
-/** The best place found for a point. */
+/** The best position found for a point. "Place" means a position here. */
 struct Place
 {
   Vec3 Position;
-  /** Degrees; what is required as long as nothing is found. */
+  /** The angle at the position, in degrees; the required angle as long as none is found. */
   double Angle = 0.0;
   bool IsFound = false;
 };
 
-/** Degrees that a change has to gain. */
+/** Degrees that a change has to gain at least. */
 constexpr double SmallestGain = 0.05;
 
-/** rate(position, required): the angle if it is larger than required; otherwise less than that. */
+/**
+ * Rates a position and keeps it if it is the best. rate(position, required) returns the angle if
+ * that is larger than required, otherwise any value that is not.
+ */
 template <typename Rate>
 void TryPlace(const Vec3& position, Rate&& rate, Place& best)
 {
@@ -45,7 +48,7 @@ void TryPlace(const Vec3& position, Rate&& rate, Place& best)
 /** First step of a point that moves, in distances to its nearest neighbor. */
 constexpr double FirstMove = 0.3;
 
-/** To the 26 other places of a cube of 27. */
+/** Directions from the center of a cube of 27 points to the 26 others. */
 inline std::vector<Vec3> MakeCubeDirections()
 {
   std::vector<Vec3> directions;
@@ -61,14 +64,14 @@ inline std::vector<Vec3> MakeCubeDirections()
 }
 
 /**
- * Until the angle reaches the target, or the steps are too short.
+ * Searches until the angle reaches the target, or the steps are too short.
  * @param directions of any length but 0
  */
 template <typename Rate>
 void SearchPlace(const Vec3& start, double step, const std::vector<Vec3>& directions, double target,
   Rate&& rate, Place& best)
 {
-  /** How often the step is taken, or halved. */
+  /** Number of steps, taken or halved. */
   constexpr int numberOfSteps = 5;
   for (int i = 0; i < numberOfSteps && best.Angle < target; ++i)
   {
@@ -83,7 +86,7 @@ void SearchPlace(const Vec3& start, double step, const std::vector<Vec3>& direct
 }
 
 /**
- * A place for a point that moves in any direction.
+ * Searches a position for a point that may move in any direction.
  * @param nearest distance to its nearest neighbor
  */
 template <typename Rate>

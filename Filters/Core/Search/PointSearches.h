@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointSearches.h
- * @brief Visitors of a PointOctree: what the surface refiner looks for among its points.
+ * @brief Visitors of a PointOctree: the searches of the surface refiner.
  *
  * Each is given to PointOctree::Visit() and holds what it has found afterwards. Order() says how
  * near a box is, infinity where nothing is to be found.
@@ -20,7 +20,7 @@
 
 namespace cdm
 {
-/** The square of a distance below this may be zero. */
+/** Distances below this have squares that may be zero. */
 constexpr double SamePoint = 1e-150;
 
 /** The nearest point to a position other than one, if it is nearer than a distance. */
@@ -90,7 +90,7 @@ public:
     }
   }
 
-  /** The deepest one, or NoId. */
+  /** The deepest point inside, or NoId. */
   Id Found = NoId;
 
 private:

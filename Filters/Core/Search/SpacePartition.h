@@ -23,12 +23,12 @@ namespace cdm
 class SpacePartition
 {
 public:
-  /** For at least one part; the sample may be empty. */
+  /** Makes the parts, at least one; the sample may be empty. */
   SpacePartition(std::vector<Vec3> sample, int numberOfParts);
 
   int GetPart(const Vec3& position) const;
 
-  /** What belongs to a part, and the cuts around it; infinite where there is none. */
+  /** The box of a part, cuts included; infinite where there is no cut. */
   const Box& GetCell(int part) const { return this->Cells[static_cast<std::size_t>(part)]; }
 
 private:

@@ -20,7 +20,7 @@ constexpr int DigitBits = 11;
 /** Threads sort parts of this many items at least. */
 constexpr std::size_t SmallestPart = std::size_t(1) << 15;
 
-/** Where the curve goes in each octant: its number along the curve, and the next state. */
+/** For each state and octant: the octant's number along the curve, and the next state. */
 struct CurveTable
 {
   std::array<std::array<unsigned char, 8>, 24> Numbers;
@@ -166,7 +166,9 @@ private:
       { return this->Points[i] != this->Points[j] ? this->Points[i] < this->Points[j] : i < j; });
   }
 
-  /** By digits from the last one on; each thread counts and moves one part of the items. */
+  /**
+   * Radix sort by digits, from the last one on; each thread counts and moves one part of the items.
+   */
   void SortByKey(RawVector<Item>& items, int bits) const
   {
     if (items.size() < 512)

@@ -28,7 +28,7 @@
 
 namespace cdm
 {
-/** Turn the ids of points into the order of the curve. */
+/** Sorts the ids of points into the order of the curve. */
 void SortAlongHilbertCurve(
   const std::vector<Vec3>& points, std::vector<Id>& ids, int numberOfThreads = 1);
 } // namespace cdm

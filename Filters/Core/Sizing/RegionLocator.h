@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RegionLocator.h
- * @brief In which region of a surface does a point lie, and how far is it from the boundary?
+ * @brief Finds the region in which a point lies, and its distance from the boundary.
  *
  * Method: sides of triangles that look into the same space form shells (SurfaceSides.h).
  *  1. A segment from far outside to the point crosses triangles; each crossing leaves the shell on
@@ -14,7 +14,7 @@
  * their first side, as the tetrahedralizer does.
  *
  * Guarantees: a point on the surface lies in no region; all else is exact. Queries are thread safe.
- * Failure: InvalidInput names triangles whose labels contradict each other (as they do around an
+ * Failure: NotClosed names triangles whose labels contradict each other (as they do around an
  * opening), or that enclose nothing.
  * Cost: O(n log n) to build; a query looks at the triangles whose boxes meet a thin box from the
  * point to the outside, O(sqrt n) for usual surfaces.
@@ -79,14 +79,14 @@ private:
   std::unique_ptr<BoxTree> Tree;
   Vec3 Low;
   Vec3 High;
-  /** By side, by shell, by triangle. */
+  /** The shell of each side; whether each shell is an outer one; the component of each triangle. */
   std::vector<Id> Shells;
   std::vector<char> IsOuter;
   std::vector<Id> Components;
-  /** By shell. */
+  /** The region and the component of each shell. */
   std::vector<Id> Regions;
   std::vector<Id> ShellComponents;
-  /** By component: the number of others that it lies in. */
+  /** For each component the number of others that it lies in. */
   std::vector<Id> Depths;
 };
 } // namespace cdm

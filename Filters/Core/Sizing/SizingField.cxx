@@ -130,7 +130,10 @@ bool GradationBound::Lower(Id point, double size)
   return false;
 }
 
-/** Those of all near points; what is lowered, and not beyond the limit, is near then. */
+/**
+ * Lowers the sizes around all near points. Points that are lowered to no more than the limit become
+ * near.
+ */
 bool GradationBound::LowerNeighbors(double limit, const ExecutionContext& context)
 {
   const std::size_t count = this->Near.size();

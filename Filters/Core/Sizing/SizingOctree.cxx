@@ -329,8 +329,9 @@ void SizingOctree::VisitNeighbors(const Node& node, std::vector<Id>& stack, Visi
 
 Status SizingOctree::Balance(const ExecutionContext& context)
 {
-  // In rounds: all leaves, then those that are new or had neighbors that were too coarse, say which
-  // neighbors are; these are split along all axes that anyone asks for.
+  // Works in rounds. First all leaves, later those that are new or had neighbors that were too
+  // coarse, name the neighbors that are too coarse. These are split along all axes that any leaf
+  // asks for.
   struct Request
   {
     Id Node;
@@ -339,7 +340,7 @@ Status SizingOctree::Balance(const ExecutionContext& context)
   struct Block
   {
     std::vector<Request> Requests;
-    /** Who asks; a child may still be too coarse. */
+    /** The leaves that ask; a child of the split neighbor may still be too coarse. */
     std::vector<Id> Sources;
   };
   std::vector<Id> active;

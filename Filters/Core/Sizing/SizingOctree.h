@@ -14,7 +14,7 @@
  *
  * Guarantees: leaves are disjoint and fill the bounding box, in depth-first order; deterministic
  * for any number of threads, all of which evaluate the field.
- * Failure: InvalidInput if more leaves are needed than allowed, or smaller ones than the bounding
+ * Failure: LimitReached if more leaves are needed than allowed, or smaller ones than the bounding
  * box divided by 2^19 (2^16 in each of eight roots).
  * Cost: nine evaluations of the field for each cell; 100 bytes per leaf.
  */
@@ -42,7 +42,7 @@ struct SizingOctreeOptions
   Id MaximumNumberOfLeaves = 10000000;
 };
 
-/** A sizing needs more points or leaves than allowed. */
+/** The error that a sizing needs more points or leaves than allowed. */
 Status MakeTooManyPoints(Id limit);
 
 class SizingOctree
@@ -88,7 +88,7 @@ private:
   };
 
   Units GetSize(const Node& node) const;
-  /** Of a node that has some. */
+  /** Number of children of a node that has some. */
   static int CountChildren(const Node& node);
   /** Finds the region of a node whose parent the surface may pass through. */
   void Classify(Node& node) const;

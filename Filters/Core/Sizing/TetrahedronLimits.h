@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TetrahedronLimits.h
- * @brief How large and how badly shaped a tetrahedron may be, and where a point would mend it.
+ * @brief Limits of the size and shape of tetrahedra, and the Steiner point that would improve one.
  *
  * A tetrahedron is too large by its volume, or by an edge that is longer than allowed or than the
  * sizing at its centroid asks for; it is badly shaped if the ratio of its circumradius to its

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleLimits.h
- * @brief How large a triangle of a surface and how small its angles may be.
+ * @brief Limits of the size and the angles of triangles of a surface.
  */
 #ifndef cdmTriangleLimits_h
 #define cdmTriangleLimits_h

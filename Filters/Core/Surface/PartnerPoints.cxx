@@ -18,17 +18,21 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 
 /** New points keep this distance, as a ratio of the edge, from the ends of an edge they split. */
 constexpr double SmallestPiece = 0.05;
-/** A disturbing point this close to the plane of a triangle, in units of its circumradius, is
- * mirrored into the plane: thin layers get matching points instead of small triangles. */
+/**
+ * An encroaching point this close to the plane of a triangle, in units of its circumradius, is
+ * mirrored into the plane: thin layers get matching points instead of small triangles.
+ */
 constexpr double ThinLayerRatio = 0.75;
-/** A disturbing point this close to an edge, in units of its length, is matched exactly. */
+/** An encroaching point this close to an edge, in units of its length, is matched exactly. */
 constexpr double ThinGapRatio = 0.1;
-/** Disturbing points closer than this need no match near an end of the edge, in that unit, ... */
+/** An encroaching point closer than this, in the same unit, needs no match near an end ... */
 constexpr double NeedleGapRatio = 1e-3;
-/** ... where the match lies within this part of the point's distance from the end. */
+/** ... if the match would be closer to the end than this part of the point's distance. */
 constexpr double CloseEndRatio = 0.25;
-/** Another point on an edge, closer to the match than this part of the disturbing point's distance,
- * is matched instead. */
+/**
+ * Another point on an edge is matched instead if it is closer to the match than this part of the
+ * encroaching point's distance.
+ */
 constexpr double CloseMatchRatio = 0.5;
 /**
  * Lines and planes with a cosine up to this are perpendicular: no point has a partner there.
@@ -45,7 +49,7 @@ constexpr double HopelessMatch = 0.02;
 constexpr double PassingSquaredSine = 0.01;
 /** ... and are closer to each other than this part of what the split leaves on either side, ... */
 constexpr double PassingGapRatio = 0.1;
-/** ... and than this part of the disturbing point's way along its edge from there. */
+/** ... and than this part of the encroaching point's way along its edge from there. */
 constexpr double PassingWayRatio = 0.5;
 /** Used instead of NeedleGapRatio and CloseEndRatio. */
 constexpr double LayerGapRatio = 0.1;
@@ -203,15 +207,16 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id disturbing) const
     {
       return a + passing * direction;
     }
-    // Close to an end of the piece, that end is the partner as good as there is: p stays outside of
-    // pieces that are shorter than its squared height over its distance along.
+    // If the partner would be close to an end of the piece, the end itself is good enough. The
+    // piece only has to be short: p stays outside of the spheres of pieces shorter than its squared
+    // height over its distance along the edge.
     const double rest = std::abs(std::min(way, length - way));
     const bool isOnSphere =
       std::abs(Dot(a - p, b - p)) <= PerpendicularCosine * Distance(a, p) * Distance(b, p);
     const bool isClose = (isOnSphere || height < needleGap * length) && rest < closeEnd * height;
     if (isClose)
     {
-      // A point that is on the sphere but for rounding is outside of the sphere of any piece.
+      // A point on the sphere, up to rounding, is outside of the spheres of all shorter pieces.
       const double longest = isOnSphere ? height
         : rest > 0.0                    ? 0.5 * height * (height / rest)
                                         : Infinity;
@@ -244,7 +249,7 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id disturbing) const
     }
     if (!isPartner && foot > 0.0 && foot < length)
     {
-      // Type P, not nearer to the ends than the disturbing point is to the edge.
+      // Type P, no nearer to the ends than the encroaching point is to the edge.
       return a + std::min(std::max(foot, margin), length - margin) * direction;
     }
     break;
@@ -254,7 +259,7 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id disturbing) const
   const bool isAcuteB = this->Incidences.IsAcuteCorner(ends[1]);
   if (isAcuteA != isAcuteB)
   {
-    // First up to where the others have been split already.
+    // First as far as other edges at the corner have been split already.
     const double inner = this->Incidences.GetInnerRadius(isAcuteA ? ends[0] : ends[1]);
     const bool isInside = inner > SmallestPiece * length && inner < (1.0 - SmallestPiece) * length;
     const double way = isInside && this->Rules != MatchingRules::Usual

@@ -120,8 +120,9 @@ void SurfaceRefinement::Enqueue(Id t)
   {
     return;
   }
-  // Once the edges are fine enough, small triangles first: what large ones need depends on them.
-  // Without, in order: of almost flat surfaces that would be refined down to the smallest.
+  // With criterion 3.2 edges are fine enough by now, and small triangles come first: what large
+  // ones need depends on them. Otherwise triangles come in the order of arrival: smallest first
+  // would refine almost flat surfaces down to the smallest triangles.
   const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
   this->Enqueue(t, QueueState::First,
     this->AreEdgesTested() ? Norm(GetCircumcenterOffset(

@@ -20,7 +20,7 @@ namespace cdm
 {
 namespace
 {
-/** How often the context is asked, in tetrahedra. */
+/** Tetrahedra between two calls of the context. */
 constexpr std::size_t ReportInterval = 4096;
 
 class AdvancingFront
@@ -38,7 +38,7 @@ public:
   Status Run();
 
 private:
-  /** Where the front starts: a tetrahedron, and the surface triangle that it was found by. */
+  /** A start of the front: a tetrahedron, and the surface triangle at which it was found. */
   struct Seed
   {
     Id Tetrahedron;
@@ -397,7 +397,7 @@ Status AdvancingFront::Advance(const Seed& seed)
   return Status();
 }
 
-/** Where the front would end up if there is nothing to stop it. */
+/** Takes all tetrahedra of the hull at once, as the front would reach them if nothing stops it. */
 void AdvancingFront::TakeAll()
 {
   this->Regions.resize(this->States.size());
@@ -458,7 +458,7 @@ void AdvancingFront::CollectFront()
   std::sort(this->Output.Front.begin(), this->Output.Front.end());
 }
 
-/** Only mesh points that are used stay. Afterwards Order has the final points. */
+/** Drops mesh points that are not used. Afterwards Order has the final points. */
 void AdvancingFront::CollectPointsUsed()
 {
   std::vector<Id> places(this->Points.size(), NoId);

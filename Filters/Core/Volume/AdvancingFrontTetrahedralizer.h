@@ -8,8 +8,8 @@
  *     smallest lambda (Crit. 6.2): one incremental construction is two to nine times as fast as the
  *     searches of the thesis, facet by facet, and does not depend on how the points are
  *     distributed;
- *  2. test that each triangle of the surface is strongly Delaunay; turn the diagonals inside of
- *     cocircular facets to the pulling rule (SurfaceFacets.h);
+ *  2. test that each triangle of the surface is strongly Delaunay; flip the diagonals inside of
+ *     cocircular facets to those of the pulling rule (SurfaceFacets.h);
  *  3. take the tetrahedron at a side of a triangle of each enclosed region, or at a given seed, and
  *     put it into the front;
  *  4. facets of the front meet their like (Lemma 6.1), or a triangle of the surface, where the
@@ -23,10 +23,11 @@
  * Guarantees: tetrahedra are positively oriented, none is flat; their circumspheres are empty of
  * all points (exact); the mesh depends on the numbering of the points only, the order of its
  * tetrahedra (along the curve, by their first vertices) on the points alone. Points keep their
- * coordinates; Boundary is the surface with diagonals of cocircular facets turned.
- * Failure: InvalidInput names the triangles that are not Delaunay, that contradict each other's
- * labels, or that enclose nothing; fewer than four points, collinear and coplanar ones if there is
- * no surface. Aborted leaves a valid partial mesh and its front, empty before step 4.
+ * coordinates; Boundary is the surface with diagonals of cocircular facets flipped.
+ * Failure: NotDelaunay names the triangles that are not strongly Delaunay; NotClosed those that
+ * contradict each other's labels or enclose nothing; SelfIntersecting those of a flat facet that
+ * overlap. InvalidInput is, without a surface, for fewer than four points, and for collinear or
+ * coplanar ones. Aborted leaves a valid partial mesh and its front, empty before step 4.
  *
  * Cost: O(n log n) for usual distributions; 57 bytes per tetrahedron of the convex hull and 100 per
  * point at the peak. See Testing/Benchmarks/README.md.

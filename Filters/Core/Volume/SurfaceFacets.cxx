@@ -19,10 +19,10 @@ namespace cdm
 {
 namespace
 {
-/** How often the context is asked, in triangles. */
+/** Triangles between two calls of the context. */
 constexpr std::size_t ReportInterval = 4096;
 
-/** +1 if two orders of the same three points turn the same way, else -1. */
+/** +1 if two orders of the same three points have the same orientation, else -1. */
 int GetRelativeTurn(const TriangleIds& s, const TriangleIds& t)
 {
   const int first = s[0] == t[0] ? 0 : s[0] == t[1] ? 1 : 2;

@@ -7,13 +7,14 @@
  *  1. facets are compared with the triangles at their first vertex;
  *  2. a triangle at a tetrahedron whose cell has four points only is strongly Delaunay. The others
  *     are tested by the double sphere (SurfaceDelaunayTest.h), and diagonals inside of cocircular
- *     facets are turned to the pulling rule (FacetPolygons.h, thesis 6.4.3);
+ *     facets are flipped to those of the pulling rule (FacetPolygons.h, thesis 6.4.3);
  *  3. if there were any, facets are compared once more.
  *
  * Inputs: the invariants of TriangleMesh.h.
  * Guarantees: on Ok each side of each triangle has its facet; labels are exchanged with the
  * diagonals.
- * Failure: InvalidInput names triangles that are not strongly Delaunay or have the same points.
+ * Failure: NotDelaunay names triangles that are not strongly Delaunay, SelfIntersecting those of a
+ * flat facet that overlap, InvalidInput those with the same points.
  * Cost: O(n) for n tetrahedra and a bounded number of triangles at a point, O(log n) for each
  * triangle that has to be tested.
  */
@@ -32,12 +33,12 @@ namespace cdm
 {
 struct SurfaceFacetsInput
 {
-  /** Of the surface, and after them mesh points. */
+  /** Points of the surface, followed by mesh points. */
   const std::vector<Vec3>& Points;
-  /** The point of each vertex, and where it is. */
+  /** The point of each vertex, and its position. */
   const std::vector<Id>& Order;
   const RawVector<Vec3>& VertexPoints;
-  /** Of all points. */
+  /** The tetrahedralization of all points. */
   const DelaunayTetrahedralization& All;
   /** At least 1; the result does not depend on it. */
   int NumberOfThreads;

@@ -14,7 +14,7 @@ namespace cdm
 {
 namespace
 {
-/** How much is left of the way of a point when it goes back, each time. */
+/** Parts of a point's move that are left each time it goes back. */
 constexpr double WaysBack[4] = { 1.0, 0.5, 0.25, 0.0 };
 
 /** Moves are whole numbers of so small parts of the room that a point has along an axis. */
@@ -96,7 +96,7 @@ std::vector<char> FindConnectedPoints(const FaceNet& net)
   return isConnected;
 }
 
-/** For each point those that it follows; none for points that stay. */
+/** Finds for each point the points that it follows; none for points that stay. */
 IdLists FindGuides(const FaceNet& net)
 {
   const std::vector<NetEdge> edges = CollectEdges(net);
@@ -145,7 +145,7 @@ IdLists FindGuides(const FaceNet& net)
   return guides;
 }
 
-/** How far each point is from the middle of its guides; nothing for points and axes that stay. */
+/** Finds how far each point is from the mean of its guides; zero for points and axes that stay. */
 void FindPulls(const FaceNet& net, const IdLists& guides, const std::vector<Vec3>& places,
   std::vector<Vec3>& pulls)
 {
@@ -167,15 +167,16 @@ void FindPulls(const FaceNet& net, const IdLists& guides, const std::vector<Vec3
 }
 
 /**
- * Of the filter as a sum of Chebyshev polynomials: a wave that is pulled to the middle by k times
- * its height keeps exp(-(k / limit)^2) of it, smoothly from all to nothing, so that edges do not
- * make waves beside them. limit: of a wave of this length along one axis of a surface.
+ * Finds the weights of the filter as a sum of Chebyshev polynomials. A wave that is pulled to the
+ * middle by k times its height keeps the part exp(-(k / limit)^2): a smooth transition from all to
+ * nothing, so that edges do not make waves beside them. limit: k of a wave of this length along one
+ * axis of a surface.
  */
 std::vector<double> FindWeights(double length)
 {
   const double pi = std::acos(-1.0);
   const double limit = length > 2.0 ? 0.5 * (1.0 - std::cos(2.0 * pi / length)) : 1.0;
-  // Weights beyond are below 1e-4.
+  // Further weights are below 1e-4.
   const int count = static_cast<int>(std::ceil(10.0 / std::acos(1.0 - limit)));
   const int samples = 4 * count;
   std::vector<double> weights(count + 1, 0.0);
@@ -197,7 +198,7 @@ bool Filter(const FaceNet& net, const IdLists& guides, double length,
 {
   const std::vector<double> weights = FindWeights(length);
   const int steps = static_cast<int>(weights.size()) - 1;
-  // Places of polynomials, relative to the corners, of the step before and of this one.
+  // Positions by the last two polynomials, relative to the corners.
   std::vector<Vec3> before(corners.size());
   std::vector<Vec3> current(corners.size());
   std::vector<Vec3> places = corners;

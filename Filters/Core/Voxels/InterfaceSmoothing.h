@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file InterfaceSmoothing.h
- * @brief The squares between the regions of a grid, and how they lose their staircase.
+ * @brief Smooths the staircase of squares between the regions of a grid.
  *
  * Method (thesis 3.5.3, a low pass filter):
  *  1. the net of squares goes through a windowed low pass filter (Taubin): waves shorter than a
@@ -14,9 +14,9 @@
  *     one cell keep half of their thickness. Points of the border of the grid stay in its planes
  *     and edges;
  *  3. points in the middle half cells make squares that can always be divided into two triangles
- *     which turn as the square did, seen along its axis, so nothing flips. What is left are
- *     intersections: all are found, exactly, and the points of triangles that intersect go half of
- *     the way back, twice, and then all of it, until there are none.
+ *     with the orientation of the square, seen along its axis. Intersections may be left: all are
+ *     found, exactly, and the points of triangles that intersect go half of the way back, twice,
+ *     and then all of it, until there are none.
  *
  * Guarantees: those of MaterialInterfaces.h; no two triangles intersect. Deterministic.
  * Cost: O(n log n), about 10 microseconds per square, mostly for the search of intersections.
@@ -49,7 +49,7 @@ struct FaceNet
   };
   struct Point
   {
-    /** For each axis: of the corner, and how far it may go down and up. */
+    /** For each axis: coordinate of the corner, and how far the point may move down and up. */
     std::array<double, 3> Place;
     std::array<double, 3> Down;
     std::array<double, 3> Up;
@@ -59,13 +59,16 @@ struct FaceNet
   std::vector<Face> Faces;
 };
 
-/** Two triangles for each face, on the points in these places; face i makes 2 i and 2 i + 1. */
+/**
+ * Makes two triangles for each face, with the points at these positions; face i makes 2 i and 2 i +
+ * 1.
+ */
 void TriangulateFaces(
   const FaceNet& net, const std::vector<Vec3>& places, std::vector<TriangleIds>& triangles);
 
 /**
- * Moves the points and triangulates. length: of the longest waves that vanish, in cells.
- * heldPoints: how many had to go back. False if aborted.
+ * Smooths the points and triangulates. length: longest wavelength that vanishes, in cells.
+ * heldPoints: number of points that had to go back. False if aborted.
  */
 bool SmoothFaces(const FaceNet& net, double length, const ExecutionContext& context,
   std::vector<Vec3>& places, std::vector<TriangleIds>& triangles, Id& heldPoints);

@@ -15,7 +15,7 @@ namespace cdm
 {
 namespace
 {
-/** How far points may move, in units of the edges of the cells beside them. */
+/** Largest move of a point, in units of the edges of the cells beside it. */
 constexpr double Reach = 0.49;
 /** The same along an axis where a cell beside the point has other regions on both sides. */
 constexpr double ThinReach = 0.25;

@@ -7,8 +7,8 @@
  *  1. a square for each face of a cell whose other side has another region, on the corners of the
  *     cells: the staircase, exactly;
  *  2. smoothing, if asked for (InterfaceSmoothing.h);
- *  3. each square becomes two triangles, by the diagonal that keeps both of them turned as the
- *     square was; of two such, the shorter one;
+ *  3. each square becomes two triangles, by the diagonal that gives both of them the orientation of
+ *     the square; if both diagonals do, by the shorter one;
  *  4. fewer triangles, if asked for (SurfaceReduction.h): borders of the grid and structural edges
  *     stay. Without smoothing and with a deviation of 0, coplanar squares are merged.
  *
@@ -18,7 +18,7 @@
  * or a corner only: such edges are in four triangles, and stay in their places. All normals point
  * to the region of smaller id, that is, outside at the outer boundary. Deterministic.
  * Failure: InvalidInput for coordinates that do not ascend, labels below OutsideRegion (cells), a
- * wrong number of labels, grids without a region, and those with more than 2^31 - 1 corners.
+ * wrong number of labels, and grids without a region; LimitReached for more than 2^31 - 1 corners.
  * Cost: one pass over the cells, 8 bytes per corner in a slice; smoothing and reduction take about
  * 60 microseconds and 600 bytes per face. 256^3 cells with 0.6 million faces: 37 s and 420 MB for
  * 22,000 smooth triangles, 18 s for the staircase with its coplanar faces merged.
@@ -40,7 +40,10 @@ namespace cdm
 {
 struct LabelledGrid
 {
-  /** Of the corners, ascending: for each axis one more than there are cells. Model units. */
+  /**
+   * Coordinates of the corners along each axis, ascending: one more than there are cells. Model
+   * units.
+   */
   std::array<std::vector<double>, 3> Coordinates;
   /** Region of each cell, x fastest, then y; OutsideRegion is not meshed. */
   std::vector<Id> Regions;
@@ -49,13 +52,13 @@ struct LabelledGrid
 struct MaterialInterfacesOptions
 {
   /**
-   * In cells: shorter waves of the surface are stairs and vanish. 0: the exact faces of the cells.
+   * Shorter waves of the surface are stairs and vanish. In cells; 0: the exact faces of the cells.
    */
   double SmoothingLength = 10.0;
   bool Reduce = true;
-  /** Of the reduction, in units of the shortest edge of a cell. >= 0. */
+  /** Largest deviation of the reduction, in units of the shortest edge of a cell. >= 0. */
   double MaximumDeviation = 0.25;
-  /** Degrees, 0 to 180: of the reduction; edges that bend by more are kept. */
+  /** The reduction keeps edges that bend by more. Degrees, 0 to 180. */
   double FeatureAngle = 60.0;
 };
 
@@ -63,7 +66,7 @@ struct MaterialInterfacesReport
 {
   /** Faces of cells that are interfaces. */
   Id Faces = 0;
-  /** Points that smoothing would have moved further, but for intersections. */
+  /** Points whose smoothing was limited by intersections. */
   Id HeldPoints = 0;
   Id RemovedPoints = 0;
   /** Bound of the distance between the surfaces before and after the reduction. Model units. */

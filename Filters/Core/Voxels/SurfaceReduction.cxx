@@ -24,9 +24,12 @@ namespace
 constexpr Id StepsBetweenChecks = 1024;
 /** Cosine of the largest angle between a triangle and the plane that old and new ones lie over. */
 constexpr double SmallestCosine = 0.35;
-/** Of bent triangles, unless the old ones were worse; the equilateral triangle has 1. */
+/**
+ * Smallest quality of bent triangles, unless the old ones were worse; the equilateral triangle has
+ * 1.
+ */
 constexpr double SmallestQuality = 0.35;
-/** What a merge costs beside the deviation, in units of the length of the edge. */
+/** Cost of a merge per length of its edge, in addition to the deviation. */
 constexpr double LengthWeight = 0.02;
 
 /** 4 sqrt(3) area / sum of the squared edges. */
@@ -55,7 +58,7 @@ struct Page
   std::vector<Id> Triangles;
   bool IsClosed = false;
 
-  /** Those that stay are from 1 up to here. */
+  /** Triangles 1 up to this one (excluded) stay. */
   std::size_t GetEnd() const { return this->Triangles.size() - (this->IsClosed ? 1 : 0); }
 };
 
@@ -286,7 +289,7 @@ private:
     const double length = Distance(p, this->Points[target]);
     candidate.IsFlat = this->IsFlat(point, target, end, candidate.Pages);
     double largest = 0.0;
-    // Of triangles that vanish without another one in their page.
+    // Largest deviation of triangles that are alone in their page and vanish.
     double single = -1.0;
     for (const Page& page : candidate.Pages)
     {
@@ -441,7 +444,7 @@ private:
     return true;
   }
 
-  /** Of a place above or below the new triangles, along a direction. */
+  /** Height of a position above or below the new triangles, along a direction. */
   double FindHeight(const Vec3& place, const Page& page, const Vec3& direction) const
   {
     const Vec3& target = this->Points[page.Path.front()];
@@ -660,12 +663,12 @@ private:
   TriangleMesh& Surface;
   const std::vector<Vec3>& Points;
   MergeableSurface Mergeable;
-  /** Of triangles: how far places of them may be from the surface that came in. */
+  /** For each triangle: how far its points may be from the original surface. */
   std::vector<double> Deviations;
   /** Points at the other ends of the structural edges at each point. */
   std::vector<std::vector<Id>> Chains;
   std::vector<char> IsCorner;
-  /** Under which a point is in the queue. */
+  /** Cost under which each point is in the queue. */
   std::vector<double> Costs;
   /** Points whose costs are out of date. */
   std::vector<char> IsChanged;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceReduction.h
- * @brief Fewer triangles for a surface, within a bound of the distance to what it was.
+ * @brief Reduces the triangles of a surface, within a bound of the distance from the original.
  *
  * Method (thesis 3.5.2):
  *  1. structural edges (StructuralEdges.h) and their corners: a point inside of a patch may be
@@ -42,7 +42,7 @@ namespace cdm
 {
 struct SurfaceReductionOptions
 {
-  /** How far the surface may come to lie from where it was, anywhere. Model units, >= 0. */
+  /** Largest distance of the new surface from the old one, anywhere. Model units, >= 0. */
   double MaximumDeviation = 0.0;
   /** Degrees, 0 to 180: edges that bend by more are structural. */
   double FeatureAngle = 60.0;
@@ -60,7 +60,9 @@ struct SurfaceReductionReport
   double LargestDeviation = 0.0;
 };
 
-/** Points that are gone leave the list too; the others keep their order, triangles as well. */
+/**
+ * Removed points are dropped from the list; the other points, and the triangles, keep their order.
+ */
 Status ReduceSurface(const SurfaceReductionOptions& options, const ExecutionContext& context,
   TriangleMesh& surface, SurfaceReductionReport& report);
 } // namespace cdm

@@ -111,11 +111,11 @@ cdm::Status NotTetrahedra(std::vector<cdm::Id> cells)
 int GetCellDimension(int type)
 {
   const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
-  // Of a type that this VTK does not know nothing can be told.
+  // A cell type that this VTK does not know counts as three-dimensional.
   return cell ? cell->GetCellDimension() : 3;
 }
 
-/** What both conversions of a surface check before they look at a cell. */
+/** Checks that both conversions of a surface make before they look at a cell. */
 cdm::Status CheckSurface(vtkPolyData* input)
 {
   for (const cdm::Status& status : { cdm::CheckIdRange(input->GetNumberOfCells(), "cells"),

@@ -49,7 +49,7 @@ cdm::Status ToLayers(
 /** Finite points; name says in messages which input they are. */
 cdm::Status ToPoints(vtkPointSet* input, const char* name, std::vector<cdm::Vec3>& points);
 
-/** Where a point array is not zero; empty without the array. */
+/** Flags where a point array is not zero; empty without the array. */
 cdm::Status ToFlags(vtkPointSet* input, const char* name, std::vector<char>& flags);
 
 /** Points as seeds; regions from the point array RegionId, or from 0 on by order. */

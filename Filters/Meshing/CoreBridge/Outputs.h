@@ -73,7 +73,7 @@ void FromTriangleMesh(const cdm::TriangleMesh& surface, vtkPolyData* output);
 /** Points, tetrahedra and RegionId. */
 void FromTetMesh(const cdm::TetMesh& mesh, vtkUnstructuredGrid* output);
 
-/** One value for each triangle: see StructuralFacetIdName. */
+/** Cell array StructuralFacetId: one value for each triangle. */
 void FromFacets(const std::vector<cdm::Id>& facets, vtkPolyData* output);
 
 /** Cell array Unresolved: 1 for the triangles given, 0 for the others. */
@@ -86,8 +86,8 @@ void FromFlags(const char* name, const std::vector<char>& flags, vtkDataSetAttri
 void FromFaults(const std::vector<cdm::SteinerFault>& faults, vtkUnstructuredGrid* output);
 
 /**
- * Lines with Kind, DihedralAngle and ChainId on those points of the surface that they use, with
- * their point data and SurfacePointId.
+ * Lines with Kind, DihedralAngle and ChainId, on the points of the surface that they use. The
+ * points have their point data and SurfacePointId.
  */
 void FromStructuralEdges(
   const std::vector<cdm::StructuralEdge>& edges, vtkPolyData* surface, vtkPolyData* output);

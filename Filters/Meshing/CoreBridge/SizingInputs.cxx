@@ -110,10 +110,10 @@ private:
   struct Sum
   {
     double Value[MaximumSizingComponents];
-    /** What the values lie between. */
+    /** Bounds of the values. */
     double Low[MaximumSizingComponents];
     double High[MaximumSizingComponents];
-    /** One of the values. */
+    /** Work space for one of the values. */
     double Tuple[MaximumSizingComponents];
   };
 
@@ -184,7 +184,10 @@ private:
     return cell;
   }
 
-  /** Of the sum, within the bounds: a degenerate cell gives weights of any kind. */
+  /**
+   * Makes a spacing of a weighted sum, within the bounds of the values: a degenerate cell gives
+   * weights of any kind.
+   */
   cdm::LocalSpacing MakeSpacing(Sum& sum) const
   {
     if (this->Components <= 3)

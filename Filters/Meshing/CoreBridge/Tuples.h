@@ -33,7 +33,7 @@ void CopyCellTuples(vtkPolyData* from, const std::vector<vtkIdType>& sources, vt
 /** The same with sources counted from the first polygon of the surface; cdm::NoId stays none. */
 void CopyTriangleTuples(vtkPolyData* from, const std::vector<cdm::Id>& sources, vtkPolyData* to);
 
-/** What the parents of new points are ids of. */
+/** Which ids the parents of new points are. */
 enum class ParentIds
 {
   Input,

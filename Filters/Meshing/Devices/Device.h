@@ -27,7 +27,7 @@ struct Contact
   std::function<bool(const Vec3&)> IsAt;
 };
 
-/** What a device hands over. */
+/** The polygons of a device, and what is known of them. */
 struct Device
 {
   PolygonSoup Boundary;
@@ -69,7 +69,10 @@ struct CosineSine
 /** Exact for multiples of 90 degrees. */
 CosineSine GetCosineSine(double degrees);
 
-/** From 0 at place 0 to 1 at place 1, level at both ends, beyond them constant. */
+/**
+ * A smooth step: from 0 at place 0 to 1 at place 1, with slope 0 at both ends, constant beyond
+ * them.
+ */
 double GetSmoothStep(double place);
 
 struct MosParameters

@@ -32,7 +32,10 @@ struct Flank
   double Inner;
   double Outer;
 
-  /** Of places on lines of the layout, which are at one of the two or beyond. */
+  /**
+   * Whether a position on a line of the layout is at the inner distance; it is at one of the two,
+   * or beyond.
+   */
   bool IsInner(double distance) const { return distance < 0.5 * (this->Inner + this->Outer); }
 };
 

@@ -26,7 +26,7 @@ namespace cdm
 {
 struct LayoutOverlay
 {
-  /** In the plane z = 0; some may be unused. */
+  /** Points in the plane z = 0; some may be unused. */
   std::vector<Vec3> Points;
   std::vector<TriangleIds> Pieces;
   /** For each piece the polygons that it lies in, ascending. */

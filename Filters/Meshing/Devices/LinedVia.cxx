@@ -82,7 +82,7 @@ std::string MakeLinedVia(const LinedViaParameters& p, Device& device)
     /** Outside of the trench. */
     Field,
     TrenchWall,
-    /** Of the trench, or all around the via where there is none. */
+    /** Floor of the trench, or all around the via where there is no trench. */
     Floor,
     ViaWall,
     Hole

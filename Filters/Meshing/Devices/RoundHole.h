@@ -17,7 +17,7 @@ struct RoundHole
 {
   /** A regular polygon about the origin with its corners on the circle, counter-clockwise. */
   std::vector<Id> Circle;
-  /** What is left of the rectangle, in two pieces without holes. */
+  /** The rectangle without the hole, in two pieces without holes. */
   std::array<std::vector<Id>, 2> Surroundings;
 };
 

@@ -30,7 +30,7 @@ using Row = std::pair<std::size_t, vtkIdType>;
 /** Type, components and name of each array. */
 std::set<std::string> GetSignatures(vtkDataSetAttributes* data);
 
-/** Those that all processes have which have anything; hasAny: this one has. */
+/** Names that are common to all processes that have any data. hasAny: whether this process has. */
 std::set<std::string> Intersect(
   const ProcessGroup& processes, const std::set<std::string>& own, bool hasAny);
 

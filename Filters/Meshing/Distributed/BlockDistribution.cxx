@@ -36,7 +36,7 @@ std::string MakeName(std::size_t index, vtkInformation* metaData)
     (hasName ? std::string(" (") + metaData->Get(vtkCompositeDataSet::NAME()) + ")" : "");
 }
 
-/** One surface of several pieces. */
+/** Appends several pieces to one surface. */
 vtkSmartPointer<vtkPolyData> Append(const std::vector<vtkSmartPointer<vtkPolyData>>& pieces)
 {
   if (pieces.size() == 1)

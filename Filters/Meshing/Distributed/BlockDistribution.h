@@ -33,7 +33,7 @@ public:
   {
     /** Place among all blocks, empty ones included. */
     std::size_t Index;
-    /** How messages call it: its number, and its name if it has one. */
+    /** Its name in messages: its number, and its own name if it has one. */
     std::string Name;
     vtkSmartPointer<vtkPolyData> Polygons;
   };
@@ -41,7 +41,7 @@ public:
   /** Called by all processes, whose data have the same structure. */
   cdm::Status Run(ProcessGroup& processes, vtkDataObjectTree* input);
 
-  /** Those of this process, by index. */
+  /** The blocks of this process, by index. */
   const std::vector<Block>& GetBlocks() const { return this->Own; }
 
   /** An output with the structure and names of the input, to put blocks into. */
@@ -52,7 +52,7 @@ private:
   cdm::Status Assign(const ProcessGroup& processes);
   cdm::Status Send(ProcessGroup& processes);
 
-  /** What this process has of each block. */
+  /** The pieces of each block that this process has. */
   std::vector<Block> Pieces;
   std::vector<int> Owners;
   std::vector<Block> Own;

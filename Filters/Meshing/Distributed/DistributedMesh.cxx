@@ -434,7 +434,10 @@ DistributedMesh::Cell DistributedMesh::MakeCell(
 }
 
 //--------------------------------------------------------------------------------------------------
-/** By the numbers of their points: so the order does not depend on how they were found. */
+/**
+ * Sorts cells by the numbers of their points, so that the order does not depend on how they were
+ * found.
+ */
 void DistributedMesh::SortCells(std::ptrdiff_t begin, std::ptrdiff_t end)
 {
   std::sort(this->Cells.begin() + begin, this->Cells.begin() + end,
@@ -690,7 +693,7 @@ void DistributedMesh::CollectBoundary()
 }
 
 //--------------------------------------------------------------------------------------------------
-/** Which points are in the outputs. */
+/** Marks the points that are in the outputs. */
 std::vector<char> DistributedMesh::FindUsed() const
 {
   std::vector<char> isUsed(this->Points.size(), 0);

@@ -49,7 +49,7 @@ public:
   int GetNumberOfRounds() const { return this->NumberOfRounds; }
   /** Points of others that this process knows. */
   vtkIdType GetNumberOfHaloPoints() const { return this->NumberOfHaloPoints; }
-  /** Of all processes. */
+  /** Unused mesh points on all processes. */
   vtkIdType GetNumberOfUnusedMeshPoints() const { return this->NumberOfUnusedMeshPoints; }
 
 private:
@@ -85,12 +85,12 @@ private:
   std::vector<cdm::NumberedPoint> OwnPoints;
   std::unique_ptr<cdm::PartTetrahedralization> Part;
 
-  /** On the points of the part, then those of ghosts. */
+  /** Points of the part, then those of ghosts. */
   std::vector<cdm::NumberedPoint> Points;
   cdm::Id NumberOfOwnPoints = 0;
   cdm::TetMesh Mesh;
   std::vector<cdm::TriangleIds> Hull;
-  /** Of the points of the surface; NoId for those that this process does not know. */
+  /** Index of each point of the surface; NoId for those that this process does not know. */
   std::vector<cdm::Id> SurfacePlaces;
   /** The triangles of the surface with points of the part, and the regions on their sides. */
   std::vector<cdm::Id> PartTriangles;
@@ -98,7 +98,7 @@ private:
   /** Tetrahedra of the output, the own ones first. */
   std::vector<Cell> Cells;
   std::size_t NumberOfOwnCells = 0;
-  /** Without points of its own. */
+  /** The boundary, without its points. */
   cdm::TriangleMesh Boundary;
 
   int NumberOfRounds = 0;

@@ -64,7 +64,8 @@ cdm::Status DistributedPoints::Number(vtkPointSet* input, vtkPointSet* meshPoint
 
 //--------------------------------------------------------------------------------------------------
 /**
- * By their global ids if all of the input's points have them, otherwise one process after another.
+ * Numbers the points: by their global ids if all points of the input have them, otherwise one
+ * process after another.
  */
 cdm::Status DistributedPoints::NumberPoints(vtkPointSet* input, int port)
 {
@@ -145,7 +146,7 @@ cdm::Status DistributedPoints::CheckNumbers()
 }
 
 //--------------------------------------------------------------------------------------------------
-/** Those that all processes have in both inputs. */
+/** Chooses the arrays that all processes have in both inputs. */
 void DistributedPoints::ChooseArrays(vtkPointSet* input, vtkPointSet* meshPoints)
 {
   std::set<std::string> common;

@@ -40,7 +40,7 @@ public:
   cdm::Status Read(vtkPointSet* input, const char* name, int port);
   /** Called by all processes; the second input may be null. */
   cdm::Status Number(vtkPointSet* input, vtkPointSet* meshPoints);
-  /** What this process has read, numbered. */
+  /** The points that this process has read, with their numbers. */
   const std::vector<cdm::NumberedPoint>& GetPiece(int port) const
   {
     return this->Pieces[port].Points;

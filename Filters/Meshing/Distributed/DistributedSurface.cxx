@@ -221,7 +221,10 @@ cdm::Status DistributedSurface::Gather(
 }
 
 //--------------------------------------------------------------------------------------------------
-/** Where two processes have the same triangle, that of the first one stays. */
+/**
+ * Removes copies of triangles: if two processes have the same triangle, that of the first one
+ * stays.
+ */
 cdm::Status DistributedSurface::RemoveCopiedTriangles(std::vector<Row>& rows)
 {
   std::vector<char> isCopy(this->Mesh.Triangles.size(), 0);

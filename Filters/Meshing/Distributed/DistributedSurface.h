@@ -40,10 +40,13 @@ public:
   cdm::Status Gather(vtkPolyData* input, const std::vector<cdm::NumberedPoint>& points);
   /** Whether any process has a triangle. */
   bool Exists() const { return this->IsThere; }
-  /** By each process for itself: what the surface encloses, and turned diagonals. */
+  /**
+   * Checks, on each process by itself, what the surface encloses, and flips diagonals to those of
+   * the pulling rule.
+   */
   cdm::Status Check();
 
-  /** With points in the order of their numbers; labels are there before Check() only. */
+  /** The surface, with points in the order of their numbers. It has labels before Check() only. */
   const cdm::TriangleMesh& GetMesh() const { return this->Mesh; }
   /** The regions on the sides of the triangles, or PartRegions::Unknown. */
   const std::vector<cdm::RegionPair>& GetSideRegions() const { return this->SideRegions; }
@@ -63,7 +66,7 @@ private:
   std::vector<cdm::RegionPair> SideRegions;
   /** The cells of this process that are triangles. */
   std::vector<vtkIdType> OwnCells;
-  /** For each triangle its process and the cell there. */
+  /** The process of each triangle, and its cell there. */
   std::vector<std::pair<int, std::int64_t>> Sources;
   vtkSmartPointer<vtkTable> CellData;
 };

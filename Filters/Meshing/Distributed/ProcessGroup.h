@@ -97,7 +97,7 @@ public:
     return all;
   }
 
-  /** What this process has sent to others so far. */
+  /** Bytes that this process has sent to others so far. */
   std::int64_t GetNumberOfBytesSent() const { return this->BytesSent; }
 
   static Bytes Pack(vtkDataObject* data);
@@ -134,7 +134,7 @@ private:
   static constexpr std::int64_t LargestGather = std::int64_t(1) << 30;
 
   vtkMultiProcessController* Controller;
-  /** Of one process, in one piece. */
+  /** Largest message of one process, in one piece. */
   std::int64_t LargestMessage;
   int Rank = 0;
   int Size = 1;

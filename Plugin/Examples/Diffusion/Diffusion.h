@@ -219,7 +219,7 @@ inline Eigen::VectorXd MakeGaussian(vtkUnstructuredGrid* grid, double width)
 struct Result
 {
   Eigen::VectorXd Concentrations;
-  /** Over all points and steps. */
+  /** Extreme values over all points and steps. */
   double Smallest = 0.0;
   double Largest = 0.0;
 };
