@@ -28,7 +28,7 @@ using EdgeIds = std::array<Id, 2>;
 /** Counter-clockwise seen from the front side, the side that the normal points to. */
 using TriangleIds = std::array<Id, 3>;
 
-/** Positively oriented in VTK's sense: the triangle (0, 1, 2) turns its front to point 3. */
+/** Positively oriented in VTK's sense: the front of the triangle (0, 1, 2) faces point 3. */
 using TetrahedronIds = std::array<Id, 4>;
 
 /** Regions on the two sides of a polygon or triangle (array BoundaryLabels). */

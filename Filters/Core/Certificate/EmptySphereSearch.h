@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EmptySphereSearch.h
- * @brief Finds points that may lie inside of a sphere: the search that only the certificate uses.
+ * @brief Finds points that may lie inside of a sphere: the search behind SphereCriteria.h.
  *
  * Method: boxes of a k-d tree that the sphere surely does not touch (SphereForm.h) are left out.
  *

@@ -58,7 +58,7 @@ bool CavityFilling::Run(const Cavity& cavity)
   constexpr Id open = -1;
   constexpr Id wall = -2;
   std::vector<Id> behind(4 * local.Tetrahedra.size(), open);
-  // A point that the cavity does not have is told by its place: no facet is found at it.
+  // A point that the cavity does not have is told by its index: no facet is found at it.
   const auto findCorners = [&](TriangleIds facet)
   {
     for (Id& id : facet)

@@ -15,7 +15,7 @@ namespace
 {
 /** The block has at least one of so many points. */
 constexpr std::size_t SmallestShare = 8;
-/** The lattice of all lines has at most so many places per point. */
+/** The lattice of all lines has at most this many crossings per point. */
 constexpr std::size_t LargestLattice = 4;
 
 /** False if less than one of 16 points of a sample shares a coordinate with another one. */
@@ -189,7 +189,7 @@ private:
       std::make_pair(0, Id(this->Axes[2].IsDropped.size())) };
   }
 
-  /** work(place) for the crossings of lines that are kept. */
+  /** Calls work(place) for the crossings of lines that are kept. */
   template <typename Work>
   void ForAll(const Range& range, const Work& work)
   {
@@ -254,7 +254,7 @@ private:
   }
 
   std::array<std::size_t, 3> Strides;
-  /** The point at each place, or NoId. */
+  /** The point at each crossing, or NoId. */
   std::vector<Id> Points;
   std::array<Axis, 3> Axes;
 };
@@ -429,7 +429,7 @@ private:
   {
     return axis == 0 ? 1 : axis == 1 ? this->GetSize(0) : this->GetSize(0) * this->GetSize(1);
   }
-  /** The place of a corner from the one of the lowest corner. */
+  /** The index of a corner from that of the lowest corner. */
   Id GetCorner(Id place, int corner) const
   {
     return place + ((corner & 1) != 0 ? this->GetStride(0) : 0) +
@@ -457,7 +457,7 @@ private:
   RawVector<TetrahedronIds>& Neighbors;
   const BoxPattern* const Table;
 
-  /** Boxes in the order of the points at their lowest corners: the place of each, and back. */
+  /** Boxes in the order of the points at their lowest corners: the index of each, and back. */
   std::vector<Id> PlacesOfBoxes;
   std::vector<Id> BoxesOfPlaces;
   RawVector<unsigned char> Patterns;

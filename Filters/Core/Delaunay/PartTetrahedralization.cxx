@@ -732,7 +732,7 @@ void PartTetrahedralization::Compare(const Doubt& doubt)
   this->Take(doubt);
 }
 
-/** The place of a point that has been tetrahedralized, or NoId. */
+/** The index of a point that has been tetrahedralized, or NoId. */
 Id PartTetrahedralization::FindPlace(std::int64_t number) const
 {
   const auto end = this->Points.begin() + this->NumberOfOwnPoints;

@@ -371,7 +371,7 @@ bool VertexInsertion::AddRoom(std::size_t room, Workspace& space)
   return true;
 }
 
-/** New tetrahedra meet at the edges of the hole, each of which two facets run along both ways. */
+/** New tetrahedra meet at the edges of the cavity, each of which two facets run along both ways. */
 inline void VertexInsertion::ConnectByTable(Workspace& space)
 {
   const std::size_t count = space.NumberOfFacets;

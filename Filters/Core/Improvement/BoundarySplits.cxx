@@ -319,7 +319,7 @@ void BoundarySplits::Visit(Id tetrahedron, Id point, const Vec3& position)
   }
 }
 
-/** All tetrahedra of any region at points that are moved, or whose spheres hold new places. */
+/** All tetrahedra of any region at points that are moved, or whose spheres hold new positions. */
 bool BoundarySplits::CollectConflicts(
   const std::vector<Vec3>& points, const std::vector<Id>& touched)
 {

@@ -16,7 +16,7 @@ namespace
 constexpr std::size_t ReportInterval = 16;
 /** Points are moved where angles are below this multiple of the target: it leaves some room. */
 constexpr double MoveRatio = 1.1;
-/** First step of the search for a new point's place, in radii of the sphere that it destroys. */
+/** First step of the search for a new point's position, in radii of the sphere that it destroys. */
 constexpr double FirstInsertion = 0.3;
 /** Passes over the slivers that are left. */
 constexpr int MaximumPasses = 20;
@@ -195,7 +195,7 @@ bool Perturbation::Move(Id point)
     {
       return 0.0;
     }
-    // What stays of the tetrahedra that fill the place of the point counts as well.
+    // Tetrahedra that fill the cavity of the removed point, and stay, count as well.
     const std::vector<Id>& replaced = this->Mesh.GetHole().Tetrahedra;
     Id brokenThere = 0;
     for (std::size_t i = 0; i < filled.size(); ++i)

@@ -38,7 +38,7 @@ constexpr int MaximumCouplingRounds = 4;
 /** Roundings of points in a row that do not do away with a quarter of the flat tetrahedra. */
 constexpr int MaximumRoundings = 3;
 constexpr double RoundingGain = 0.75;
-/** Passes over slivers and shapes in turn, when the boundary stays as it is. */
+/** Passes over slivers and shapes, alternating, when the boundary stays as it is. */
 constexpr int MaximumLastPasses = 5;
 /** Slivers wait until no more requests than these are left from badly shaped tetrahedra. */
 constexpr std::size_t FewRequests = 16;

@@ -450,7 +450,7 @@ bool SurfacePointMoves::Move(Id point, const TetrahedronIds& sliver, double targ
   {
     return false;
   }
-  // The place that was tried last need not be the best one.
+  // The position that was tried last need not be the best one.
   this->CollectCavity(point, best.Position);
   this->Filling.Run(this->Around);
   this->Mesh.SetPoint(point, best.Position);

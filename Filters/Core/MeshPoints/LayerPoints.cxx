@@ -41,7 +41,7 @@ struct LayerFoot
   /** Into the region; a step along it leads as far away from the interface. */
   Vec3 Direction;
   double Edge;
-  /** The interface ends here; where a wall begins there is no place for points above it. */
+  /** The interface ends here; where a wall begins there is no room for points above it. */
   bool IsRim;
 };
 

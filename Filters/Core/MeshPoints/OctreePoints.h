@@ -7,7 +7,7 @@
  *  1. the leaves are as large as the sizing asks for (SizingOctree.h), times a ratio so that the
  *     edges of the mesh are as long;
  *  2. each leaf that is not outside has the points of the template (PointTemplates.h). Points that
- *     several leaves have in common are found by sorting all of them by their place;
+ *     several leaves have in common are found by sorting all of them by their position;
  *  3. the spacing of a point is that between the points of its smallest leaf, along each axis.
  *
  * Failure: LimitReached if the sizing needs too many points.

@@ -147,7 +147,7 @@ Status FindPlanes(const ExecutionContext& context, const MeshPointPlacer& placer
     : Status();
 }
 
-// Halves: even places are ticks, odd ones the middles between them.
+// Halves: even indices are ticks, odd ones the middles between them.
 
 double GetPosition(const std::vector<double>& ticks, std::size_t half)
 {

@@ -8,8 +8,8 @@
  *     several rounds, each in another order. A dart stays if no other point is near, measured in
  *     the spacing at the dart (Poisson disks in the metric of the sizing);
  *  2. Lloyd's iteration: each point moves to the center of its Voronoi cell, found by samples in
- *     the leaves, each of which counts for the nearest point. A point that may not take that place
- *     stays. Points of layers have cells, too, but do not move.
+ *     the leaves, each of which counts for the nearest point. A point that may not take that
+ *     position stays. Points of layers have cells, too, but do not move.
  *
  * Guarantees: random numbers are drawn, and sums are made, on one thread: points are the same for
  * any number of threads.

@@ -75,7 +75,7 @@ using ContactPoints = std::vector<ContactPoint>;
 
 /**
  * The corners of what two triangles of contact Intersection have in common: a point, the ends of a
- * segment, or the corners of a polygon, not in order. The same place may be found more than once.
+ * segment, or the corners of a polygon, not in order. The same point may be found more than once.
  * asCoplanar: in the projection along an axis, for triangles that are coplanar or almost.
  */
 ContactPoints FindContactPoints(

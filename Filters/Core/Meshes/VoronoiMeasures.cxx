@@ -39,8 +39,8 @@ struct Frame
       W(DoubleDouble3::FromDifference(d, a)), NormalC(Cross(W, U)), NormalB(Cross(V, W)),
       NormalD(Cross(U, V)), SixVolumes(Dot(NormalD, W))
   {
-    // The normals of the four facets, each turned inwards and as long as twice the area, vanish in
-    // sum.
+    // The normals of the four facets, each oriented inwards and as long as twice the area, vanish
+    // in sum.
     const DoubleDouble3 sum = this->NormalB + this->NormalC + this->NormalD;
     this->NormalA = DoubleDouble3{ { -sum.X[0], -sum.X[1], -sum.X[2] } };
   }

@@ -352,7 +352,7 @@ Status Remeshing::Advance(const ExecutionContext& context)
   return {};
 }
 
-/** Moves on from begin, which is set to what was reached: the end, or a place halfway. */
+/** Moves on from begin, which is set to what was reached: the end, or a position halfway. */
 Status Remeshing::TakeStep(
   double& begin, double end, double smallest, const ExecutionContext& context)
 {
@@ -628,7 +628,7 @@ Status Remeshing::CutSurface(const Surface& surface, const ExecutionContext& con
   return {};
 }
 
-/** Gives new points an origin and appends it. Their parents are places in origins. */
+/** Gives new points an origin and appends it. Their parents are indices into origins. */
 void Remeshing::AddNewPoints(const std::vector<PointParents>& points, std::vector<Id>& origins)
 {
   for (const PointParents& point : points)

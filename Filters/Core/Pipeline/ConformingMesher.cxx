@@ -322,7 +322,7 @@ Status ConformingMesher::RemoveFlatTetrahedra()
   options.DihedralAngleTarget = this->Options.DihedralAngleTarget;
   if (this->Options.Surface.Criterion != SurfaceCriterion::Delaunay)
   {
-    // Peeling turns a diagonal of the boundary, which the stronger criteria do not allow.
+    // Peeling flips a diagonal of the boundary, which the stronger criteria do not allow.
     options.FlatnessRatio = 0.0;
   }
   options.IsFree = this->IsFree;

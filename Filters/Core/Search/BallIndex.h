@@ -89,7 +89,7 @@ private:
     Id Index = NoId;
   };
 
-  /** A cell and the upper half of the hash of its place. */
+  /** A cell and the upper half of the hash of its level and index. */
   struct Slot
   {
     Id Cell = NoId;

@@ -207,7 +207,7 @@ void SurfaceRefinement::RemoveMeshPoint(Id point)
 
 void SurfaceRefinement::MovePoints(const std::vector<std::pair<Id, Vec3>>& moves)
 {
-  // The octree never has two points in one place.
+  // The octree never has two points at one position.
   std::vector<char> isMoved(this->Points.size(), 0);
   for (const auto& [point, position] : moves)
   {

@@ -271,7 +271,7 @@ bool Relax(const FaceNet& net, const IdLists& guides, const ExecutionContext& co
 }
 
 /**
- * The places after the moves, within the limits. Moves are rounded down: far from what was rough
+ * The positions after the moves, within the limits. Moves are rounded down: far from what was rough
  * they fade away, but never end, and the mesher would have to tell surfaces that are flat from
  * those that are flat to twelve digits.
  */

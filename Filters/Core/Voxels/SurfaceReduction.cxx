@@ -66,7 +66,7 @@ struct Candidate
 {
   Id Target = NoId;
   double Cost = 0.0;
-  /** Old and new triangles cover the same places of the same planes, exactly. */
+  /** Old and new triangles cover the same parts of the same planes, exactly. */
   bool IsFlat = false;
   std::vector<Page> Pages;
   /** Triangles and what their deviation will be. */
@@ -360,7 +360,7 @@ private:
   }
 
   /**
-   * Largest distance between places of the old and the new triangles of a page that belong
+   * Largest distance between points of the old and the new triangles of a page that belong
    * together; false if the page is bent too much, or if triangles become needles.
    */
   bool FindDifference(const Vec3& p, const Page& page, double& difference) const
@@ -456,7 +456,7 @@ private:
       const Vec3 b = this->Points[page.Path[i + 1]] - target;
       const Vec3 normal = Cross(a, b);
       const double scale = Dot(direction, normal);
-      // The triangle below the place is the one in which its smallest weight is the largest.
+      // The triangle below the position is the one in which its smallest weight is the largest.
       const double s = Dot(direction, Cross(place - target, b)) / scale;
       const double t = Dot(direction, Cross(a, place - target)) / scale;
       const double inside = std::min({ s, t, 1.0 - s - t });

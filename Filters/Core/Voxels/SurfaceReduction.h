@@ -21,7 +21,7 @@
  *     exactly, need no such test: with a bound of 0 these are left.
  *
  * Inputs: the invariants of TriangleMesh.h, with labels. Guarantees: these invariants are kept, and
- * so are the labels on both sides and the topology; corners keep their places. Deterministic.
+ * so are the labels on both sides and the topology; corners keep their positions. Deterministic.
  * Failure: as of ExtractStructuralEdges. After a failure or an abort the surface is left alone.
  * Cost: O(n log n), about 40 microseconds for a removed point; 500 bytes per point.
  * References: C. L. Bajaj, D. R. Schikore, "Error-bounded reduction of triangle meshes with
