@@ -133,7 +133,8 @@ public:
         continue;
       }
       std::vector<Candidate> candidates = this->FindCandidates(point);
-      const auto fits = [&](const Candidate& candidate) { return this->Fits(point, candidate); };
+      const auto fits = [this, moved = point](const Candidate& candidate)
+      { return this->Fits(moved, candidate); };
       const auto found = std::find_if(candidates.begin(), candidates.end(), fits);
       if (found != candidates.end())
       {
