@@ -4,15 +4,22 @@
 
 #include <vtkCleanPolyData.h>
 #include <vtkConformingDelaunayMesher.h>
+#include <vtkDataSetTriangleFilter.h>
 #include <vtkDelaunayMeshCriteria.h>
 #include <vtkFieldData.h>
+#include <vtkImageData.h>
 #include <vtkMath.h>
+#include <vtkProbeFilter.h>
 #include <vtkSphereSource.h>
 #include <vtkStringArray.h>
 #include <vtkSuperquadricSource.h>
 #include <vtkTriangleFilter.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <iostream>
+#include <vector>
 
 using namespace testing_filters;
 
@@ -218,6 +225,96 @@ TEST(ConformingDelaunayMesherFilter, FulfilsCriteriaAndUsesItsOtherInputs)
     EXPECT_NEAR(GetVolume(filter->GetOutput(), 0), 1.0, 1e-12);
     EXPECT_GT(filter->GetOutput()->GetNumberOfPoints(), 60);
     ExpectLinear(filter->GetOutput());
+  }
+}
+
+TEST(ConformingDelaunayMesherFilter, SizesHoldAllAlongEdgesAndInTetrahedra)
+{
+  // 0.01 at one point of a coarse grid, on a facet's middle line, and 1 everywhere else.
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(5, 5, 5);
+  image->SetSpacing(0.25, 0.25, 0.25);
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("Sizing");
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    const double place[3] = { 0.5, 0.25, 0.5 };
+    const bool isPlace = vtkMath::Distance2BetweenPoints(image->GetPoint(i), place) < 1e-12;
+    values->InsertNextValue(isPlace ? 0.01 : 1.0);
+  }
+  image->GetPointData()->AddArray(values);
+  vtkNew<vtkDataSetTriangleFilter> tetrahedra;
+  tetrahedra->SetInputData(image);
+  tetrahedra->Update();
+  for (vtkDataSet* sizing :
+    { static_cast<vtkDataSet*>(image.Get()), static_cast<vtkDataSet*>(tetrahedra->GetOutput()) })
+  {
+    vtkNew<vtkConformingDelaunayMesher> filter;
+    filter->SetInputData(MakeCube());
+    filter->SetInputData(2, sizing);
+    filter->AddSteinerPointsOn();
+    vtkNew<EventRecorder> recorder;
+    recorder->Watch(filter);
+    filter->Update();
+    EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+    vtkUnstructuredGrid* mesh = filter->GetOutput();
+    EXPECT_EQ(mesh->GetCellData()->GetArray("RefinementFault"), nullptr);
+    // Positions along all edges, and all over the tetrahedra, with the longest edge there.
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    std::vector<double> lengths;
+    const auto add = [&](const std::array<double, 4>& weights, vtkCell* cell, double length)
+    {
+      double x[3] = { 0.0, 0.0, 0.0 };
+      for (int i = 0; i < 12; ++i)
+      {
+        x[i % 3] += weights[i / 3] * cell->GetPoints()->GetPoint(i / 3)[i % 3];
+      }
+      points->InsertNextPoint(x);
+      lengths.push_back(length);
+    };
+    for (vtkIdType t = 0; t < mesh->GetNumberOfCells(); ++t)
+    {
+      vtkCell* cell = mesh->GetCell(t);
+      double longest = 0.0;
+      for (int e = 0; e < 6; ++e)
+      {
+        longest = std::max(longest, std::sqrt(cell->GetEdge(e)->GetLength2()));
+      }
+      for (int i = 0; i <= 8; ++i)
+      {
+        for (int j = 0; i + j <= 8; ++j)
+        {
+          for (int k = 0; i + j + k <= 8; ++k)
+          {
+            add({ i / 8.0, j / 8.0, k / 8.0, (8 - i - j - k) / 8.0 }, cell, longest);
+          }
+        }
+      }
+    }
+    vtkNew<vtkPolyData> samples;
+    samples->SetPoints(points);
+    vtkNew<vtkProbeFilter> probe;
+    probe->SetInputData(samples);
+    probe->SetSourceData(sizing);
+    probe->Update();
+    vtkDataArray* sizes = probe->GetOutput()->GetPointData()->GetArray("Sizing");
+    vtkDataArray* isValid =
+      probe->GetOutput()->GetPointData()->GetArray(probe->GetValidPointMaskArrayName());
+    double worst = 0.0;
+    vtkIdType number = 0;
+    for (vtkIdType i = 0; i < samples->GetNumberOfPoints(); ++i)
+    {
+      if (isValid->GetComponent(i, 0) != 0.0)
+      {
+        worst = std::max(worst, lengths[i] / sizes->GetComponent(i, 0));
+        ++number;
+      }
+    }
+    std::cout << mesh->GetNumberOfCells() << " tetrahedra; longest edge to sizing, at " << number
+              << " positions: up to " << worst << "\n";
+    EXPECT_GT(number, samples->GetNumberOfPoints() / 2);
+    EXPECT_LE(worst, 1.0 + 1e-9);
   }
 }
 

@@ -937,6 +937,8 @@ Status Refiner::Run()
     status = this->FindFacets();
   }
   status = status.IsOk() ? this->StartRound() : status;
+  // Nothing was requested yet: a surface that got no new points is not stuck.
+  this->IsStuck = false;
   if (status.IsOk() && this->Output.Report.WeakTriangles == 0)
   {
     RemoveClosePoints(this->Options.MinimumEdgeLength, this->Input.Sizing, *this->Round);

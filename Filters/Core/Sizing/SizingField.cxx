@@ -47,6 +47,82 @@ LocalSpacing::LocalSpacing(const Vec3& direction, double along, double across)
   }
 }
 
+//--------------------------------------------------------------------------------------------------
+template <std::size_t Size>
+bool SizingField::AnyBelowIn(
+  const std::array<Vec3, Size>& corners, double length, const Predicate& isSought) const
+{
+  const auto isSoughtAt = [&](const Vec3& position)
+  {
+    if (this->Minima && !this->Minima->MayBeBelow(position, length))
+    {
+      return false;
+    }
+    const LocalSpacing spacing = this->Spacing(position);
+    return spacing.GetSmallest() < length && isSought(position, spacing);
+  };
+  Vec3 center;
+  for (const Vec3& corner : corners)
+  {
+    center = center + (1.0 / Size) * corner;
+  }
+  if (isSoughtAt(center) || std::any_of(corners.begin(), corners.end(), isSoughtAt))
+  {
+    return true;
+  }
+  for (std::size_t i = 0; i < Size; ++i)
+  {
+    for (std::size_t j = 0; j < i; ++j)
+    {
+      if (isSoughtAt(0.5 * (corners[i] + corners[j])))
+      {
+        return true;
+      }
+    }
+  }
+  bool isFound = false;
+  if (this->Minima)
+  {
+    this->Minima->VisitBelow(ConvexRegion(corners), length,
+      [&](const Vec3& position)
+      {
+        isFound = isSoughtAt(position);
+        return isFound ? 0.0 : length;
+      });
+  }
+  return isFound;
+}
+
+bool SizingField::AnyBelow(
+  const std::array<Vec3, 3>& triangle, double length, const Predicate& isSought) const
+{
+  return this->AnyBelowIn(triangle, length, isSought);
+}
+
+bool SizingField::AnyBelow(
+  const std::array<Vec3, 4>& tetrahedron, double length, const Predicate& isSought) const
+{
+  return this->AnyBelowIn(tetrahedron, length, isSought);
+}
+
+void SizingField::VisitMinima(const Box& box, double length,
+  const std::function<void(const LocalSpacing& spacing)>& visit) const
+{
+  if (!this->Minima)
+  {
+    return;
+  }
+  this->Minima->VisitBelow(ConvexRegion(box), length,
+    [&](const Vec3& position)
+    {
+      const LocalSpacing spacing = this->Spacing(position);
+      visit(spacing);
+      length = std::min(length, spacing.GetSmallest());
+      return length;
+    });
+}
+
+//--------------------------------------------------------------------------------------------------
 namespace
 {
 constexpr const char* Activity = "Bounding the gradation";

@@ -27,8 +27,14 @@
 #include "Core/Basics/ExecutionContext.h"
 #include "Core/Basics/Status.h"
 #include "Core/Basics/Vec3.h"
+#include "Core/Sizing/SizingMinima.h"
 
+#include <array>
+#include <cstddef>
 #include <functional>
+#include <memory>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace cdm
@@ -71,15 +77,52 @@ private:
   double Largest;
 };
 
-/** Stages call it from several threads at once; the same position always has the same spacing. */
-using SizingField = std::function<LocalSpacing(const Vec3&)>;
-
-/** Points in cells: cell i has the points Connectivity[Offsets[i]] to [Offsets[i + 1]]. */
-struct SizingCells
+/**
+ * The spacing at each position. Edges are to be no longer than the spacing anywhere along them, and
+ * those of a triangle or a tetrahedron than anywhere in it. They are asked at corners, the middles
+ * of edges and the center; with SizingMinima also wherever else they can be smallest. Of a field
+ * that is only a function, what is small between these is not seen.
+ */
+class SizingField
 {
-  std::vector<Vec3> Points;
-  std::vector<Id> Offsets{ 0 };
-  std::vector<Id> Connectivity;
+public:
+  /** Stages call it from several threads at once; the same position always has the same spacing. */
+  using Function = std::function<LocalSpacing(const Vec3&)>;
+  using Predicate = std::function<bool(const Vec3& position, const LocalSpacing& spacing)>;
+
+  /** No field: edges may have any length. */
+  SizingField() = default;
+  /** Implicit, so that a function of a position is a sizing field. */
+  template <class Callable,
+    class = std::enable_if_t<std::is_convertible_v<Callable, Function> &&
+      !std::is_same_v<std::decay_t<Callable>, SizingField>>>
+  SizingField(Callable&& spacing) : Spacing(std::forward<Callable>(spacing))
+  {
+  }
+  SizingField(Function spacing, std::shared_ptr<const SizingMinima> minima)
+    : Spacing(std::move(spacing)), Minima(std::move(minima))
+  {
+  }
+
+  explicit operator bool() const { return static_cast<bool>(this->Spacing); }
+  LocalSpacing operator()(const Vec3& position) const { return this->Spacing(position); }
+
+  /** Whether somewhere in a triangle a spacing with a length below this one fulfils a condition. */
+  bool AnyBelow(
+    const std::array<Vec3, 3>& triangle, double length, const Predicate& isSought) const;
+  bool AnyBelow(
+    const std::array<Vec3, 4>& tetrahedron, double length, const Predicate& isSought) const;
+  /** Calls visit for positions in a box where a length is below those that were visited before. */
+  void VisitMinima(const Box& box, double length,
+    const std::function<void(const LocalSpacing& spacing)>& visit) const;
+
+private:
+  template <std::size_t Size>
+  bool AnyBelowIn(
+    const std::array<Vec3, Size>& corners, double length, const Predicate& isSought) const;
+
+  Function Spacing;
+  std::shared_ptr<const SizingMinima> Minima;
 };
 
 struct GradationOptions

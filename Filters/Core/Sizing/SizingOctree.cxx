@@ -128,16 +128,28 @@ int SizingOctree::FindSplitAxes(Node& node) const
   Vec3 sum;
   Vec3 smallest{ Infinity, Infinity, Infinity };
   constexpr int samples = 9;
+  const auto getLengths = [](const LocalSpacing& spacing)
+  {
+    return Vec3{ spacing.GetAlong({ 1.0, 0.0, 0.0 }), spacing.GetAlong({ 0.0, 1.0, 0.0 }),
+      spacing.GetAlong({ 0.0, 0.0, 1.0 }) };
+  };
+  const auto note = [&](const LocalSpacing& spacing)
+  {
+    const Vec3 lengths = getLengths(spacing);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      smallest[axis] = std::min(smallest[axis], lengths[axis]);
+    }
+  };
   const auto sample = [&](const Vec3& units)
   {
     const LocalSpacing spacing = (*this->Sizing)(this->GetPosition(units));
-    const Vec3 lengths{ spacing.GetAlong({ 1.0, 0.0, 0.0 }), spacing.GetAlong({ 0.0, 1.0, 0.0 }),
-      spacing.GetAlong({ 0.0, 0.0, 1.0 }) };
+    const Vec3 lengths = getLengths(spacing);
     for (int axis = 0; axis < 3; ++axis)
     {
       sum[axis] += std::pow(lengths[axis], -3.0);
-      smallest[axis] = std::min(smallest[axis], lengths[axis]);
     }
+    note(spacing);
   };
   sample({ low.X + 0.5 * size[0], low.Y + 0.5 * size[1], low.Z + 0.5 * size[2] });
   for (int corner = 0; corner < samples - 1; ++corner)
@@ -145,6 +157,10 @@ int SizingOctree::FindSplitAxes(Node& node) const
     sample({ low.X + (corner & 1 ? size[0] : 0u), low.Y + (corner & 2 ? size[1] : 0u),
       low.Z + (corner & 4 ? size[2] : 0u) });
   }
+  // What is smallest between the samples counts, too.
+  const Vec3 high = low + Vec3{ double(size[0]), double(size[1]), double(size[2]) };
+  this->Sizing->VisitMinima({ this->GetPosition(low), this->GetPosition(high) },
+    std::min({ smallest.X, smallest.Y, smallest.Z }), note);
   for (int axis = 0; axis < 3; ++axis)
   {
     node.Spacing[axis] = std::min(std::cbrt(samples / sum[axis]), LargestGrowth * smallest[axis]);

@@ -8,7 +8,8 @@
  *  2. a cell that overlaps a region is split as long as its edge along an axis, measured in the
  *     spacing there, exceeds a limit; along the longest axes only, so that anisotropic spacing
  *     makes flat cells. The spacing is that of the mean density of points at center and corners,
- *     but no more than 4/3 of the smallest: what is finest in a cell is not averaged out;
+ *     but no more than 4/3 of the smallest anywhere in the cell: what is finest is not averaged
+ *     out;
  *  3. bounded irregularity: a cell is split along an axis on which a neighbor, also across an edge
  *     or a corner, is finer by more levels than allowed.
  *

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace cdm
@@ -34,13 +35,13 @@ TetrahedronFault TetrahedronLimits::Find(
       GetSignedVolume(vertices[0], vertices[1], vertices[2], vertices[3]) > this->MaximumVolume);
   if (!isLarge && this->Sizing)
   {
-    const LocalSpacing spacing =
-      this->Sizing(0.25 * (vertices[0] + vertices[1] + vertices[2] + vertices[3]));
-    for (int e = 0; e < 6 && !isLarge; ++e)
-    {
-      isLarge = SquaredNorm(spacing.ToUnits(
-                  vertices[TetrahedronEdges[e][1]] - vertices[TetrahedronEdges[e][0]])) > 1.0;
-    }
+    isLarge = this->Sizing.AnyBelow(vertices, longest,
+      [&](const Vec3&, const LocalSpacing& spacing)
+      {
+        return std::any_of(std::begin(TetrahedronEdges), std::end(TetrahedronEdges),
+          [&](const auto& e)
+          { return SquaredNorm(spacing.ToUnits(vertices[e[1]] - vertices[e[0]])) > 1.0; });
+      });
   }
   if (isLarge)
   {

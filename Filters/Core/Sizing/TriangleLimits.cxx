@@ -14,17 +14,21 @@ bool TriangleLimits::IsTooCoarse(
   edge = NoId;
   double limit = this->MaximumEdgeLength > 0.0 ? this->MaximumEdgeLength
                                                : std::numeric_limits<double>::infinity();
-  if (this->Sizing)
-  {
-    const LocalSpacing spacing = this->Sizing((1.0 / 3.0) * (corners[0] + corners[1] + corners[2]));
-    limit = std::min(limit, spacing.GetLargest());
-  }
   int longest = 0;
   double lengths[3];
   for (int i = 0; i < 3; ++i)
   {
     lengths[i] = Distance(corners[i], corners[(i + 1) % 3]);
     longest = lengths[i] > lengths[longest] ? i : longest;
+  }
+  if (this->Sizing)
+  {
+    this->Sizing.AnyBelow(corners, std::min(lengths[longest], limit),
+      [&](const Vec3&, const LocalSpacing& spacing)
+      {
+        limit = std::min(limit, spacing.GetLargest());
+        return lengths[longest] > limit;
+      });
   }
   const double area = 0.5 * Norm(Cross(corners[1] - corners[0], corners[2] - corners[0]));
   const bool isLarge =

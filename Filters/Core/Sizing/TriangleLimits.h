@@ -22,7 +22,7 @@ struct TriangleLimits
   double MaximumArea = 0.0;
   /** Degrees; 0: no limit. Angles between two structural edges are as they are. */
   double MinimumAngle = 0.0;
-  /** May be empty. Asked at the centroid. */
+  /** May be empty. No edge is to be longer than the largest length anywhere in the triangle. */
   SizingField Sizing;
 
   bool HasAny() const

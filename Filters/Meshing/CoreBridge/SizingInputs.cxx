@@ -14,6 +14,7 @@
 #include <vtkMath.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkPoints.h>
 #include <vtkSmartPointer.h>
 #include <vtkStaticCellLocator.h>
 #include <vtkStaticPointLocator.h>
@@ -22,8 +23,11 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace
 {
@@ -231,6 +235,104 @@ private:
   vtkNew<vtkStaticCellLocator> Cells;
   vtkNew<vtkStaticPointLocator> Points;
 };
+/** The smallest principal value of a tuple of Sizing. */
+double FindSmallestLength(const double* tuple, int components)
+{
+  if (components <= 3)
+  {
+    return *std::min_element(tuple, tuple + components);
+  }
+  double lengths[3];
+  double directions[3][3];
+  FindPrincipalAxes(tuple, components, lengths, directions);
+  return std::min({ lengths[0], lengths[1], lengths[2] });
+}
+
+/** Appends the corners of a cell: as it is, or in simplices; its points if these cannot be had. */
+void AppendCell(vtkGenericCell* cell, vtkIdList* ids, vtkPoints* points, cdm::SizingCells& cells)
+{
+  const auto append = [&](vtkIdList* corners, const std::vector<vtkIdType>& order)
+  {
+    for (const vtkIdType i : order)
+    {
+      cells.Connectivity.push_back(static_cast<cdm::Id>(corners->GetId(i)));
+    }
+    cells.Offsets.push_back(static_cast<cdm::Id>(cells.Connectivity.size()));
+  };
+  switch (cell->GetCellType())
+  {
+    case VTK_EMPTY_CELL:
+      return;
+    case VTK_TETRA:
+      return append(cell->GetPointIds(), { 0, 1, 2, 3 });
+    case VTK_HEXAHEDRON:
+      return append(cell->GetPointIds(), { 0, 1, 2, 3, 4, 5, 6, 7 });
+    case VTK_VOXEL:
+      return append(cell->GetPointIds(), { 0, 1, 3, 2, 4, 5, 7, 6 });
+    default:
+      break;
+  }
+  vtkIdType size = cell->GetCellDimension() + 1;
+  if (!cell->Triangulate(0, ids, points) || ids->GetNumberOfIds() % size != 0)
+  {
+    ids->DeepCopy(cell->GetPointIds());
+    size = 1;
+  }
+  for (vtkIdType i = 0; i + size <= ids->GetNumberOfIds(); i += size)
+  {
+    std::vector<vtkIdType> order(size);
+    std::iota(order.begin(), order.end(), i);
+    append(ids, order);
+  }
+}
+
+/** Where the array Sizing is smallest: in cells, or at points without cells. */
+cdm::Status FindMinima(
+  vtkDataSet* input, vtkDataArray* values, std::shared_ptr<const cdm::SizingMinima>& minima)
+{
+  const int components = values->GetNumberOfComponents();
+  const vtkIdType count = input->GetNumberOfPoints();
+  cdm::Status status = cdm::CheckIdRange(count, "points");
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  std::vector<double> lengths(count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    double tuple[MaximumSizingComponents];
+    values->GetTuple(i, tuple);
+    lengths[i] = FindSmallestLength(tuple, components);
+  }
+  cdm::SizingCells cells;
+  cells.Points.resize(count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    double x[3];
+    input->GetPoint(i, x);
+    cells.Points[i] = { x[0], x[1], x[2] };
+  }
+  vtkNew<vtkGenericCell> cell;
+  vtkNew<vtkIdList> ids;
+  vtkNew<vtkPoints> points;
+  for (vtkIdType i = 0; i < input->GetNumberOfCells(); ++i)
+  {
+    input->GetCell(i, cell);
+    AppendCell(cell, ids, points, cells);
+    status = cdm::CheckIdRange(cells.Connectivity.size(), "corners of cells");
+    if (!status.IsOk())
+    {
+      return status;
+    }
+  }
+  for (vtkIdType i = 0; i < count && input->GetNumberOfCells() == 0; ++i)
+  {
+    cells.Connectivity.push_back(static_cast<cdm::Id>(i));
+    cells.Offsets.push_back(static_cast<cdm::Id>(i + 1));
+  }
+  minima = std::make_shared<const cdm::SizingMinima>(std::move(cells), std::move(lengths));
+  return {};
+}
 } // namespace
 
 namespace vtkCoreBridge
@@ -278,8 +380,15 @@ cdm::Status ToSizing(vtkDataSet* input, cdm::SizingField& sizing)
         ListValues(tuple, components) + ".");
     }
   }
+  std::shared_ptr<const cdm::SizingMinima> minima;
+  const cdm::Status found = FindMinima(input, values, minima);
+  if (!found.IsOk())
+  {
+    return found;
+  }
   const auto interpolator = std::make_shared<const SizingInterpolator>(input, values);
-  sizing = [interpolator](const cdm::Vec3& position) { return (*interpolator)(position); };
+  sizing = cdm::SizingField(
+    [interpolator](const cdm::Vec3& position) { return (*interpolator)(position); }, minima);
   return {};
 }
 
