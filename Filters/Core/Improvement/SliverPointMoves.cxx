@@ -6,6 +6,7 @@
 #include "Core/Geometry/Predicates.h"
 #include "Core/Improvement/RefinedMesh.h"
 #include "Core/Improvement/SliverPerturbation.h"
+#include "Core/Improvement/SurfacePointMoves.h"
 #include "Core/Meshes/MeshBoundary.h"
 #include "Core/Surface/StructuralEdges.h"
 
