@@ -48,7 +48,7 @@ private:
   };
   void Include(Id tetrahedron, SmallestAngles& smallest) const;
   double GetFloor(const SmallestAngles& before) const;
-  double RateHole(const Vec3& position, double floor, double required) const;
+  double RateCavity(const Vec3& position, double floor, double required) const;
   bool Move(Id point);
   bool InsertBest(Id tetrahedron);
 
@@ -78,12 +78,12 @@ double Perturbation::GetFloor(const SmallestAngles& before) const
  * Smallest angle among the tetrahedra aimed at if the cavity were filled from the position. 0 if
  * another tetrahedron falls below the floor, or as soon as the angle is not larger than required.
  */
-double Perturbation::RateHole(const Vec3& position, double floor, double required) const
+double Perturbation::RateCavity(const Vec3& position, double floor, double required) const
 {
   constexpr Id inside = std::numeric_limits<Id>::max();
   const SharpAngles& sharp = this->Mesh.GetShape().Sharp;
   double smallest = 180.0;
-  for (const TriangleIds& facet : this->Mesh.GetHole().Facets)
+  for (const TriangleIds& facet : this->Mesh.GetCavity().Facets)
   {
     const double angle = GetSmallestDihedralAngle(this->Tetrahedra.GetPoint(facet[0]),
       this->Tetrahedra.GetPoint(facet[1]), this->Tetrahedra.GetPoint(facet[2]), position);
@@ -142,19 +142,19 @@ bool Perturbation::Move(Id point)
     angles.push_back(after.Other < floor ? 0.0 : after.Aimed);
     isBroken.push_back(this->Mesh.BreaksLimit(t));
   }
-  const auto findHole = [&](const Vec3& position)
+  const auto findCavity = [&](const Vec3& position)
   {
     const Id first = this->Tetrahedra.Locate(position, filled.front());
-    return first != NoId && this->Mesh.FindHole(position, first, point);
+    return first != NoId && this->Mesh.FindCavity(position, first, point);
   };
   const auto rate = [&](const Vec3& position, double required)
   {
-    if (!findHole(position))
+    if (!findCavity(position))
     {
       return 0.0;
     }
     // Tetrahedra that fill the cavity of the removed point, and stay, count as well.
-    const std::vector<Id>& replaced = this->Mesh.GetHole().Tetrahedra;
+    const std::vector<Id>& replaced = this->Mesh.GetCavity().Tetrahedra;
     Id brokenThere = 0;
     for (std::size_t i = 0; i < filled.size(); ++i)
     {
@@ -168,10 +168,10 @@ bool Perturbation::Move(Id point)
         ++brokenThere;
       }
     }
-    const double angle = this->RateHole(position, floor, required);
+    const double angle = this->RateCavity(position, floor, required);
     return angle > required && this->Mesh.IsClear(position) &&
         (broken > 0 || brokenThere + this->Mesh.CountBroken(position) == 0) &&
-        !this->Mesh.DisturbsBoundary(position)
+        !this->Mesh.EncroachesOnBoundary(position)
       ? angle
       : 0.0;
   };
@@ -190,7 +190,7 @@ bool Perturbation::Move(Id point)
     this->Tetrahedra.UndoRemove();
     return false;
   }
-  findHole(best.Position);
+  findCavity(best.Position);
   this->Mesh.Restore(point, best.Position);
   return true;
 }
@@ -205,18 +205,18 @@ bool Perturbation::InsertBest(Id tetrahedron)
   }
   const auto rate = [&](const Vec3& position, double required)
   {
-    if (!this->Mesh.FindHole(position, tetrahedron))
+    if (!this->Mesh.FindCavity(position, tetrahedron))
     {
       return 0.0;
     }
     SmallestAngles before;
-    for (Id t : this->Mesh.GetHole().Tetrahedra)
+    for (Id t : this->Mesh.GetCavity().Tetrahedra)
     {
       this->Include(t, before);
     }
-    const double angle = this->RateHole(position, this->GetFloor(before), required);
+    const double angle = this->RateCavity(position, this->GetFloor(before), required);
     return angle > required && this->Mesh.IsClear(position) &&
-        this->Mesh.CountBroken(position) == 0 && !this->Mesh.DisturbsBoundary(position)
+        this->Mesh.CountBroken(position) == 0 && !this->Mesh.EncroachesOnBoundary(position)
       ? angle
       : 0.0;
   };
@@ -224,7 +224,7 @@ bool Perturbation::InsertBest(Id tetrahedron)
   TryPlace(center, rate, best);
   SearchPlace(center, FirstInsertion * Distance(center, a), MakeCubeDirections(), this->Goal.Target,
     rate, best);
-  if (!best.IsFound || !this->Mesh.FindHole(best.Position, tetrahedron))
+  if (!best.IsFound || !this->Mesh.FindCavity(best.Position, tetrahedron))
   {
     return false;
   }
@@ -294,7 +294,7 @@ Status PerturbSlivers(
         const Vec3 center = GetCircumcenter(a, b, c, d);
         if (!requests.AddEdgeOfTwoTriangles(ids, pointTriangles) && IsFinite(center))
         {
-          mesh.RequestDisturbed(center, true);
+          mesh.RequestEncroached(center, true);
         }
       }
     }

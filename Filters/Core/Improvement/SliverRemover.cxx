@@ -84,10 +84,10 @@ bool AreBetter(const std::vector<AngleKey>& first, const std::vector<AngleKey>& 
     (difference.first == first.end() || *difference.first > *difference.second);
 }
 
-class Remover
+class SliverRemoval
 {
 public:
-  Remover(TetMesh& mesh, const SliverRemoverOptions& options, SliverRemoverReport& report)
+  SliverRemoval(TetMesh& mesh, const SliverRemoverOptions& options, SliverRemoverReport& report)
     : Mesh(mesh), Options(options), Target(options.DihedralAngleTarget),
       Flatness(options.FlatnessRatio * GetBoundingBoxDiagonal(mesh.Points)), Report(report)
   {
@@ -153,7 +153,7 @@ private:
   /** Smallest dihedral angle of each tetrahedron, and how often it has changed. */
   std::vector<double> Angles;
   std::vector<Id> Stamps;
-  /** Places of tetrahedra that are gone. */
+  /** Slots of tetrahedra that are gone. */
   std::vector<Id> Free;
   std::priority_queue<Task> Tasks;
   /** The points' tetrahedra before the first flip; made when the first one may be peeled off. */
@@ -161,18 +161,18 @@ private:
   std::vector<Id> Incidence;
 };
 
-double Remover::MeasureAngle(const TetrahedronIds& ids) const
+double SliverRemoval::MeasureAngle(const TetrahedronIds& ids) const
 {
   return GetSmallestDihedralAngle(
     this->GetPoint(ids[0]), this->GetPoint(ids[1]), this->GetPoint(ids[2]), this->GetPoint(ids[3]));
 }
 
-double Remover::MeasureSmallestAngle() const
+double SliverRemoval::MeasureSmallestAngle() const
 {
   return this->Angles.empty() ? 0.0 : *std::min_element(this->Angles.begin(), this->Angles.end());
 }
 
-void Remover::Schedule(Id tetrahedron)
+void SliverRemoval::Schedule(Id tetrahedron)
 {
   if (this->Angles[tetrahedron] < this->Target)
   {
@@ -181,7 +181,7 @@ void Remover::Schedule(Id tetrahedron)
 }
 
 /** False if the ring is open or longer than it may be. */
-bool Remover::FindRing(Id tetrahedron, int edge, std::size_t maximumSize, Ring& ring) const
+bool SliverRemoval::FindRing(Id tetrahedron, int edge, std::size_t maximumSize, Ring& ring) const
 {
   const int* order = EdgeVertices[edge];
   const TetrahedronIds& first = this->Mesh.Tetrahedra[tetrahedron];
@@ -214,7 +214,7 @@ bool Remover::FindRing(Id tetrahedron, int edge, std::size_t maximumSize, Ring& 
   return true;
 }
 
-bool Remover::IsInOneRegion(const Ring& ring) const
+bool SliverRemoval::IsInOneRegion(const Ring& ring) const
 {
   return std::all_of(ring.Tetrahedra.begin(), ring.Tetrahedra.end(),
     [&](Id other)
@@ -225,7 +225,7 @@ bool Remover::IsInOneRegion(const Ring& ring) const
  * Whether the tetrahedron is flat and has exactly two facets on the border of its region, both to
  * the same one. These meet in the outer edge, the other two facets in the inner edge.
  */
-bool Remover::FindPeeledEdges(
+bool SliverRemoval::FindPeeledEdges(
   Id tetrahedron, int& outerEdge, int& innerEdge, Id& neighborRegion) const
 {
   std::array<int, 4> facets;
@@ -267,7 +267,7 @@ bool Remover::FindPeeledEdges(
     angles[outerEdge] >= 180.0 - LargestPeelBend;
 }
 
-bool Remover::IsOnlyTetrahedronAtEdge(Id tetrahedron, int edge)
+bool SliverRemoval::IsOnlyTetrahedronAtEdge(Id tetrahedron, int edge)
 {
   if (this->IncidenceBegin.empty())
   {
@@ -320,7 +320,7 @@ bool Remover::IsOnlyTetrahedronAtEdge(Id tetrahedron, int edge)
  * border would touch itself there; its outer edge must not be another tetrahedron's, or a gap would
  * open there.
  */
-bool Remover::PeelOff(Id tetrahedron)
+bool SliverRemoval::PeelOff(Id tetrahedron)
 {
   int outerEdge = 0;
   int innerEdge = 0;
@@ -348,7 +348,7 @@ bool Remover::PeelOff(Id tetrahedron)
 }
 
 /** Give a flat tetrahedron at an interface to the other region if it can vanish there. */
-bool Remover::HandOver(Id tetrahedron)
+bool SliverRemoval::HandOver(Id tetrahedron)
 {
   int outerEdge = 0;
   int innerEdge = 0;
@@ -375,7 +375,7 @@ bool Remover::HandOver(Id tetrahedron)
 }
 
 /** Whether the new tetrahedron has the circumsphere of one of the old ones. */
-bool Remover::IsDelaunay(const TetrahedronIds& ids, const std::vector<Id>& old) const
+bool SliverRemoval::IsDelaunay(const TetrahedronIds& ids, const std::vector<Id>& old) const
 {
   return std::any_of(old.begin(), old.end(),
     [&](Id other)
@@ -391,7 +391,7 @@ bool Remover::IsDelaunay(const TetrahedronIds& ids, const std::vector<Id>& old) 
     });
 }
 
-AngleKey Remover::GetSmallestKey(const std::vector<Id>& tetrahedra) const
+AngleKey SliverRemoval::GetSmallestKey(const std::vector<Id>& tetrahedra) const
 {
   double smallest = 180.0;
   for (const Id tetrahedron : tetrahedra)
@@ -406,7 +406,7 @@ AngleKey Remover::GetSmallestKey(const std::vector<Id>& tetrahedra) const
  * tetrahedron must not be made. The angle comes first: it spares most of the exact tests, which are
  * slow where all points are cospherical.
  */
-AngleKey Remover::Rate(
+AngleKey SliverRemoval::Rate(
   const TetrahedronIds& ids, const std::vector<Id>& old, AngleKey required) const
 {
   const AngleKey key = GetKey(this->MeasureAngle(ids));
@@ -418,7 +418,7 @@ AngleKey Remover::Rate(
 }
 
 /** Make the flip the best one if it improves on the old tetrahedra, and on the best one so far. */
-void Remover::Keep(Flip& flip, Flip& best) const
+void SliverRemoval::Keep(Flip& flip, Flip& best) const
 {
   std::vector<AngleKey> oldKeys;
   for (const Id tetrahedron : flip.Old)
@@ -438,7 +438,7 @@ void Remover::Keep(Flip& flip, Flip& best) const
 }
 
 /** The 2-3 flip at a facet. */
-void Remover::TryFacet(Id tetrahedron, int facet, Flip& best) const
+void SliverRemoval::TryFacet(Id tetrahedron, int facet, Flip& best) const
 {
   const Id neighbor = this->Mesh.Neighbors[tetrahedron][facet];
   if (neighbor == NoId || this->Mesh.Regions[neighbor / 4] != this->Mesh.Regions[tetrahedron])
@@ -463,7 +463,7 @@ void Remover::TryFacet(Id tetrahedron, int facet, Flip& best) const
 }
 
 /** Remove an edge: triangulate its ring and connect each triangle with both ends of the edge. */
-void Remover::TryEdge(Id tetrahedron, int edge, Flip& best) const
+void SliverRemoval::TryEdge(Id tetrahedron, int edge, Flip& best) const
 {
   Ring ring;
   if (!this->FindRing(tetrahedron, edge, MaximumRingSize, ring) || !this->IsInOneRegion(ring))
@@ -539,7 +539,7 @@ void Remover::TryEdge(Id tetrahedron, int edge, Flip& best) const
   this->Keep(flip, best);
 }
 
-bool Remover::Improve(Id tetrahedron)
+bool SliverRemoval::Improve(Id tetrahedron)
 {
   Flip best;
   for (int facet = 0; facet < 4; ++facet)
@@ -558,7 +558,7 @@ bool Remover::Improve(Id tetrahedron)
   return true;
 }
 
-void Remover::Kill(Id tetrahedron)
+void SliverRemoval::Kill(Id tetrahedron)
 {
   this->Mesh.Tetrahedra[tetrahedron] = { NoId, NoId, NoId, NoId };
   this->Angles[tetrahedron] = 180.0;
@@ -566,7 +566,7 @@ void Remover::Kill(Id tetrahedron)
   this->Free.push_back(tetrahedron);
 }
 
-void Remover::Apply(const Flip& flip)
+void SliverRemoval::Apply(const Flip& flip)
 {
   // The facets around the old tetrahedra, with what lies behind them.
   struct OpenFacet
@@ -655,7 +655,7 @@ void Remover::Apply(const Flip& flip)
 }
 
 /** Close the gaps that dead tetrahedra leave, without changing the order of the others. */
-void Remover::Compact()
+void SliverRemoval::Compact()
 {
   std::size_t count = 0;
   for (std::size_t t = 0; t < this->Angles.size(); ++t)
@@ -670,7 +670,7 @@ void Remover::Compact()
 }
 
 /** All tetrahedra at a point; false if it lies on a border. */
-bool Remover::FindStar(Id point, Id first, std::vector<Id>& star) const
+bool SliverRemoval::FindStar(Id point, Id first, std::vector<Id>& star) const
 {
   star.assign(1, first);
   for (std::size_t i = 0; i < star.size(); ++i)
@@ -696,7 +696,7 @@ bool Remover::FindStar(Id point, Id first, std::vector<Id>& star) const
 }
 
 /** Move a free point within the tetrahedra around it, which stay. */
-bool Remover::Smooth(Id tetrahedron)
+bool SliverRemoval::Smooth(Id tetrahedron)
 {
   std::vector<Id> star;
   for (const Id point : this->Mesh.Tetrahedra[tetrahedron])
@@ -771,7 +771,7 @@ bool Remover::Smooth(Id tetrahedron)
   return false;
 }
 
-bool Remover::HasMovableSlivers() const
+bool SliverRemoval::HasMovableSlivers() const
 {
   for (std::size_t t = 0; t < this->Angles.size(); ++t)
   {
@@ -787,7 +787,7 @@ bool Remover::HasMovableSlivers() const
 }
 
 /** Peel, flip and, if it need not stay Delaunay, smooth. False if aborted. */
-bool Remover::PeelAndFlip(const ExecutionContext& context)
+bool SliverRemoval::PeelAndFlip(const ExecutionContext& context)
 {
   const Id count = static_cast<Id>(this->Mesh.Tetrahedra.size());
   // Peel first: the tetrahedra around each point, which it asks for, change with the first flip.
@@ -831,7 +831,7 @@ bool Remover::PeelAndFlip(const ExecutionContext& context)
   return !isAborted;
 }
 
-void Remover::MeasureAngles(int numberOfThreads)
+void SliverRemoval::MeasureAngles(int numberOfThreads)
 {
   const std::size_t count = this->Mesh.Tetrahedra.size();
   this->Angles.resize(count);
@@ -845,7 +845,7 @@ void Remover::MeasureAngles(int numberOfThreads)
     });
 }
 
-Status Remover::Run(const ExecutionContext& context)
+Status SliverRemoval::Run(const ExecutionContext& context)
 {
   this->MeasureAngles(context.GetNumberOfThreads());
   this->Stamps.assign(this->Mesh.Tetrahedra.size(), 0);
@@ -880,7 +880,7 @@ Status RemoveSlivers(TetMesh& mesh, const SliverRemoverOptions& options,
         return Status::InvalidInput(
           "Which points are free has to be said for each point, or for none.");
       }
-      return status.IsOk() ? Remover(mesh, options, report).Run(context) : status;
+      return status.IsOk() ? SliverRemoval(mesh, options, report).Run(context) : status;
     });
 }
 } // namespace cdm
