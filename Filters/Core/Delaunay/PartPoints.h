@@ -4,9 +4,9 @@
  * @brief The points that one part of a distributed tetrahedralization knows: its own ones, and a
  * halo of those of other parts.
  *
- * Method: small blocks of own points have boxes; enlarged by their size, they are asked of the parts
- * whose points they may hold, and answered with these points unless they are very many. Where all
- * points of a box are known, no part has to be asked about it again.
+ * Method: small blocks of own points have boxes; enlarged by their size, they are asked of the
+ * parts whose points they may hold, and answered with these points unless they are very many. Where
+ * all points of a box are known, no part has to be asked about it again.
  */
 #ifndef cdmPartPoints_h
 #define cdmPartPoints_h

@@ -22,12 +22,13 @@
  *  - 2 (SliverPerturbation.h) only moves points once no more may be made. 1, 3 and 4 are left out
  *    then: what they change asks for new points;
  *  - 3 (SurfacePointMoves.h) pauses once when four tries in a row have left as many slivers;
- *  - 4 waits for the splits that bad shapes request, if these can be made: they remove slivers, too;
+ *  - 4 waits for the splits that bad shapes request, if these can be made: they remove slivers too;
  *  - 5 ends the round if it leaves new points or requests that can be made;
- *  - 6 (NegativeCouplings.h) is given up after four tries in a row that left as many couplings. Each
- *    try lets 1 to 5 begin anew, as splits make new slivers. It comes before 7, which takes long;
- *  - 1 to 5 are left out after forty rounds in a row that moved or split the boundary for slivers in
- *    vain. They and 7 are left out if no dihedral angle is asked for.
+ *  - 6 (NegativeCouplings.h) is given up after four tries in a row that left as many couplings.
+ *    Each try lets 1 to 5 begin anew, as splits make new slivers. It comes before 7, which takes
+ *    long;
+ *  - 1 to 5 are left out after forty rounds in a row that moved or split the boundary for slivers
+ *    in vain. They and 7 are left out if no dihedral angle is asked for.
  */
 #ifndef cdmSliverSchedule_h
 #define cdmSliverSchedule_h

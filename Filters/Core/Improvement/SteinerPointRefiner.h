@@ -25,7 +25,7 @@
  * | sizes    | refine inside for sizes       | splits are requested: next, sizes; otherwise     |
  * |          |                               | measure the sizes of points, shapes              |
  * | shapes   | refine inside for sizes and   | boundary final: finish; few requests, or none    |
- * |          | shapes, note the state        | that can be made: slivers; otherwise next, shapes |
+ * |          | shapes, note the state        | that can be made: slivers; else next, shapes     |
  * | slivers  | SliverSchedule::Run()         | Open, Requested, Moved: next, shapes; Done: end  |
  * | next     | split the boundary, in the    | weak triangles: restore; otherwise the state     |
  * |          | mesh or in a new one          | named above                                      |
@@ -33,8 +33,9 @@
  * |          | boundary is final             |                                                  |
  * | finish   | SliverSchedule::Finish()      | end                                              |
  *
- * Sizes and shapes are also left when as many points have been made as allowed, or when a round has
- * split nothing. No input came near a thousand rounds, after which no other one is started.
+ * Sizes are also left when as many points have been made as allowed, or when a round has split
+ * nothing; shapes then go to slivers. No round is started after a thousand, which no input came
+ * near.
  *
  * Guarantees: the mesh is Delaunay by the pulling rule and conforms to the same surface; facets on
  * it fulfil criterion 3.1 at least. (Where the surface refiner does not end with that criterion, no
