@@ -68,9 +68,9 @@ public:
   void InsertPoints(int tries)
   {
     BoundarySpheres spheres(this->Surface, this->Edges);
-    BoundarySpheres::Disturbed disturbed;
+    BoundarySpheres::Encroached encroached;
     std::uniform_real_distribution<double> uniform(0.1, 1.0);
-    DynamicTetrahedralization::Hole hole;
+    DynamicTetrahedralization::PointCavity cavity;
     for (int i = 0; i < tries; ++i)
     {
       const Id t = this->Draw(this->Mesh->GetNumberOfTetrahedra());
@@ -87,11 +87,11 @@ public:
         sum += weight;
       }
       position = (1.0 / sum) * position;
-      spheres.Find(position, disturbed);
-      if (disturbed.IsEmpty() &&
-        this->Mesh->FindHole(position, this->Mesh->GetNumberOfPoints(), t, hole))
+      spheres.Find(position, encroached);
+      if (encroached.IsEmpty() &&
+        this->Mesh->FindCavity(position, this->Mesh->GetNumberOfPoints(), t, cavity))
       {
-        this->Mesh->Insert(position, hole);
+        this->Mesh->Insert(position, cavity);
       }
     }
   }

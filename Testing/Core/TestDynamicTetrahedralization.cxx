@@ -146,16 +146,16 @@ void ExpectMeshOfStage3(const DynamicTetrahedralization& dynamic, const Triangle
 }
 
 /** Whether the point can be inserted: found from any tetrahedron in conflict. */
-bool FindHole(DynamicTetrahedralization& mesh, BoundarySpheres& spheres, const Vec3& position,
-  Id number, DynamicTetrahedralization::Hole& hole)
+bool FindCavity(DynamicTetrahedralization& mesh, BoundarySpheres& spheres, const Vec3& position,
+  Id number, DynamicTetrahedralization::PointCavity& cavity)
 {
-  BoundarySpheres::Disturbed disturbed;
-  spheres.Find(position, disturbed);
-  for (Id t = 0; t < mesh.GetNumberOfTetrahedra() && disturbed.IsEmpty(); ++t)
+  BoundarySpheres::Encroached encroached;
+  spheres.Find(position, encroached);
+  for (Id t = 0; t < mesh.GetNumberOfTetrahedra() && encroached.IsEmpty(); ++t)
   {
     if (!mesh.IsDead(t) && mesh.Locate(position, t) == t)
     {
-      return mesh.FindHole(position, number, t, hole);
+      return mesh.FindCavity(position, number, t, cavity);
     }
   }
   return false;
@@ -187,7 +187,7 @@ void Exercise(const DelaunaySurfaceRefinerOutput& refined, int steps, std::mt199
   const TriangleMesh& surface = refined.Surface;
   DynamicTetrahedralization mesh(Tetrahedralize(surface, {}));
   BoundarySpheres spheres(surface, refined.StructuralEdges);
-  DynamicTetrahedralization::Hole hole;
+  DynamicTetrahedralization::PointCavity cavity;
   std::vector<Id> inside;
   int changes[3] = { 0, 0, 0 };
   for (int step = 0; step < steps; ++step)
@@ -197,9 +197,9 @@ void Exercise(const DelaunaySurfaceRefinerOutput& refined, int steps, std::mt199
     const int action = inside.size() < 5 ? 0 : static_cast<int>(generator() % 4);
     if (action < 2)
     {
-      if (FindHole(mesh, spheres, position, mesh.GetNumberOfPoints(), hole))
+      if (FindCavity(mesh, spheres, position, mesh.GetNumberOfPoints(), cavity))
       {
-        inside.push_back(mesh.Insert(position, hole));
+        inside.push_back(mesh.Insert(position, cavity));
         ++changes[0];
       }
     }
@@ -220,9 +220,9 @@ void Exercise(const DelaunaySurfaceRefinerOutput& refined, int steps, std::mt199
       ASSERT_TRUE(mesh.Remove(point));
       if (action == 3)
       {
-        const bool isMoved = FindHole(mesh, spheres, position, point, hole);
-        ASSERT_TRUE(isMoved || FindHole(mesh, spheres, old, point, hole));
-        mesh.Restore(point, isMoved ? position : old, hole);
+        const bool isMoved = FindCavity(mesh, spheres, position, point, cavity);
+        ASSERT_TRUE(isMoved || FindCavity(mesh, spheres, old, point, cavity));
+        mesh.Restore(point, isMoved ? position : old, cavity);
         ++changes[2];
       }
       else
@@ -289,13 +289,13 @@ TEST(DynamicTetrahedralization, TakesNothingOnOrBeyondABoundary)
   {
     EXPECT_FALSE(mesh.Remove(p));
   }
-  DynamicTetrahedralization::Hole hole;
+  DynamicTetrahedralization::PointCavity cavity;
   for (const Vec3& position :
     { Vec3{ 0.3, 0.4, 0.0 }, Vec3{ 0.3, 0.4, -0.1 }, Vec3{ 0.5, 0.5, 0.0 }, Vec3{ 2.0, 2.0, 2.0 } })
   {
     for (Id t = 0; t < tetrahedra; ++t)
     {
-      EXPECT_FALSE(mesh.FindHole(position, points, t, hole));
+      EXPECT_FALSE(mesh.FindCavity(position, points, t, cavity));
       const Id found = mesh.Locate(position, t);
       EXPECT_EQ(found == NoId, position.Z < 0.0 || position.Z > 1.0);
     }
@@ -303,11 +303,11 @@ TEST(DynamicTetrahedralization, TakesNothingOnOrBeyondABoundary)
   // The center is a point of the grid that is not in the mesh.
   const Id first = mesh.Locate({ 0.5, 0.5, 0.5 }, 0);
   ASSERT_NE(first, NoId);
-  ASSERT_TRUE(mesh.FindHole({ 0.5, 0.5, 0.5 }, points, first, hole));
-  const Id center = mesh.Insert({ 0.5, 0.5, 0.5 }, hole);
+  ASSERT_TRUE(mesh.FindCavity({ 0.5, 0.5, 0.5 }, points, first, cavity));
+  const Id center = mesh.Insert({ 0.5, 0.5, 0.5 }, cavity);
   std::vector<Id> star;
   EXPECT_TRUE(mesh.FindStar(center, star));
-  EXPECT_EQ(star.size(), hole.Facets.size());
+  EXPECT_EQ(star.size(), cavity.Facets.size());
   ExpectMeshOfStage3(mesh, refined.Surface);
   EXPECT_TRUE(mesh.Remove(center));
   ExpectMeshOfStage3(mesh, refined.Surface);

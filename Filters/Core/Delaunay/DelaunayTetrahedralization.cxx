@@ -158,7 +158,7 @@ bool Builder::HandOver(Worker& from, std::size_t next, Worker& to)
   from.Space.Last = keptStart;
   to.Space.Own = given;
   to.Space.Last = givenStart;
-  FreePlaces& free = from.Space.Free;
+  FreeSlots& free = from.Space.Free;
   free.MoveTo(to.Space.Free, to.Space.Free.GetSize() + free.GetSize() / 2);
   ++this->NumberOfBusy;
   return true;
@@ -210,7 +210,7 @@ Status Builder::InsertRound(std::vector<Id> left, int numberOfThreads)
     const std::size_t count = static_cast<std::size_t>(numberOfThreads);
     const Id part = this->Infinite / numberOfThreads + 1;
     const Id shift = cut == 0 ? 0 : part / 2;
-    FreePlaces spare;
+    FreeSlots spare;
     this->Workers[0].Space.Free.MoveTo(spare, std::numeric_limits<std::size_t>::max());
     Id last = this->Workers[0].Space.Last;
     // Along the curve, from where the first part begins.

@@ -112,22 +112,23 @@ bool DynamicTetrahedralization::IsInConflict(Id tetrahedron, const Vec3& positio
   return side != 0 ? side > 0 : GetPulledPosition(vertices, ids, position, number, Orientation) > 0;
 }
 
-bool DynamicTetrahedralization::FindHole(const Vec3& position, Id number, Id first, Hole& hole)
+bool DynamicTetrahedralization::FindCavity(
+  const Vec3& position, Id number, Id first, PointCavity& cavity)
 {
-  hole.Tetrahedra.clear();
-  hole.Facets.clear();
-  hole.Outer.clear();
+  cavity.Tetrahedra.clear();
+  cavity.Facets.clear();
+  cavity.Outer.clear();
   if (!this->IsInConflict(first, position, number))
   {
     return false;
   }
   const std::uint32_t stays = this->StartSearch();
   const std::uint32_t removed = stays + 1;
-  hole.Tetrahedra.push_back(first);
+  cavity.Tetrahedra.push_back(first);
   this->Marks[first] = removed;
-  for (std::size_t k = 0; k < hole.Tetrahedra.size(); ++k)
+  for (std::size_t k = 0; k < cavity.Tetrahedra.size(); ++k)
   {
-    const Id t = hole.Tetrahedra[k];
+    const Id t = cavity.Tetrahedra[k];
     for (int i = 0; i < 4; ++i)
     {
       const Id outer = this->Mesh.Neighbors[t][i];
@@ -147,19 +148,19 @@ bool DynamicTetrahedralization::FindHole(const Vec3& position, Id number, Id fir
         }
         if (isNew && !isBorder)
         {
-          hole.Tetrahedra.push_back(outer / 4);
+          cavity.Tetrahedra.push_back(outer / 4);
         }
       }
       if (isBorder)
       {
         const TriangleIds facet = GetFacet(this->Mesh.Tetrahedra[t], i);
-        hole.Facets.push_back({ facet[0], facet[2], facet[1] });
-        hole.Outer.push_back(outer);
+        cavity.Facets.push_back({ facet[0], facet[2], facet[1] });
+        cavity.Outer.push_back(outer);
       }
     }
   }
   // Facets inside of a region are in front of the point by themselves.
-  for (const TriangleIds& facet : hole.Facets)
+  for (const TriangleIds& facet : cavity.Facets)
   {
     if (Orientation(this->Mesh.Points[facet[0]], this->Mesh.Points[facet[1]],
           this->Mesh.Points[facet[2]], position) <= 0)
@@ -205,21 +206,21 @@ void DynamicTetrahedralization::Kill(Id tetrahedron)
   this->Free.push_back(tetrahedron);
 }
 
-void DynamicTetrahedralization::Fill(Id point, const Hole& hole)
+void DynamicTetrahedralization::Fill(Id point, const PointCavity& cavity)
 {
-  const Id region = this->Mesh.Regions[hole.Tetrahedra.front()];
-  for (auto t = hole.Tetrahedra.rbegin(); t != hole.Tetrahedra.rend(); ++t)
+  const Id region = this->Mesh.Regions[cavity.Tetrahedra.front()];
+  for (auto t = cavity.Tetrahedra.rbegin(); t != cavity.Tetrahedra.rend(); ++t)
   {
     this->Kill(*t);
   }
   this->Changed.clear();
   // New tetrahedra meet in the facets through the point and an edge of the cavity.
   this->Facets.clear();
-  for (std::size_t i = 0; i < hole.Facets.size(); ++i)
+  for (std::size_t i = 0; i < cavity.Facets.size(); ++i)
   {
-    const TriangleIds& facet = hole.Facets[i];
+    const TriangleIds& facet = cavity.Facets[i];
     const Id t = this->Make({ facet[0], facet[1], facet[2], point }, region);
-    const Id outer = hole.Outer[i];
+    const Id outer = cavity.Outer[i];
     this->Mesh.Neighbors[t][3] = outer;
     if (outer != NoId)
     {
@@ -241,19 +242,19 @@ void DynamicTetrahedralization::Fill(Id point, const Hole& hole)
   }
 }
 
-Id DynamicTetrahedralization::Insert(const Vec3& position, const Hole& hole)
+Id DynamicTetrahedralization::Insert(const Vec3& position, const PointCavity& cavity)
 {
   const Id point = this->GetNumberOfPoints();
   this->Mesh.Points.push_back(position);
   this->PointTetrahedra.push_back(NoId);
-  this->Fill(point, hole);
+  this->Fill(point, cavity);
   return point;
 }
 
-void DynamicTetrahedralization::Restore(Id point, const Vec3& position, const Hole& hole)
+void DynamicTetrahedralization::Restore(Id point, const Vec3& position, const PointCavity& cavity)
 {
   this->Mesh.Points[point] = position;
-  this->Fill(point, hole);
+  this->Fill(point, cavity);
 }
 
 bool DynamicTetrahedralization::Remove(Id point)

@@ -6,7 +6,7 @@
  * Method:
  *  - insertion: the tetrahedra whose circumsphere holds the point are replaced by the cone from the
  *    point over the facets around them (Bowyer 1981, Watson 1981), unless a facet between two
- *    regions would vanish. These tetrahedra are the cavity of the point (class Hole). FindHole()
+ *    regions would vanish. These tetrahedra are the cavity of the point (PointCavity). FindCavity()
  *    finds it before anything is changed, so that the new tetrahedra can be rated first;
  *  - removal: the tetrahedra around the point are replaced by the Delaunay tetrahedra of its
  *    neighbors that lie within the same cavity;
@@ -42,7 +42,7 @@ class DynamicTetrahedralization
 {
 public:
   /** The cavity of a point: what its insertion replaces. */
-  struct Hole
+  struct PointCavity
   {
     std::vector<Id> Tetrahedra;
     /** Facets around the cavity; the point lies in front of each. */
@@ -92,12 +92,12 @@ public:
    * circumsphere holds the point. False if the point cannot be inserted: it is not in conflict with
    * the first tetrahedron, a boundary facet would vanish, or the point lies on or beyond one.
    */
-  bool FindHole(const Vec3& position, Id number, Id first, Hole& hole);
+  bool FindCavity(const Vec3& position, Id number, Id first, PointCavity& cavity);
 
   /** Appends a point and returns its id. The cavity must be that of this point and number. */
-  Id Insert(const Vec3& position, const Hole& hole);
+  Id Insert(const Vec3& position, const PointCavity& cavity);
   /** Inserts a removed point again, at another position. */
-  void Restore(Id point, const Vec3& position, const Hole& hole);
+  void Restore(Id point, const Vec3& position, const PointCavity& cavity);
   /**
    * Removes a point; its id stays reserved. False, and nothing is changed, if the point lies on a
    * boundary, or if cospherical neighbors are not split by the pulling rule.
@@ -129,7 +129,7 @@ private:
   bool IsInConflict(Id tetrahedron, const Vec3& position, Id number) const;
   Id Make(const TetrahedronIds& ids, Id region);
   void Kill(Id tetrahedron);
-  void Fill(Id point, const Hole& hole);
+  void Fill(Id point, const PointCavity& cavity);
   /** Stamp of a new search; marks of older ones do not count. */
   std::uint32_t StartSearch();
 

@@ -174,7 +174,7 @@ bool VertexInsertion::Walk(Id vertex, const Workspace& space, Id& tetrahedron) c
 }
 
 template <bool IsShared>
-bool VertexInsertion::FindHole(Id vertex, Id first, Workspace& space)
+bool VertexInsertion::FindCavity(Id vertex, Id first, Workspace& space)
 {
   // Without branches: it is unpredictable whether a neighbor belongs to the cavity, and a wrong
   // prediction costs more than testing some neighbors twice. Each finding is written, and counted
@@ -203,7 +203,7 @@ bool VertexInsertion::FindHole(Id vertex, Id first, Workspace& space)
       space.Facets.resize(2 * facets);
     }
     Id* const cavity = space.Cavity.data();
-    HoleFacet* const holeFacets = space.Facets.data();
+    CavityFacet* const cavityFacets = space.Facets.data();
     const TetrahedronIds& ids = tetrahedra[cavity[k] / 4];
     const TetrahedronIds& neighbors = allNeighbors[cavity[k] / 4];
     // Skip the neighbor from which the tetrahedron was found.
@@ -241,7 +241,7 @@ bool VertexInsertion::FindHole(Id vertex, Id first, Workspace& space)
       cavity[removed] = neighbors[i];
       removed += isRemoved & ~mark;
       const int* const facet = FacetVertices[i];
-      holeFacets[facets] = { ids[facet[0]], ids[facet[2]], ids[facet[1]], neighbors[i] };
+      cavityFacets[facets] = { ids[facet[0]], ids[facet[2]], ids[facet[1]], neighbors[i] };
       facets += isRemoved ^ 1;
     }
   }
@@ -250,7 +250,7 @@ bool VertexInsertion::FindHole(Id vertex, Id first, Workspace& space)
   return isWithin;
 }
 
-inline void VertexInsertion::ForgetHole(Workspace& space)
+inline void VertexInsertion::ForgetCavity(Workspace& space)
 {
   for (std::size_t k = 0; k < space.NumberOfRemoved; ++k)
   {
@@ -263,7 +263,7 @@ inline void VertexInsertion::ForgetHole(Workspace& space)
 }
 
 template <bool IsShared>
-bool VertexInsertion::FillHole(Id vertex, Workspace& space)
+bool VertexInsertion::FillCavity(Id vertex, Workspace& space)
 {
   RawVector<TetrahedronIds>& tetrahedra = this->Output.Tetrahedra;
   RawVector<TetrahedronIds>& neighbors = this->Output.Neighbors;
@@ -300,19 +300,19 @@ bool VertexInsertion::FillHole(Id vertex, Workspace& space)
   {
     space.Vertices.resize(count + 3);
   }
-  const auto getPlace = [&](Id v)
+  const auto getIndex = [&](Id v)
   {
     if (v == this->Infinite)
     {
       isOnHull = true;
       return static_cast<Id>(count / 2 + 2);
     }
-    const Id place = this->Places[v];
-    if (place < vertexCount && space.Vertices[place].Vertex == v)
+    const Id index = this->Indices[v];
+    if (index < vertexCount && space.Vertices[index].Vertex == v)
     {
-      return place;
+      return index;
     }
-    this->Places[v] = vertexCount;
+    this->Indices[v] = vertexCount;
     const Vec3 d = this->Points[v] - origin;
     size = std::max(size, GetLargest(std::abs(d.X), std::abs(d.Y), std::abs(d.Z)));
     space.Vertices[vertexCount] = { v, d, SquaredNorm(d) };
@@ -320,7 +320,7 @@ bool VertexInsertion::FillHole(Id vertex, Workspace& space)
   };
   for (std::size_t k = 0; k < count; ++k)
   {
-    HoleFacet& facet = space.Facets[k];
+    CavityFacet& facet = space.Facets[k];
     const Id t = space.Cavity[k] / 4;
     tetrahedra[t] = { facet.A, facet.B, facet.C, vertex };
     neighbors[t][3] = facet.Outer;
@@ -328,11 +328,11 @@ bool VertexInsertion::FillHole(Id vertex, Workspace& space)
     neighbors[outer][facet.Outer % 4] = 4 * t + 3;
     this->ForgetMark(outer);
     this->Marks[t] = Unknown;
-    facet = { getPlace(facet.A), getPlace(facet.B), getPlace(facet.C), t };
+    facet = { getIndex(facet.A), getIndex(facet.B), getIndex(facet.C), t };
   }
   for (std::size_t k = 0; k < count; ++k)
   {
-    const HoleFacet& facet = space.Facets[k];
+    const CavityFacet& facet = space.Facets[k];
     const Id infinite = static_cast<Id>(count / 2 + 2);
     this->Spheres[facet.Outer] =
       isOnHull && (facet.A == infinite || facet.B == infinite || facet.C == infinite)
@@ -383,7 +383,7 @@ inline void VertexInsertion::ConnectByTable(Workspace& space)
   Id* const table = space.Table.data();
   for (std::size_t k = 0; k < count; ++k)
   {
-    const HoleFacet& facet = space.Facets[k];
+    const CavityFacet& facet = space.Facets[k];
     const Id t = facet.Outer;
     table[facet.B * width + facet.C] = 4 * t;
     table[facet.C * width + facet.A] = 4 * t + 1;
@@ -391,7 +391,7 @@ inline void VertexInsertion::ConnectByTable(Workspace& space)
   }
   for (std::size_t k = 0; k < count; ++k)
   {
-    const HoleFacet& facet = space.Facets[k];
+    const CavityFacet& facet = space.Facets[k];
     TetrahedronIds& neighbors = this->Output.Neighbors[facet.Outer];
     neighbors[0] = table[facet.C * width + facet.B];
     neighbors[1] = table[facet.A * width + facet.C];
@@ -405,7 +405,7 @@ inline void VertexInsertion::ConnectBySorting(Workspace& space)
   edges.reserve(3 * space.NumberOfFacets);
   for (std::size_t k = 0; k < space.NumberOfFacets; ++k)
   {
-    const HoleFacet& facet = space.Facets[k];
+    const CavityFacet& facet = space.Facets[k];
     const Id ends[4] = { facet.B, facet.C, facet.A, facet.B };
     for (int i = 0; i < 3; ++i)
     {
@@ -453,7 +453,7 @@ void VertexInsertion::Reserve()
 void VertexInsertion::Prepare()
 {
   this->SetUnit();
-  this->Places.assign(static_cast<std::size_t>(this->Infinite) + 1, 0);
+  this->Indices.assign(static_cast<std::size_t>(this->Infinite) + 1, 0);
 }
 
 Status VertexInsertion::FindFirst(TetrahedronIds& ids) const
@@ -498,7 +498,7 @@ Status VertexInsertion::Start(TetrahedronIds& ids)
   this->Reserve();
   this->Prepare();
   // The tetrahedron and, beyond its facet i, number i + 1: the vertex at infinity and the facet.
-  constexpr Id Places[3] = { 1, 3, 2 };
+  constexpr Id Positions[3] = { 1, 3, 2 };
   this->Output.Tetrahedra.push_back(ids);
   this->Output.Neighbors.push_back({ 4, 8, 12, 16 });
   this->Spheres.push_back(NoSphere);
@@ -511,8 +511,9 @@ Status VertexInsertion::Start(TetrahedronIds& ids)
     {
       // Opposite to each of its vertices the facet meets the one that is opposite to that vertex.
       const int* const other = FacetVertices[facet[j]];
-      vertices[Places[j]] = ids[facet[j]];
-      neighbors[Places[j]] = 4 * (facet[j] + 1) + Places[std::find(other, other + 3, i) - other];
+      vertices[Positions[j]] = ids[facet[j]];
+      neighbors[Positions[j]] =
+        4 * (facet[j] + 1) + Positions[std::find(other, other + 3, i) - other];
     }
     this->Output.Tetrahedra.push_back(vertices);
     this->Output.Neighbors.push_back(neighbors);
@@ -546,9 +547,10 @@ bool VertexInsertion::InsertVertex(Id vertex, Workspace& space)
   {
     return false;
   }
-  if (!this->FindHole<IsShared>(vertex, first, space) || !this->FillHole<IsShared>(vertex, space))
+  if (!this->FindCavity<IsShared>(vertex, first, space) ||
+    !this->FillCavity<IsShared>(vertex, space))
   {
-    this->ForgetHole(space);
+    this->ForgetCavity(space);
     return false;
   }
   return true;

@@ -9,10 +9,10 @@
  *     are tested in single precision (RoughSphere.h), then in double precision (Determinants.h),
  *     then exactly; where small differences of all coordinates are exact in double precision, as on
  *     a lattice, that is known beforehand. Points on a sphere are told apart by PulledSphere.h;
- *  3. fill the cavity ("hole" in names of functions) with the cone from the vertex.
+ *  3. fill the cavity with the cone from the vertex.
  *
  * Threads: each touches only tetrahedra with all vertices in its part of the curve (CurvePart.h),
- * so that none waits for another, and takes slots for new ones from its own store (FreePlaces.h).
+ * so that none waits for another, and takes slots for new ones from its own store (FreeSlots.h).
  *
  * Inputs: vertices are distinct, finite points; the vertex at infinity, their number, lies beyond
  * all facets of the hull. Parts of threads that work at the same time are disjoint.
@@ -32,7 +32,7 @@
 #include "Core/Basics/Vec3.h"
 #include "Core/Delaunay/CurvePart.h"
 #include "Core/Delaunay/DelaunayTetrahedralization.h"
-#include "Core/Delaunay/FreePlaces.h"
+#include "Core/Delaunay/FreeSlots.h"
 #include "Core/Delaunay/RoughSphere.h"
 
 #include <cstddef>
@@ -47,7 +47,7 @@ public:
   static constexpr std::size_t MaximumTetrahedra = std::size_t(1) << 29;
 
   /** A facet of the cavity, counter-clockwise seen from within. */
-  struct HoleFacet
+  struct CavityFacet
   {
     Id A;
     Id B;
@@ -60,7 +60,7 @@ public:
   {
     CurvePart Own;
     /** Slots for new tetrahedra. */
-    FreePlaces Free;
+    FreeSlots Free;
     /** Where the next walk starts. */
     Id Last = 0;
     bool HasInserted = false;
@@ -72,7 +72,7 @@ public:
      * cavity. NumberOfRemoved and NumberOfFacets entries are used.
      */
     std::vector<Id> Cavity = std::vector<Id>(64);
-    std::vector<HoleFacet> Facets = std::vector<HoleFacet>(64);
+    std::vector<CavityFacet> Facets = std::vector<CavityFacet>(64);
     std::size_t NumberOfRemoved = 0;
     std::size_t NumberOfFacets = 0;
     std::vector<RelativeVertex> Vertices;
@@ -149,9 +149,9 @@ private:
   template <bool IsShared>
   bool Walk(Id vertex, const Workspace& space, Id& tetrahedron) const;
   template <bool IsShared>
-  bool FindHole(Id vertex, Id first, Workspace& space);
+  bool FindCavity(Id vertex, Id first, Workspace& space);
   template <bool IsShared>
-  bool FillHole(Id vertex, Workspace& space);
+  bool FillCavity(Id vertex, Workspace& space);
   /** Resets the mark of a tetrahedron. Only the thread that owns a tetrahedron marks it. */
   void ForgetMark(Id tetrahedron)
   {
@@ -162,7 +162,7 @@ private:
   }
   // Inline: what a shared library exports is not inlined within it, and these are called all the
   // time.
-  inline void ForgetHole(Workspace& space);
+  inline void ForgetCavity(Workspace& space);
   inline void ConnectByTable(Workspace& space);
   inline void ConnectBySorting(Workspace& space);
   inline void MakeSphere(std::size_t tetrahedron);
@@ -183,7 +183,7 @@ private:
   RawVector<RoughSphere> Spheres;
   RawVector<unsigned char> Marks;
   /** Work space: index of each vertex among those of the cavity. */
-  std::vector<Id> Places;
+  std::vector<Id> Indices;
 };
 } // namespace cdm
 

@@ -59,12 +59,12 @@ void BoundaryRequests::AddTriangle(Id triangle)
   }
 }
 
-void BoundaryRequests::AddDisturbed(
-  const Vec3& position, const BoundarySpheres::Disturbed& disturbed, bool isDistanceKept)
+void BoundaryRequests::AddEncroached(
+  const Vec3& position, const BoundarySpheres::Encroached& encroached, bool isDistanceKept)
 {
   double deepest = std::numeric_limits<double>::infinity();
   Id best = NoId;
-  for (Id e : disturbed.Edges)
+  for (Id e : encroached.Edges)
   {
     if (this->IsEdgeRequested[e])
     {
@@ -85,11 +85,11 @@ void BoundaryRequests::AddDisturbed(
   {
     this->AddEdge(best, isDistanceKept);
   }
-  if (!disturbed.Edges.empty())
+  if (!encroached.Edges.empty())
   {
     return;
   }
-  for (Id t : disturbed.Triangles)
+  for (Id t : encroached.Triangles)
   {
     if (this->IsTriangleRequested[t])
     {

@@ -39,8 +39,8 @@ public:
    * Requests the edge, or if there is none the triangle, on which the position encroaches most.
    * @param isDistanceKept whether the distance rule applies
    */
-  void AddDisturbed(
-    const Vec3& position, const BoundarySpheres::Disturbed& disturbed, bool isDistanceKept);
+  void AddEncroached(
+    const Vec3& position, const BoundarySpheres::Encroached& encroached, bool isDistanceKept);
   /**
    * Two boundary triangles that are nearly coplanar and nearly cocircular share a flat tetrahedron.
    * No interior point destroys it, but a point on their common edge does.

@@ -35,10 +35,10 @@ BoundarySpheres::BoundarySpheres(
   }
 }
 
-void BoundarySpheres::Find(const Vec3& position, Disturbed& disturbed)
+void BoundarySpheres::Find(const Vec3& position, Encroached& encroached)
 {
-  disturbed.Triangles.clear();
-  disturbed.Edges.clear();
+  encroached.Triangles.clear();
+  encroached.Edges.clear();
   this->Balls.Find(position, this->Near);
   const Id count = static_cast<Id>(this->Surface.Triangles.size());
   const std::vector<Vec3>& points = this->Surface.Points;
@@ -49,14 +49,14 @@ void BoundarySpheres::Find(const Vec3& position, Disturbed& disturbed)
       const EdgeIds& ends = this->Edges[id - count].Points;
       if (InDiametralSphere(points[ends[0]], points[ends[1]], position) >= 0)
       {
-        disturbed.Edges.push_back(id - count);
+        encroached.Edges.push_back(id - count);
       }
       continue;
     }
     const TriangleIds& ids = this->Surface.Triangles[id];
     if (InEquatorialSphere(points[ids[0]], points[ids[1]], points[ids[2]], position) >= 0)
     {
-      disturbed.Triangles.push_back(id);
+      encroached.Triangles.push_back(id);
     }
   }
 }

@@ -5,9 +5,9 @@
  *
  * A point encroaches on a triangle or an edge if it lies in its smallest sphere or on it (Crit. 3.1
  * and 3.2). The smallest sphere of an edge is its diametral sphere, that of a triangle its
- * equatorial sphere; a simplex whose smallest sphere is empty has the Gabriel property. Names of
- * functions and the thesis say "disturb" for encroach. If no point encroaches on them, all
- * triangles and edges stay part of the Delaunay mesh.
+ * equatorial sphere; a simplex whose smallest sphere is empty has the Gabriel property. The
+ * thesis says "disturb" for encroach. If no point encroaches on them, all triangles and edges stay
+ * part of the Delaunay mesh.
  *
  * Exact. Cost: O(1) for a point, in cells of BallIndex.h; about 100 bytes per triangle and edge.
  */
@@ -29,14 +29,14 @@ public:
   BoundarySpheres(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges);
 
   /** The triangles and edges on which a point encroaches, by their indices, ascending. */
-  struct Disturbed
+  struct Encroached
   {
     std::vector<Id> Triangles;
     std::vector<Id> Edges;
 
     bool IsEmpty() const { return this->Triangles.empty() && this->Edges.empty(); }
   };
-  void Find(const Vec3& position, Disturbed& disturbed);
+  void Find(const Vec3& position, Encroached& encroached);
 
 private:
   const TriangleMesh& Surface;

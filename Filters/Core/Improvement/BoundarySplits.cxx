@@ -219,7 +219,7 @@ void BoundarySplits::CollectTriangles(const std::vector<Id>& touched)
     const RefinableSurface::Triangle& refined = this->Refinement.GetSurface().GetTriangle(t);
     NewTriangle triangle{ t, this->Translate(refined.Points), refined.Labels,
       this->SourceCells[refined.Source] };
-    if (refined.IsTurned)
+    if (refined.IsReversed)
     {
       std::swap(triangle.Ids[1], triangle.Ids[2]);
       std::swap(triangle.Labels.Front, triangle.Labels.Back);

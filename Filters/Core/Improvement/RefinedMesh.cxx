@@ -189,14 +189,14 @@ TetMesh RefinedMesh::MakeMesh() const
   return mesh;
 }
 
-bool RefinedMesh::RequestDisturbed(const Vec3& position, bool isSizeKept)
+bool RefinedMesh::RequestEncroached(const Vec3& position, bool isSizeKept)
 {
-  this->Shape->Spheres.Find(position, this->Disturbed);
-  if (this->Disturbed.IsEmpty())
+  this->Shape->Spheres.Find(position, this->Encroached);
+  if (this->Encroached.IsEmpty())
   {
     return false;
   }
-  this->Requests.AddDisturbed(position, this->Disturbed, isSizeKept);
+  this->Requests.AddEncroached(position, this->Encroached, isSizeKept);
   return true;
 }
 
@@ -324,27 +324,28 @@ TetrahedronIds RefinedMesh::GetNames(const TetrahedronIds& ids) const
   return names;
 }
 
-bool RefinedMesh::FindHole(const Vec3& position, Id first, Id number)
+bool RefinedMesh::FindCavity(const Vec3& position, Id first, Id number)
 {
-  return this->Mesh.FindHole(
-    position, number == NoId ? this->Mesh.GetNumberOfPoints() : number, first, this->Hole);
+  return this->Mesh.FindCavity(
+    position, number == NoId ? this->Mesh.GetNumberOfPoints() : number, first, this->FoundCavity);
 }
 
 Id RefinedMesh::CountBroken(const Vec3& position) const
 {
   constexpr Id inside = std::numeric_limits<Id>::max();
-  return static_cast<Id>(std::count_if(this->Hole.Facets.begin(), this->Hole.Facets.end(),
-    [&](const TriangleIds& facet)
-    {
-      return this->BreaksLimit({ facet[0], facet[1], facet[2], inside },
-        { this->Mesh.GetPoint(facet[0]), this->Mesh.GetPoint(facet[1]),
-          this->Mesh.GetPoint(facet[2]), position });
-    }));
+  return static_cast<Id>(
+    std::count_if(this->FoundCavity.Facets.begin(), this->FoundCavity.Facets.end(),
+      [&](const TriangleIds& facet)
+      {
+        return this->BreaksLimit({ facet[0], facet[1], facet[2], inside },
+          { this->Mesh.GetPoint(facet[0]), this->Mesh.GetPoint(facet[1]),
+            this->Mesh.GetPoint(facet[2]), position });
+      }));
 }
 
 bool RefinedMesh::IsClear(const Vec3& position) const
 {
-  for (const TriangleIds& facet : this->Hole.Facets)
+  for (const TriangleIds& facet : this->FoundCavity.Facets)
   {
     for (Id id : facet)
     {
@@ -357,18 +358,18 @@ bool RefinedMesh::IsClear(const Vec3& position) const
   return true;
 }
 
-bool RefinedMesh::DisturbsBoundary(const Vec3& position)
+bool RefinedMesh::EncroachesOnBoundary(const Vec3& position)
 {
   // An encroached boundary triangle has its corners at the cavity.
-  const bool isNear = std::any_of(this->Hole.Facets.begin(), this->Hole.Facets.end(),
+  const bool isNear = std::any_of(this->FoundCavity.Facets.begin(), this->FoundCavity.Facets.end(),
     [&](const TriangleIds& facet)
     { return *std::min_element(facet.begin(), facet.end()) < this->FirstInside; });
   if (!isNear)
   {
     return false;
   }
-  this->Shape->Spheres.Find(position, this->Disturbed);
-  return !this->Disturbed.IsEmpty() || this->TouchesOpenFacet();
+  this->Shape->Spheres.Find(position, this->Encroached);
+  return !this->Encroached.IsEmpty() || this->TouchesOpenFacet();
 }
 
 /**
@@ -378,14 +379,14 @@ bool RefinedMesh::DisturbsBoundary(const Vec3& position)
  */
 bool RefinedMesh::TouchesOpenFacet() const
 {
-  for (std::size_t i = 0; i < this->Hole.Facets.size(); ++i)
+  for (std::size_t i = 0; i < this->FoundCavity.Facets.size(); ++i)
   {
-    if (this->Hole.Outer[i] != NoId)
+    if (this->FoundCavity.Outer[i] != NoId)
     {
       continue;
     }
-    if (!IsTriangle(
-          this->Boundary.Surface.Triangles, this->Shape->PointTriangles, this->Hole.Facets[i]))
+    if (!IsTriangle(this->Boundary.Surface.Triangles, this->Shape->PointTriangles,
+          this->FoundCavity.Facets[i]))
     {
       return true;
     }
@@ -396,14 +397,14 @@ bool RefinedMesh::TouchesOpenFacet() const
 void RefinedMesh::Insert(const Vec3& position)
 {
   double size = std::numeric_limits<double>::infinity();
-  for (const TriangleIds& facet : this->Hole.Facets)
+  for (const TriangleIds& facet : this->FoundCavity.Facets)
   {
     for (Id id : facet)
     {
       size = std::min(size, this->Points[id].Size + Distance(position, this->Mesh.GetPoint(id)));
     }
   }
-  this->Mesh.Insert(position, this->Hole);
+  this->Mesh.Insert(position, this->FoundCavity);
   this->Points.push_back({ position, size, true, NoId, this->Memory.MakeName() });
   this->NoteChanges();
   ++this->Report.InsertedPoints;
@@ -411,7 +412,7 @@ void RefinedMesh::Insert(const Vec3& position)
 
 void RefinedMesh::Restore(Id point, const Vec3& position)
 {
-  this->Mesh.Restore(point, position, this->Hole);
+  this->Mesh.Restore(point, position, this->FoundCavity);
   this->Points[point].Position = position;
   this->Points[point].Source = NoId;
   ++this->Report.MovedPoints;

@@ -119,7 +119,7 @@ public:
    * Requests a split of what a point at the position encroaches on most. False if it encroaches on
    * nothing.
    */
-  bool RequestDisturbed(const Vec3& position, bool isSizeKept);
+  bool RequestEncroached(const Vec3& position, bool isSizeKept);
   /**
    * Requests splits of edges with a negative coupling, or of triangles at those within facets.
    * @return number of edges with a negative coupling, whether they may be split or not
@@ -174,17 +174,17 @@ public:
   SliverMemory& GetMemory() { return this->Memory; }
 
   /**
-   * Finds the cavity of a point (DynamicTetrahedralization::FindHole()). The functions below refer
-   * to this cavity.
+   * Finds the cavity of a point, see DynamicTetrahedralization::FindCavity(). The functions below
+   * refer to this cavity.
    * @param number id of the point; NoId: that of the next new point
    */
-  bool FindHole(const Vec3& position, Id first, Id number = NoId);
-  const DynamicTetrahedralization::Hole& GetHole() const { return this->Hole; }
+  bool FindCavity(const Vec3& position, Id first, Id number = NoId);
+  const DynamicTetrahedralization::PointCavity& GetCavity() const { return this->FoundCavity; }
   /** Number of tetrahedra that would break a limit if the cavity were filled from the position. */
   Id CountBroken(const Vec3& position) const;
   /** Whether the position keeps the distances that its neighbors' sizes ask for. */
   bool IsClear(const Vec3& position) const;
-  bool DisturbsBoundary(const Vec3& position);
+  bool EncroachesOnBoundary(const Vec3& position);
   void Insert(const Vec3& position);
   /** Inserts a free point again, which was removed, at another position. */
   void Restore(Id point, const Vec3& position);
@@ -214,9 +214,9 @@ private:
   mutable TetrahedronFacts Facts;
   /** Whether some facts are about surface points that have been moved in the mesh only. */
   bool AreFactsPreliminary = false;
-  DynamicTetrahedralization::Hole Hole;
+  DynamicTetrahedralization::PointCavity FoundCavity;
   /** Work space. */
-  BoundarySpheres::Disturbed Disturbed;
+  BoundarySpheres::Encroached Encroached;
 };
 } // namespace cdm
 

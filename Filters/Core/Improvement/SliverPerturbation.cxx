@@ -2,11 +2,10 @@
 #include "Core/Improvement/SliverPerturbation.h"
 
 #include "Core/Geometry/Measures.h"
-#include "Core/Improvement/SurfacePointMoves.h"
+#include "Core/Improvement/SliverList.h"
 #include "Core/Search/PlaceSearch.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
 
 namespace cdm
@@ -14,12 +13,8 @@ namespace cdm
 namespace
 {
 constexpr std::size_t ReportInterval = 16;
-/** Points are moved where angles are below this multiple of the target: it leaves some room. */
-constexpr double MoveRatio = 1.1;
 /** First step of the search for a new point's position, in radii of the sphere that it destroys. */
 constexpr double FirstInsertion = 0.3;
-/** Passes over the slivers that are left. */
-constexpr int MaximumPasses = 20;
 
 /** Which tetrahedra the changes are to improve, and by which means. */
 struct Aim
@@ -30,43 +25,6 @@ struct Aim
   bool IsSharp = false;
   SliverMeans Means = SliverMeans::Moves;
 };
-
-struct Sliver
-{
-  double Angle;
-  Id Tetrahedron;
-  std::int64_t Stamp;
-};
-
-bool IsSliver(const Aim& aim, Id tetrahedron, const RefinedMesh& mesh)
-{
-  return !mesh.GetTetrahedra().IsDead(tetrahedron) && mesh.GetAngle(tetrahedron) < aim.Target &&
-    mesh.IsAcrossSharp(tetrahedron) == aim.IsSharp && !mesh.IsInLayer(tetrahedron);
-}
-
-/** Worst first. */
-std::vector<Sliver> FindSlivers(const Aim& aim, const RefinedMesh& mesh)
-{
-  const DynamicTetrahedralization& tetrahedra = mesh.GetTetrahedra();
-  std::vector<Sliver> slivers;
-  for (Id t = 0; t < tetrahedra.GetNumberOfTetrahedra(); ++t)
-  {
-    if (IsSliver(aim, t, mesh))
-    {
-      slivers.push_back({ mesh.GetAngle(t), t, tetrahedra.GetStamp(t) });
-    }
-  }
-  std::sort(slivers.begin(), slivers.end(),
-    [](const Sliver& a, const Sliver& b)
-    { return a.Angle != b.Angle ? a.Angle < b.Angle : a.Tetrahedron < b.Tetrahedron; });
-  return slivers;
-}
-
-/** Whether it has been changed since it was found. */
-bool IsGone(const Sliver& sliver, const RefinedMesh& mesh)
-{
-  return mesh.GetTetrahedra().GetStamp(sliver.Tetrahedron) != sliver.Stamp;
-}
 
 /** Changes points inside, one sliver after the other. */
 class Perturbation
@@ -90,7 +48,7 @@ private:
   };
   void Include(Id tetrahedron, SmallestAngles& smallest) const;
   double GetFloor(const SmallestAngles& before) const;
-  double RateHole(const Vec3& position, double floor, double required) const;
+  double RateCavity(const Vec3& position, double floor, double required) const;
   bool Move(Id point);
   bool InsertBest(Id tetrahedron);
 
@@ -120,12 +78,12 @@ double Perturbation::GetFloor(const SmallestAngles& before) const
  * Smallest angle among the tetrahedra aimed at if the cavity were filled from the position. 0 if
  * another tetrahedron falls below the floor, or as soon as the angle is not larger than required.
  */
-double Perturbation::RateHole(const Vec3& position, double floor, double required) const
+double Perturbation::RateCavity(const Vec3& position, double floor, double required) const
 {
   constexpr Id inside = std::numeric_limits<Id>::max();
   const SharpAngles& sharp = this->Mesh.GetShape().Sharp;
   double smallest = 180.0;
-  for (const TriangleIds& facet : this->Mesh.GetHole().Facets)
+  for (const TriangleIds& facet : this->Mesh.GetCavity().Facets)
   {
     const double angle = GetSmallestDihedralAngle(this->Tetrahedra.GetPoint(facet[0]),
       this->Tetrahedra.GetPoint(facet[1]), this->Tetrahedra.GetPoint(facet[2]), position);
@@ -184,19 +142,19 @@ bool Perturbation::Move(Id point)
     angles.push_back(after.Other < floor ? 0.0 : after.Aimed);
     isBroken.push_back(this->Mesh.BreaksLimit(t));
   }
-  const auto findHole = [&](const Vec3& position)
+  const auto findCavity = [&](const Vec3& position)
   {
     const Id first = this->Tetrahedra.Locate(position, filled.front());
-    return first != NoId && this->Mesh.FindHole(position, first, point);
+    return first != NoId && this->Mesh.FindCavity(position, first, point);
   };
   const auto rate = [&](const Vec3& position, double required)
   {
-    if (!findHole(position))
+    if (!findCavity(position))
     {
       return 0.0;
     }
     // Tetrahedra that fill the cavity of the removed point, and stay, count as well.
-    const std::vector<Id>& replaced = this->Mesh.GetHole().Tetrahedra;
+    const std::vector<Id>& replaced = this->Mesh.GetCavity().Tetrahedra;
     Id brokenThere = 0;
     for (std::size_t i = 0; i < filled.size(); ++i)
     {
@@ -210,10 +168,10 @@ bool Perturbation::Move(Id point)
         ++brokenThere;
       }
     }
-    const double angle = this->RateHole(position, floor, required);
+    const double angle = this->RateCavity(position, floor, required);
     return angle > required && this->Mesh.IsClear(position) &&
         (broken > 0 || brokenThere + this->Mesh.CountBroken(position) == 0) &&
-        !this->Mesh.DisturbsBoundary(position)
+        !this->Mesh.EncroachesOnBoundary(position)
       ? angle
       : 0.0;
   };
@@ -232,7 +190,7 @@ bool Perturbation::Move(Id point)
     this->Tetrahedra.UndoRemove();
     return false;
   }
-  findHole(best.Position);
+  findCavity(best.Position);
   this->Mesh.Restore(point, best.Position);
   return true;
 }
@@ -247,18 +205,18 @@ bool Perturbation::InsertBest(Id tetrahedron)
   }
   const auto rate = [&](const Vec3& position, double required)
   {
-    if (!this->Mesh.FindHole(position, tetrahedron))
+    if (!this->Mesh.FindCavity(position, tetrahedron))
     {
       return 0.0;
     }
     SmallestAngles before;
-    for (Id t : this->Mesh.GetHole().Tetrahedra)
+    for (Id t : this->Mesh.GetCavity().Tetrahedra)
     {
       this->Include(t, before);
     }
-    const double angle = this->RateHole(position, this->GetFloor(before), required);
+    const double angle = this->RateCavity(position, this->GetFloor(before), required);
     return angle > required && this->Mesh.IsClear(position) &&
-        this->Mesh.CountBroken(position) == 0 && !this->Mesh.DisturbsBoundary(position)
+        this->Mesh.CountBroken(position) == 0 && !this->Mesh.EncroachesOnBoundary(position)
       ? angle
       : 0.0;
   };
@@ -266,7 +224,7 @@ bool Perturbation::InsertBest(Id tetrahedron)
   TryPlace(center, rate, best);
   SearchPlace(center, FirstInsertion * Distance(center, a), MakeCubeDirections(), this->Goal.Target,
     rate, best);
-  if (!best.IsFound || !this->Mesh.FindHole(best.Position, tetrahedron))
+  if (!best.IsFound || !this->Mesh.FindCavity(best.Position, tetrahedron))
   {
     return false;
   }
@@ -293,16 +251,6 @@ bool Perturbation::Mend(const Sliver& sliver, SliverAttempt last)
 }
 } // namespace
 
-std::size_t CountSlivers(double target, const RefinedMesh& mesh)
-{
-  std::size_t count = 0;
-  for (Id t = 0; t < mesh.GetTetrahedra().GetNumberOfTetrahedra(); ++t)
-  {
-    count += IsSliver({ target }, t, mesh);
-  }
-  return count;
-}
-
 Status PerturbSlivers(
   double target, SliverMeans means, const ExecutionContext& context, RefinedMesh& mesh)
 {
@@ -314,14 +262,14 @@ Status PerturbSlivers(
   bool mayInsert = false;
   bool isLast = false;
   std::vector<TetrahedronIds> unmet;
-  for (int pass = 0; pass < MaximumPasses; ++pass)
+  for (int pass = 0; pass < MaximumSliverPasses; ++pass)
   {
-    const std::vector<Sliver> slivers = FindSlivers(aim, mesh);
+    const std::vector<Sliver> slivers = FindSlivers(aim.Target, aim.IsSharp, mesh);
     bool isMended = false;
     for (std::size_t i = 0; i < slivers.size(); ++i)
     {
       if (i % ReportInterval == 0 &&
-        !context.Continue((pass + static_cast<double>(i) / slivers.size()) / MaximumPasses,
+        !context.Continue((pass + static_cast<double>(i) / slivers.size()) / MaximumSliverPasses,
           "Moving points of slivers"))
       {
         return Status::Aborted();
@@ -346,7 +294,7 @@ Status PerturbSlivers(
         const Vec3 center = GetCircumcenter(a, b, c, d);
         if (!requests.AddEdgeOfTwoTriangles(ids, pointTriangles) && IsFinite(center))
         {
-          mesh.RequestDisturbed(center, true);
+          mesh.RequestEncroached(center, true);
         }
       }
     }
@@ -380,7 +328,7 @@ Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh&
 {
   const Aim aim{ MoveRatio * target, true };
   Perturbation perturbation(aim, mesh);
-  const std::vector<Sliver> slivers = FindSlivers(aim, mesh);
+  const std::vector<Sliver> slivers = FindSlivers(aim.Target, aim.IsSharp, mesh);
   for (std::size_t i = 0; i < slivers.size(); ++i)
   {
     if (i % ReportInterval == 0 &&
@@ -394,54 +342,5 @@ Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh&
     }
   }
   return Status();
-}
-
-std::vector<Vec3> MoveSurfacePoints(
-  double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh)
-{
-  const BoundaryShape& shape = mesh.GetShape();
-  SurfacePointMoves::Rules rules;
-  rules.HasAngle = [&shape](const TetrahedronIds& ids, Id region)
-  { return !shape.Layers.IsAcross(ids, region) && !shape.Sharp.IsAcross(ids); };
-  rules.BreaksLimit = [&mesh](const TetrahedronIds& ids, const std::array<Vec3, 4>& corners)
-  { return mesh.BreaksLimit(ids, corners); };
-  rules.GetClearance = [&mesh](Id point) { return mesh.GetClearance(point); };
-  const std::vector<StructuralEdge> none;
-  const RefinedBoundary& boundary = mesh.GetBoundary();
-  SurfacePointMoves moves(mesh.GetTetrahedra(), boundary.Surface, shape.PointTriangles,
-    boundary.Edges, areEdgesKept ? boundary.KeptEdges : none, rules);
-
-  bool isMended = true;
-  for (int pass = 0; pass < MaximumPasses && isMended; ++pass)
-  {
-    isMended = false;
-    for (const Sliver& sliver : FindSlivers({ target }, mesh))
-    {
-      if (IsGone(sliver, mesh))
-      {
-        continue;
-      }
-      const TetrahedronIds ids = mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
-      const TetrahedronIds names = mesh.GetNames(ids);
-      if (mesh.GetMemory().IsHopeless(names, SliverAttempt::SurfaceMove))
-      {
-        continue;
-      }
-      const bool isMoved = std::any_of(ids.begin(), ids.end(),
-        [&](Id id) {
-          return !mesh.IsInside(id) && isFree[id] != 0 && moves.Move(id, ids, MoveRatio * target);
-        });
-      if (isMoved)
-      {
-        mesh.NoteSurfaceMove();
-        isMended = true;
-      }
-      else
-      {
-        mesh.GetMemory().SetHopeless(names, SliverAttempt::SurfaceMove);
-      }
-    }
-  }
-  return moves.GetPoints();
 }
 } // namespace cdm

@@ -22,8 +22,6 @@
 #include "Core/Basics/Status.h"
 #include "Core/Improvement/RefinedMesh.h"
 
-#include <vector>
-
 namespace cdm
 {
 /** What may be done about slivers. Each value includes those before it. */
@@ -37,29 +35,12 @@ enum class SliverMeans
   Requests
 };
 
-/**
- * Number of tetrahedra with a dihedral angle below the target (degrees), without those across thin
- * layers and sharp angles.
- */
-std::size_t CountSlivers(double target, const RefinedMesh& mesh);
-
 /** Perturbs slivers until none of the allowed means increases an angle below the target. */
 Status PerturbSlivers(
   double target, SliverMeans means, const ExecutionContext& context, RefinedMesh& mesh);
 
 /** Moves points of tetrahedra across sharp angles, if no other tetrahedron gets worse. */
 Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh& mesh);
-
-/**
- * Moves points of the surface that are corners of slivers. This does not see smallest spheres on
- * the other side of outer facets. So the caller afterwards gives the positions to the surface, and
- * calls RefinedMesh::SplitBoundary() or makes a new mesh.
- * @param isFree one for each point of the surface, whether it may be moved
- * @param areEdgesKept whether smallest spheres of the kept edges stay empty, too
- * @return the new positions of the surface's points
- */
-std::vector<Vec3> MoveSurfacePoints(
-  double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh);
 } // namespace cdm
 
 #endif

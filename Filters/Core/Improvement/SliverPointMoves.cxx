@@ -6,6 +6,7 @@
 #include "Core/Geometry/Predicates.h"
 #include "Core/Improvement/RefinedMesh.h"
 #include "Core/Improvement/SliverPerturbation.h"
+#include "Core/Improvement/SurfacePointMoves.h"
 #include "Core/Meshes/MeshBoundary.h"
 #include "Core/Surface/StructuralEdges.h"
 
@@ -193,15 +194,15 @@ Status SliverPointMoves::MoveBoundary(const ExecutionContext& context, bool& isM
       return Status::Aborted();
     }
     RefinedMesh mesh = this->MakeMesh(parts);
-    const std::vector<Vec3> places = MoveSurfacePoints(this->Target, isFree, true, mesh);
+    const std::vector<Vec3> positions = MoveSurfacePoints(this->Target, isFree, true, mesh);
     std::vector<Vec3> points = this->Mesh.Points;
     std::vector<Id> moved;
-    for (Id p = 0; p < static_cast<Id>(places.size()); ++p)
+    for (Id p = 0; p < static_cast<Id>(positions.size()); ++p)
     {
-      if (places[p] != parts.Surface.Points[p])
+      if (positions[p] != parts.Surface.Points[p])
       {
         moved.push_back(p);
-        points[parts.Sources[p]] = places[p];
+        points[parts.Sources[p]] = positions[p];
       }
     }
     // Moves that fill a sphere on the other side of an outer facet.
@@ -217,21 +218,23 @@ Status SliverPointMoves::MoveBoundary(const ExecutionContext& context, bool& isM
       for (Id p : moved)
       {
         const bool isCorner = std::find(ids.begin(), ids.end(), p) != ids.end();
-        isFree[p] &= isCorner || isInside(places[p]) ? 0 : 1;
+        isFree[p] &= isCorner || isInside(positions[p]) ? 0 : 1;
       }
     };
     for (const TriangleIds& ids : parts.Surface.Triangles)
     {
       check(ids,
-        [&](const Vec3& other)
-        { return InEquatorialSphere(places[ids[0]], places[ids[1]], places[ids[2]], other) > 0; });
+        [&](const Vec3& other) {
+          return InEquatorialSphere(
+                   positions[ids[0]], positions[ids[1]], positions[ids[2]], other) > 0;
+        });
     }
     for (const StructuralEdge& edge : parts.IntactEdges)
     {
       const EdgeIds& ids = edge.Points;
       check(ids,
         [&](const Vec3& other)
-        { return InDiametralSphere(places[ids[0]], places[ids[1]], other) > 0; });
+        { return InDiametralSphere(positions[ids[0]], positions[ids[1]], other) > 0; });
     }
     if (isIntact)
     {

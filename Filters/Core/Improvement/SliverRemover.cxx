@@ -61,7 +61,34 @@ struct Ring
   Id Q = NoId;
   std::vector<Id> Points;
   std::vector<Id> Tetrahedra;
+
+  /** The tetrahedra of three of the points with q, and with p. */
+  TetrahedronIds MakeUpper(int i, int j, int k) const
+  {
+    return { this->Points[i], this->Points[j], this->Points[k], this->Q };
+  }
+  TetrahedronIds MakeLower(int i, int j, int k) const
+  {
+    return { this->Points[i], this->Points[k], this->Points[j], this->P };
+  }
 };
+
+using RingMiddles = std::array<std::array<int, MaximumRingSize>, MaximumRingSize>;
+
+/** A facet of a cavity or of a new tetrahedron, and the facet behind it. */
+struct OpenFacet
+{
+  /** Sorted. */
+  TriangleIds Points;
+  Id Behind;
+};
+
+TriangleIds GetSortedFacet(const TetrahedronIds& ids, int facet)
+{
+  TriangleIds sorted = GetFacet(ids, facet);
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
 
 /** Tetrahedra to be replaced by others. */
 struct Flip
@@ -84,10 +111,10 @@ bool AreBetter(const std::vector<AngleKey>& first, const std::vector<AngleKey>& 
     (difference.first == first.end() || *difference.first > *difference.second);
 }
 
-class Remover
+class SliverRemoval
 {
 public:
-  Remover(TetMesh& mesh, const SliverRemoverOptions& options, SliverRemoverReport& report)
+  SliverRemoval(TetMesh& mesh, const SliverRemoverOptions& options, SliverRemoverReport& report)
     : Mesh(mesh), Options(options), Target(options.DihedralAngleTarget),
       Flatness(options.FlatnessRatio * GetBoundingBoxDiagonal(mesh.Points)), Report(report)
   {
@@ -128,10 +155,14 @@ private:
   AngleKey GetSmallestKey(const std::vector<Id>& tetrahedra) const;
   AngleKey Rate(const TetrahedronIds& ids, const std::vector<Id>& old, AngleKey required) const;
   void TryFacet(Id tetrahedron, int facet, Flip& best) const;
+  bool TriangulateRing(const Ring& ring, RingMiddles& middle) const;
   void TryEdge(Id tetrahedron, int edge, Flip& best) const;
   void Keep(Flip& flip, Flip& best) const;
   bool Improve(Id tetrahedron);
   void Apply(const Flip& flip);
+  std::vector<OpenFacet> FindFacetsAround(const std::vector<Id>& tetrahedra) const;
+  Id Make(const TetrahedronIds& ids, Id region);
+  void Connect(Id tetrahedron, std::vector<OpenFacet>& open);
   void Kill(Id tetrahedron);
   void Compact();
 
@@ -140,6 +171,7 @@ private:
     return !this->Options.IsFree.empty() && this->Options.IsFree[point];
   }
   bool FindStar(Id point, Id first, std::vector<Id>& star) const;
+  bool FindBetterPosition(Id point, const std::vector<Id>& star, Vec3& position) const;
   bool Smooth(Id tetrahedron);
   bool PeelAndFlip(const ExecutionContext& context);
   bool HasMovableSlivers() const;
@@ -153,7 +185,7 @@ private:
   /** Smallest dihedral angle of each tetrahedron, and how often it has changed. */
   std::vector<double> Angles;
   std::vector<Id> Stamps;
-  /** Places of tetrahedra that are gone. */
+  /** Slots of tetrahedra that are gone. */
   std::vector<Id> Free;
   std::priority_queue<Task> Tasks;
   /** The points' tetrahedra before the first flip; made when the first one may be peeled off. */
@@ -161,18 +193,18 @@ private:
   std::vector<Id> Incidence;
 };
 
-double Remover::MeasureAngle(const TetrahedronIds& ids) const
+double SliverRemoval::MeasureAngle(const TetrahedronIds& ids) const
 {
   return GetSmallestDihedralAngle(
     this->GetPoint(ids[0]), this->GetPoint(ids[1]), this->GetPoint(ids[2]), this->GetPoint(ids[3]));
 }
 
-double Remover::MeasureSmallestAngle() const
+double SliverRemoval::MeasureSmallestAngle() const
 {
   return this->Angles.empty() ? 0.0 : *std::min_element(this->Angles.begin(), this->Angles.end());
 }
 
-void Remover::Schedule(Id tetrahedron)
+void SliverRemoval::Schedule(Id tetrahedron)
 {
   if (this->Angles[tetrahedron] < this->Target)
   {
@@ -181,7 +213,7 @@ void Remover::Schedule(Id tetrahedron)
 }
 
 /** False if the ring is open or longer than it may be. */
-bool Remover::FindRing(Id tetrahedron, int edge, std::size_t maximumSize, Ring& ring) const
+bool SliverRemoval::FindRing(Id tetrahedron, int edge, std::size_t maximumSize, Ring& ring) const
 {
   const int* order = EdgeVertices[edge];
   const TetrahedronIds& first = this->Mesh.Tetrahedra[tetrahedron];
@@ -214,7 +246,7 @@ bool Remover::FindRing(Id tetrahedron, int edge, std::size_t maximumSize, Ring& 
   return true;
 }
 
-bool Remover::IsInOneRegion(const Ring& ring) const
+bool SliverRemoval::IsInOneRegion(const Ring& ring) const
 {
   return std::all_of(ring.Tetrahedra.begin(), ring.Tetrahedra.end(),
     [&](Id other)
@@ -225,7 +257,7 @@ bool Remover::IsInOneRegion(const Ring& ring) const
  * Whether the tetrahedron is flat and has exactly two facets on the border of its region, both to
  * the same one. These meet in the outer edge, the other two facets in the inner edge.
  */
-bool Remover::FindPeeledEdges(
+bool SliverRemoval::FindPeeledEdges(
   Id tetrahedron, int& outerEdge, int& innerEdge, Id& neighborRegion) const
 {
   std::array<int, 4> facets;
@@ -267,7 +299,7 @@ bool Remover::FindPeeledEdges(
     angles[outerEdge] >= 180.0 - LargestPeelBend;
 }
 
-bool Remover::IsOnlyTetrahedronAtEdge(Id tetrahedron, int edge)
+bool SliverRemoval::IsOnlyTetrahedronAtEdge(Id tetrahedron, int edge)
 {
   if (this->IncidenceBegin.empty())
   {
@@ -320,7 +352,7 @@ bool Remover::IsOnlyTetrahedronAtEdge(Id tetrahedron, int edge)
  * border would touch itself there; its outer edge must not be another tetrahedron's, or a gap would
  * open there.
  */
-bool Remover::PeelOff(Id tetrahedron)
+bool SliverRemoval::PeelOff(Id tetrahedron)
 {
   int outerEdge = 0;
   int innerEdge = 0;
@@ -348,7 +380,7 @@ bool Remover::PeelOff(Id tetrahedron)
 }
 
 /** Give a flat tetrahedron at an interface to the other region if it can vanish there. */
-bool Remover::HandOver(Id tetrahedron)
+bool SliverRemoval::HandOver(Id tetrahedron)
 {
   int outerEdge = 0;
   int innerEdge = 0;
@@ -375,7 +407,7 @@ bool Remover::HandOver(Id tetrahedron)
 }
 
 /** Whether the new tetrahedron has the circumsphere of one of the old ones. */
-bool Remover::IsDelaunay(const TetrahedronIds& ids, const std::vector<Id>& old) const
+bool SliverRemoval::IsDelaunay(const TetrahedronIds& ids, const std::vector<Id>& old) const
 {
   return std::any_of(old.begin(), old.end(),
     [&](Id other)
@@ -391,7 +423,7 @@ bool Remover::IsDelaunay(const TetrahedronIds& ids, const std::vector<Id>& old) 
     });
 }
 
-AngleKey Remover::GetSmallestKey(const std::vector<Id>& tetrahedra) const
+AngleKey SliverRemoval::GetSmallestKey(const std::vector<Id>& tetrahedra) const
 {
   double smallest = 180.0;
   for (const Id tetrahedron : tetrahedra)
@@ -406,7 +438,7 @@ AngleKey Remover::GetSmallestKey(const std::vector<Id>& tetrahedra) const
  * tetrahedron must not be made. The angle comes first: it spares most of the exact tests, which are
  * slow where all points are cospherical.
  */
-AngleKey Remover::Rate(
+AngleKey SliverRemoval::Rate(
   const TetrahedronIds& ids, const std::vector<Id>& old, AngleKey required) const
 {
   const AngleKey key = GetKey(this->MeasureAngle(ids));
@@ -418,7 +450,7 @@ AngleKey Remover::Rate(
 }
 
 /** Make the flip the best one if it improves on the old tetrahedra, and on the best one so far. */
-void Remover::Keep(Flip& flip, Flip& best) const
+void SliverRemoval::Keep(Flip& flip, Flip& best) const
 {
   std::vector<AngleKey> oldKeys;
   for (const Id tetrahedron : flip.Old)
@@ -438,7 +470,7 @@ void Remover::Keep(Flip& flip, Flip& best) const
 }
 
 /** The 2-3 flip at a facet. */
-void Remover::TryFacet(Id tetrahedron, int facet, Flip& best) const
+void SliverRemoval::TryFacet(Id tetrahedron, int facet, Flip& best) const
 {
   const Id neighbor = this->Mesh.Neighbors[tetrahedron][facet];
   if (neighbor == NoId || this->Mesh.Regions[neighbor / 4] != this->Mesh.Regions[tetrahedron])
@@ -462,30 +494,17 @@ void Remover::TryFacet(Id tetrahedron, int facet, Flip& best) const
   this->Keep(flip, best);
 }
 
-/** Remove an edge: triangulate its ring and connect each triangle with both ends of the edge. */
-void Remover::TryEdge(Id tetrahedron, int edge, Flip& best) const
+/**
+ * The triangulation of a ring whose tetrahedra have the best smallest angle, by dynamic
+ * programming; false if none is good enough. middle: for each part of the ring, from its i-th to
+ * its k-th point, the point that makes a triangle with both.
+ */
+bool SliverRemoval::TriangulateRing(const Ring& ring, RingMiddles& middle) const
 {
-  Ring ring;
-  if (!this->FindRing(tetrahedron, edge, MaximumRingSize, ring) || !this->IsInOneRegion(ring))
-  {
-    return;
-  }
   const int size = static_cast<int>(ring.Points.size());
-  if (size < 3)
-  {
-    return;
-  }
-  const auto makeUpper = [&](int i, int j, int k) -> TetrahedronIds {
-    return { ring.Points[i], ring.Points[j], ring.Points[k], ring.Q };
-  };
-  const auto makeLower = [&](int i, int j, int k) -> TetrahedronIds {
-    return { ring.Points[i], ring.Points[k], ring.Points[j], ring.P };
-  };
-
-  // Best smallest angle for the part of the ring from i to k, and the point j that gives it.
   const AngleKey required = this->GetSmallestKey(ring.Tetrahedra);
+  // Best smallest angle for each part.
   std::array<std::array<AngleKey, MaximumRingSize>, MaximumRingSize> angle{};
-  std::array<std::array<int, MaximumRingSize>, MaximumRingSize> middle{};
   for (int i = 0; i + 1 < size; ++i)
   {
     angle[i][i + 1] = GetKey(180.0);
@@ -499,13 +518,12 @@ void Remover::TryEdge(Id tetrahedron, int edge, Flip& best) const
       for (int j = i + 1; j < k; ++j)
       {
         AngleKey smallest = std::min(angle[i][j], angle[j][k]);
-        if (smallest > angle[i][k])
+        for (const TetrahedronIds& ids : { ring.MakeUpper(i, j, k), ring.MakeLower(i, j, k) })
         {
-          smallest = std::min(smallest, this->Rate(makeUpper(i, j, k), ring.Tetrahedra, required));
-        }
-        if (smallest > angle[i][k])
-        {
-          smallest = std::min(smallest, this->Rate(makeLower(i, j, k), ring.Tetrahedra, required));
+          if (smallest > angle[i][k])
+          {
+            smallest = std::min(smallest, this->Rate(ids, ring.Tetrahedra, required));
+          }
         }
         if (smallest > angle[i][k])
         {
@@ -515,13 +533,22 @@ void Remover::TryEdge(Id tetrahedron, int edge, Flip& best) const
       }
     }
   }
-  if (angle[0][size - 1] < 0)
+  return angle[0][size - 1] >= 0;
+}
+
+/** Remove an edge: triangulate its ring and connect each triangle with both ends of the edge. */
+void SliverRemoval::TryEdge(Id tetrahedron, int edge, Flip& best) const
+{
+  Ring ring;
+  RingMiddles middle{};
+  if (!this->FindRing(tetrahedron, edge, MaximumRingSize, ring) || !this->IsInOneRegion(ring) ||
+    ring.Points.size() < 3 || !this->TriangulateRing(ring, middle))
   {
     return;
   }
   Flip flip;
   flip.Old = ring.Tetrahedra;
-  std::vector<std::pair<int, int>> parts{ { 0, size - 1 } };
+  std::vector<std::pair<int, int>> parts{ { 0, static_cast<int>(ring.Points.size()) - 1 } };
   while (!parts.empty())
   {
     const auto [i, k] = parts.back();
@@ -531,15 +558,15 @@ void Remover::TryEdge(Id tetrahedron, int edge, Flip& best) const
       continue;
     }
     const int j = middle[i][k];
-    flip.New.push_back(makeUpper(i, j, k));
-    flip.New.push_back(makeLower(i, j, k));
+    flip.New.push_back(ring.MakeUpper(i, j, k));
+    flip.New.push_back(ring.MakeLower(i, j, k));
     parts.emplace_back(i, j);
     parts.emplace_back(j, k);
   }
   this->Keep(flip, best);
 }
 
-bool Remover::Improve(Id tetrahedron)
+bool SliverRemoval::Improve(Id tetrahedron)
 {
   Flip best;
   for (int facet = 0; facet < 4; ++facet)
@@ -558,7 +585,7 @@ bool Remover::Improve(Id tetrahedron)
   return true;
 }
 
-void Remover::Kill(Id tetrahedron)
+void SliverRemoval::Kill(Id tetrahedron)
 {
   this->Mesh.Tetrahedra[tetrahedron] = { NoId, NoId, NoId, NoId };
   this->Angles[tetrahedron] = 180.0;
@@ -566,35 +593,76 @@ void Remover::Kill(Id tetrahedron)
   this->Free.push_back(tetrahedron);
 }
 
-void Remover::Apply(const Flip& flip)
+/** The facets around tetrahedra, with what lies behind them. */
+std::vector<OpenFacet> SliverRemoval::FindFacetsAround(const std::vector<Id>& tetrahedra) const
 {
-  // The facets around the old tetrahedra, with what lies behind them.
-  struct OpenFacet
-  {
-    TriangleIds Points;
-    Id Facet;
-  };
-  const auto makeKey = [&](const TetrahedronIds& ids, int facet)
-  {
-    TriangleIds key = GetFacet(ids, facet);
-    std::sort(key.begin(), key.end());
-    return key;
-  };
-  std::vector<OpenFacet> open;
-  const Id region = this->Mesh.Regions[flip.Old.front()];
-  for (const Id tetrahedron : flip.Old)
+  std::vector<OpenFacet> facets;
+  for (const Id tetrahedron : tetrahedra)
   {
     for (int facet = 0; facet < 4; ++facet)
     {
       const Id neighbor = this->Mesh.Neighbors[tetrahedron][facet];
       if (neighbor == NoId ||
-        std::find(flip.Old.begin(), flip.Old.end(), neighbor / 4) == flip.Old.end())
+        std::find(tetrahedra.begin(), tetrahedra.end(), neighbor / 4) == tetrahedra.end())
       {
-        open.push_back({ makeKey(this->Mesh.Tetrahedra[tetrahedron], facet), neighbor });
+        facets.push_back({ GetSortedFacet(this->Mesh.Tetrahedra[tetrahedron], facet), neighbor });
       }
     }
   }
+  return facets;
+}
+
+/** Makes a tetrahedron in a free slot, without its neighbors. */
+Id SliverRemoval::Make(const TetrahedronIds& ids, Id region)
+{
+  Id tetrahedron = NoId;
+  if (this->Free.empty())
+  {
+    tetrahedron = static_cast<Id>(this->Mesh.Tetrahedra.size());
+    this->Mesh.Tetrahedra.emplace_back();
+    this->Mesh.Regions.emplace_back();
+    this->Mesh.Neighbors.emplace_back();
+    this->Angles.emplace_back();
+    this->Stamps.emplace_back(0);
+  }
+  else
+  {
+    tetrahedron = this->Free.back();
+    this->Free.pop_back();
+  }
+  this->Mesh.Tetrahedra[tetrahedron] = ids;
+  this->Mesh.Regions[tetrahedron] = region;
+  this->Angles[tetrahedron] = this->MeasureAngle(ids);
+  return tetrahedron;
+}
+
+/** Connects a new tetrahedron across the facets that are open; its other facets become so. */
+void SliverRemoval::Connect(Id tetrahedron, std::vector<OpenFacet>& open)
+{
+  for (int facet = 0; facet < 4; ++facet)
+  {
+    const TriangleIds points = GetSortedFacet(this->Mesh.Tetrahedra[tetrahedron], facet);
+    const Id own = 4 * tetrahedron + facet;
+    const auto found = std::find_if(
+      open.begin(), open.end(), [&](const OpenFacet& other) { return other.Points == points; });
+    if (found == open.end())
+    {
+      open.push_back({ points, own });
+      continue;
+    }
+    this->Mesh.Neighbors[tetrahedron][facet] = found->Behind;
+    if (found->Behind != NoId)
+    {
+      this->Mesh.Neighbors[found->Behind / 4][found->Behind % 4] = own;
+    }
+  }
+}
+
+void SliverRemoval::Apply(const Flip& flip)
+{
+  std::vector<OpenFacet> open = this->FindFacetsAround(flip.Old);
   const std::size_t numberOfOuterFacets = open.size();
+  const Id region = this->Mesh.Regions[flip.Old.front()];
   for (auto tetrahedron = flip.Old.rbegin(); tetrahedron != flip.Old.rend(); ++tetrahedron)
   {
     this->Kill(*tetrahedron);
@@ -602,60 +670,26 @@ void Remover::Apply(const Flip& flip)
   std::vector<Id> made;
   for (const TetrahedronIds& ids : flip.New)
   {
-    Id tetrahedron = NoId;
-    if (this->Free.empty())
-    {
-      tetrahedron = static_cast<Id>(this->Mesh.Tetrahedra.size());
-      this->Mesh.Tetrahedra.emplace_back();
-      this->Mesh.Regions.emplace_back();
-      this->Mesh.Neighbors.emplace_back();
-      this->Angles.emplace_back();
-      this->Stamps.emplace_back(0);
-    }
-    else
-    {
-      tetrahedron = this->Free.back();
-      this->Free.pop_back();
-    }
-    made.push_back(tetrahedron);
-    this->Mesh.Tetrahedra[tetrahedron] = ids;
-    this->Mesh.Regions[tetrahedron] = region;
-    this->Angles[tetrahedron] = this->MeasureAngle(ids);
-    for (int facet = 0; facet < 4; ++facet)
-    {
-      const TriangleIds key = makeKey(ids, facet);
-      const Id own = 4 * tetrahedron + facet;
-      const auto found = std::find_if(
-        open.begin(), open.end(), [&](const OpenFacet& other) { return other.Points == key; });
-      if (found == open.end())
-      {
-        open.push_back({ key, own });
-        continue;
-      }
-      this->Mesh.Neighbors[tetrahedron][facet] = found->Facet;
-      if (found->Facet != NoId)
-      {
-        this->Mesh.Neighbors[found->Facet / 4][found->Facet % 4] = own;
-      }
-    }
+    made.push_back(this->Make(ids, region));
+    this->Connect(made.back(), open);
   }
   for (const Id tetrahedron : made)
   {
     this->Schedule(tetrahedron);
   }
-  // For their neighbours flips may have become possible.
+  // For their neighbors flips may have become possible.
   for (std::size_t i = 0; i < numberOfOuterFacets; ++i)
   {
-    if (open[i].Facet != NoId)
+    if (open[i].Behind != NoId)
     {
-      this->Schedule(open[i].Facet / 4);
+      this->Schedule(open[i].Behind / 4);
     }
   }
   ++this->Report.Flips;
 }
 
 /** Close the gaps that dead tetrahedra leave, without changing the order of the others. */
-void Remover::Compact()
+void SliverRemoval::Compact()
 {
   std::size_t count = 0;
   for (std::size_t t = 0; t < this->Angles.size(); ++t)
@@ -670,7 +704,7 @@ void Remover::Compact()
 }
 
 /** All tetrahedra at a point; false if it lies on a border. */
-bool Remover::FindStar(Id point, Id first, std::vector<Id>& star) const
+bool SliverRemoval::FindStar(Id point, Id first, std::vector<Id>& star) const
 {
   star.assign(1, first);
   for (std::size_t i = 0; i < star.size(); ++i)
@@ -695,59 +729,64 @@ bool Remover::FindStar(Id point, Id first, std::vector<Id>& star) const
   return true;
 }
 
+/** The best position for a point within the tetrahedra around it, which stay. */
+bool SliverRemoval::FindBetterPosition(Id point, const std::vector<Id>& star, Vec3& position) const
+{
+  const Vec3 old = this->GetPoint(point);
+  double smallest = 180.0;
+  double nearest = std::numeric_limits<double>::infinity();
+  Vec3 sum;
+  for (const Id other : star)
+  {
+    smallest = std::min(smallest, this->Angles[other]);
+    for (const Id id : this->Mesh.Tetrahedra[other])
+    {
+      if (id != point)
+      {
+        nearest = std::min(nearest, Distance(old, this->GetPoint(id)));
+        sum = sum + this->GetPoint(id);
+      }
+    }
+  }
+  const auto rate = [&](const Vec3& tried, double required)
+  {
+    double angle = 180.0;
+    for (const Id other : star)
+    {
+      std::array<Vec3, 4> v;
+      for (int i = 0; i < 4; ++i)
+      {
+        const Id id = this->Mesh.Tetrahedra[other][i];
+        v[i] = id == point ? tried : this->GetPoint(id);
+      }
+      angle = std::min(angle, GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]));
+      if (angle <= required || Orientation(v[0], v[1], v[2], v[3]) <= 0)
+      {
+        return 0.0;
+      }
+    }
+    return angle;
+  };
+  Place best{ old, smallest + SmallestGain, false };
+  const Vec3 mean = (1.0 / (3.0 * static_cast<double>(star.size()))) * sum;
+  SearchMove(old, mean, nearest, this->Target, rate, best);
+  position = best.Position;
+  return best.IsFound;
+}
+
 /** Move a free point within the tetrahedra around it, which stay. */
-bool Remover::Smooth(Id tetrahedron)
+bool SliverRemoval::Smooth(Id tetrahedron)
 {
   std::vector<Id> star;
   for (const Id point : this->Mesh.Tetrahedra[tetrahedron])
   {
-    if (!this->IsFree(point) || !this->FindStar(point, tetrahedron, star))
+    Vec3 position;
+    if (!this->IsFree(point) || !this->FindStar(point, tetrahedron, star) ||
+      !this->FindBetterPosition(point, star, position))
     {
       continue;
     }
-    const Vec3 old = this->GetPoint(point);
-    double smallest = 180.0;
-    double nearest = std::numeric_limits<double>::infinity();
-    Vec3 sum;
-    for (const Id other : star)
-    {
-      smallest = std::min(smallest, this->Angles[other]);
-      for (const Id id : this->Mesh.Tetrahedra[other])
-      {
-        if (id != point)
-        {
-          nearest = std::min(nearest, Distance(old, this->GetPoint(id)));
-          sum = sum + this->GetPoint(id);
-        }
-      }
-    }
-    const auto rate = [&](const Vec3& position, double required)
-    {
-      double angle = 180.0;
-      for (const Id other : star)
-      {
-        std::array<Vec3, 4> v;
-        for (int i = 0; i < 4; ++i)
-        {
-          const Id id = this->Mesh.Tetrahedra[other][i];
-          v[i] = id == point ? position : this->GetPoint(id);
-        }
-        angle = std::min(angle, GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]));
-        if (angle <= required || Orientation(v[0], v[1], v[2], v[3]) <= 0)
-        {
-          return 0.0;
-        }
-      }
-      return angle;
-    };
-    Place best{ old, smallest + SmallestGain, false };
-    const Vec3 mean = (1.0 / (3.0 * static_cast<double>(star.size()))) * sum;
-    SearchMove(old, mean, nearest, this->Target, rate, best);
-    if (!best.IsFound)
-    {
-      continue;
-    }
-    this->Mesh.Points[point] = best.Position;
+    this->Mesh.Points[point] = position;
     for (const Id other : star)
     {
       this->Angles[other] = this->MeasureAngle(this->Mesh.Tetrahedra[other]);
@@ -756,7 +795,7 @@ bool Remover::Smooth(Id tetrahedron)
     for (const Id other : star)
     {
       this->Schedule(other);
-      // For their neighbours flips may have become possible.
+      // For their neighbors flips may have become possible.
       for (const Id facet : this->Mesh.Neighbors[other])
       {
         if (facet != NoId && std::find(star.begin(), star.end(), facet / 4) == star.end())
@@ -771,7 +810,7 @@ bool Remover::Smooth(Id tetrahedron)
   return false;
 }
 
-bool Remover::HasMovableSlivers() const
+bool SliverRemoval::HasMovableSlivers() const
 {
   for (std::size_t t = 0; t < this->Angles.size(); ++t)
   {
@@ -787,7 +826,7 @@ bool Remover::HasMovableSlivers() const
 }
 
 /** Peel, flip and, if it need not stay Delaunay, smooth. False if aborted. */
-bool Remover::PeelAndFlip(const ExecutionContext& context)
+bool SliverRemoval::PeelAndFlip(const ExecutionContext& context)
 {
   const Id count = static_cast<Id>(this->Mesh.Tetrahedra.size());
   // Peel first: the tetrahedra around each point, which it asks for, change with the first flip.
@@ -831,7 +870,7 @@ bool Remover::PeelAndFlip(const ExecutionContext& context)
   return !isAborted;
 }
 
-void Remover::MeasureAngles(int numberOfThreads)
+void SliverRemoval::MeasureAngles(int numberOfThreads)
 {
   const std::size_t count = this->Mesh.Tetrahedra.size();
   this->Angles.resize(count);
@@ -845,7 +884,7 @@ void Remover::MeasureAngles(int numberOfThreads)
     });
 }
 
-Status Remover::Run(const ExecutionContext& context)
+Status SliverRemoval::Run(const ExecutionContext& context)
 {
   this->MeasureAngles(context.GetNumberOfThreads());
   this->Stamps.assign(this->Mesh.Tetrahedra.size(), 0);
@@ -880,7 +919,7 @@ Status RemoveSlivers(TetMesh& mesh, const SliverRemoverOptions& options,
         return Status::InvalidInput(
           "Which points are free has to be said for each point, or for none.");
       }
-      return status.IsOk() ? Remover(mesh, options, report).Run(context) : status;
+      return status.IsOk() ? SliverRemoval(mesh, options, report).Run(context) : status;
     });
 }
 } // namespace cdm

@@ -32,7 +32,7 @@
  * have empty ones: neither is so with quality before Delaunay. The boundary and the interfaces
  * change where tetrahedra are peeled off or handed over, by less than the flatness, otherwise not
  * at all. Deterministic.
- * Failure: InvalidInput names tetrahedra that are inverted, flat or have wrong neighbours; the mesh
+ * Failure: InvalidInput names tetrahedra that are inverted, flat or have wrong neighbors; the mesh
  * is then left alone. Aborted leaves a valid mesh.
  * Cost: O(b log b) for b tetrahedra below the target, after one look at all of them; 20 bytes per
  * tetrahedron. About a millisecond for a point that is tried to be moved, and 120 bytes per

@@ -3,29 +3,39 @@
  * @file SteinerPointRefiner.h
  * @brief Stage 5: new points, inside and on the boundary, until sizes and shapes are as wanted.
  *
- * Method (thesis 5.6 and 6.5), in rounds:
- *  1. the boundary of the mesh is taken as a surface and its interior points as mesh points; new
- *     points are added to these, and unwanted ones are taken out;
- *  2. the surface is refined (DelaunaySurfaceRefiner.h) until its smallest spheres are empty and it
- *     is as fine as the sizing asks for, and split where the round before requested it; then it is
- *     tetrahedralized with the mesh points (AdvancingFrontTetrahedralizer.h). Where less than a
- *     twentieth of a surface with plane facets is to be split, both are done in the mesh itself
- *     (BoundarySplits.h), with the same result for the same points;
- *  3. for this boundary the inside is refined (VolumeRefinement.h): Steiner points in tetrahedra
- *     that are too large, then also in badly shaped ones, where each comes no closer to others than
- *     a twentieth of the shortest edge that was there before. If a point would encroach on the
- *     boundary, a split of the boundary is requested instead;
- *  4. if little is requested any more: points of slivers are moved, taken out or added, first those
- *     inside (SliverPerturbation.h). Then new and free points of the surface are moved within their
- *     facets and along their edges, where that makes the smallest angle larger
- *     (SurfacePointMoves.h). Before that, the last bits of surface points are perturbed where
- *     tetrahedra are numerically flat (PointRounding.h). The boundary is split for slivers that
- *     nothing else helps. At last points of tetrahedra across sharp angles are moved, if no other
- *     tetrahedron gets worse;
- *  5. where nothing else is requested, edges of the boundary with a negative coupling are to be
- *     split (NegativeCouplings.h), and it goes on from 3.
- * The refinement ends when a round requests nothing, or nothing that can be done, or when forty
- * rounds for slivers in a row have not reduced their number.
+ * Method (thesis 5.6 and 6.5): the boundary of the mesh is taken as a surface and its interior
+ * points as mesh points; new points are added to these, and unwanted ones are taken out. Then, in
+ * rounds, the surface is refined until its smallest spheres are empty and it is as fine as the
+ * sizing asks for, and split where the round before requested it. It is tetrahedralized with the
+ * mesh points, and the inside is refined for this boundary (SteinerPointRounds.h). Steiner points
+ * are inserted in tetrahedra that are too large, then also in badly shaped ones, where each comes
+ * no closer to others than a twentieth of the shortest edge that was there before. If a point would
+ * encroach on the boundary, a split of the boundary is requested instead (VolumeRefinement.h). When
+ * little is requested any more, points of slivers are moved, taken out or added, first those
+ * inside, then those of the surface within their facets and along their edges; and the boundary is
+ * split for slivers that nothing else helps. At last edges of the boundary with a negative coupling
+ * are split (SliverSchedule.h).
+ *
+ * A round is in one of these states. "Next" starts another round: it splits what is requested.
+ *
+ * | state    | what is done                  | then                                             |
+ * |----------|-------------------------------|--------------------------------------------------|
+ * | start    | refine and tetrahedralize the | weak triangles: end; otherwise sizes             |
+ * |          | surface                       |                                                  |
+ * | sizes    | refine inside for sizes       | splits are requested: next, sizes; otherwise     |
+ * |          |                               | measure the sizes of points, shapes              |
+ * | shapes   | refine inside for sizes and   | boundary final: finish; few requests, or none    |
+ * |          | shapes, note the state        | that can be made: slivers; else next, shapes     |
+ * | slivers  | SliverSchedule::Run()         | Open, Requested, Moved: next, shapes; Done: end  |
+ * | next     | split the boundary, in the    | weak triangles: restore; otherwise the state     |
+ * |          | mesh or in a new one          | named above                                      |
+ * | restore  | back to the state noted, the  | the state named above                            |
+ * |          | boundary is final             |                                                  |
+ * | finish   | SliverSchedule::Finish()      | end                                              |
+ *
+ * Sizes are also left when as many points have been made as allowed, or when a round has split
+ * nothing; shapes then go to slivers. No round is started after a thousand, which no input came
+ * near.
  *
  * Guarantees: the mesh is Delaunay by the pulling rule and conforms to the same surface; facets on
  * it fulfil criterion 3.1 at least. (Where the surface refiner does not end with that criterion, no

@@ -5,6 +5,8 @@
 #include "Core/Geometry/Box.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
+#include "Core/Improvement/PointRounding.h"
+#include "Core/Improvement/SliverList.h"
 #include "Core/Search/PlaceSearch.h"
 
 #include <algorithm>
@@ -220,7 +222,7 @@ double SurfacePointMoves::MeasureStar(Id point, double& nearest) const
 }
 
 /** Whether each triangle at the point keeps its orientation. */
-bool SurfacePointMoves::KeepsTurns(Id point, const Vec3& position) const
+bool SurfacePointMoves::KeepsOrientations(Id point, const Vec3& position) const
 {
   const auto isKept = [&](Id t)
   {
@@ -375,7 +377,7 @@ bool SurfacePointMoves::AreSpheresEmpty(Id point, const Vec3& position) const
 
 double SurfacePointMoves::Rate(Id point, const Vec3& position, double required)
 {
-  if (!this->KeepsTurns(point, position) || !this->CollectCavity(point, position))
+  if (!this->KeepsOrientations(point, position) || !this->CollectCavity(point, position))
   {
     return 0.0;
   }
@@ -457,5 +459,63 @@ bool SurfacePointMoves::Move(Id point, const TetrahedronIds& sliver, double targ
   this->Mesh.Replace(this->Tetrahedra, this->Outer, this->Filling.GetCells());
   this->Points[point] = best.Position;
   return true;
+}
+
+std::vector<Vec3> MoveSurfacePoints(
+  double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh)
+{
+  const BoundaryShape& shape = mesh.GetShape();
+  SurfacePointMoves::Rules rules;
+  rules.HasAngle = [&shape](const TetrahedronIds& ids, Id region)
+  { return !shape.Layers.IsAcross(ids, region) && !shape.Sharp.IsAcross(ids); };
+  rules.BreaksLimit = [&mesh](const TetrahedronIds& ids, const std::array<Vec3, 4>& corners)
+  { return mesh.BreaksLimit(ids, corners); };
+  rules.GetClearance = [&mesh](Id point) { return mesh.GetClearance(point); };
+  const std::vector<StructuralEdge> none;
+  const RefinedBoundary& boundary = mesh.GetBoundary();
+  SurfacePointMoves moves(mesh.GetTetrahedra(), boundary.Surface, shape.PointTriangles,
+    boundary.Edges, areEdgesKept ? boundary.KeptEdges : none, rules);
+
+  bool isMended = true;
+  for (int pass = 0; pass < MaximumSliverPasses && isMended; ++pass)
+  {
+    isMended = false;
+    for (const Sliver& sliver : FindSlivers(target, false, mesh))
+    {
+      if (IsGone(sliver, mesh))
+      {
+        continue;
+      }
+      const TetrahedronIds ids = mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
+      const TetrahedronIds names = mesh.GetNames(ids);
+      if (mesh.GetMemory().IsHopeless(names, SliverAttempt::SurfaceMove))
+      {
+        continue;
+      }
+      const bool isMoved = std::any_of(ids.begin(), ids.end(),
+        [&](Id id) {
+          return !mesh.IsInside(id) && isFree[id] != 0 && moves.Move(id, ids, MoveRatio * target);
+        });
+      if (isMoved)
+      {
+        mesh.NoteSurfaceMove();
+        isMended = true;
+      }
+      else
+      {
+        mesh.GetMemory().SetHopeless(names, SliverAttempt::SurfaceMove);
+      }
+    }
+  }
+  return moves.GetPoints();
+}
+
+std::vector<Vec3> RoundSurfacePoints(
+  const std::vector<Id>& flat, const std::vector<char>& isFree, const RefinedMesh& mesh)
+{
+  const TriangleMesh& surface = mesh.GetBoundary().Surface;
+  std::vector<Vec3> positions = surface.Points;
+  PointRounding(mesh.GetMesh(), surface, flat).Move(isFree, positions);
+  return positions;
 }
 } // namespace cdm

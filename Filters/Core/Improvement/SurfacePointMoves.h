@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfacePointMoves.h
- * @brief Moves points of a surface within their facet or along their edge to remove slivers.
+ * @brief Moves points of a surface: within their facet or along their edge to remove slivers, or in
+ * their last bits to remove flat tetrahedra.
  *
  * Interior points do not improve a sliver whose points all lie on the surface. Often the two sides
  * of a layer match but for one point: when it is moved opposite its partner, the sliver is gone.
@@ -16,7 +17,9 @@
  * or if more tetrahedra than before break a limit.
  *
  * The method does not look beyond outer facets: the surface has to be checked again with the new
- * positions (DelaunaySurfaceRefiner.h).
+ * positions (DelaunaySurfaceRefiner.h). So the functions at the end, which say where the points of
+ * a refined mesh go, leave the surface as it is. The caller gives the positions to it, and calls
+ * RefinedMesh::SplitBoundary() or makes a new mesh.
  *
  * Positions are rated in floating point; the cavity is filled exactly. Deterministic. Cost: about
  * 200 microseconds for each position tried.
@@ -27,6 +30,7 @@
 #include "Core/Basics/IdLists.h"
 #include "Core/Delaunay/CavityFilling.h"
 #include "Core/Delaunay/DynamicTetrahedralization.h"
+#include "Core/Improvement/RefinedMesh.h"
 #include "Core/Meshes/TriangleMesh.h"
 #include "Core/Surface/StructuralEdges.h"
 
@@ -81,7 +85,7 @@ private:
   void CollectStar(Id point);
   double MeasureStar(Id point, double& nearest) const;
   double Rate(Id point, const Vec3& position, double required);
-  bool KeepsTurns(Id point, const Vec3& position) const;
+  bool KeepsOrientations(Id point, const Vec3& position) const;
   bool CollectCavity(Id point, const Vec3& position);
   bool IsOnSurface(const TriangleIds& ids) const;
   bool AreSpheresEmpty(Id point, const Vec3& position) const;
@@ -103,6 +107,26 @@ private:
   std::vector<Id> Outer;
   CavityFilling Filling;
 };
+
+/**
+ * Moves points of the surface that are corners of slivers, also in the mesh.
+ * @param target slivers have a dihedral angle below this. Degrees
+ * @param isFree one for each point of the surface, whether it may be moved
+ * @param areEdgesKept whether smallest spheres of the kept edges stay empty, too
+ * @return the new positions of the surface's points
+ */
+std::vector<Vec3> MoveSurfacePoints(
+  double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh);
+
+/**
+ * Perturbs the last bits of surface points, for tetrahedra that are flat but for rounding
+ * (PointRounding.h).
+ * @param flat these tetrahedra
+ * @param isFree one for each point of the surface, whether it may be moved
+ * @return the new positions of the surface's points
+ */
+std::vector<Vec3> RoundSurfacePoints(
+  const std::vector<Id>& flat, const std::vector<char>& isFree, const RefinedMesh& mesh);
 } // namespace cdm
 
 #endif

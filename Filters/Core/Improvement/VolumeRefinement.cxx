@@ -102,7 +102,7 @@ Status RefineByLimits(bool isShapeTested, const ExecutionContext& context, Refin
       continue;
     }
     const bool isSizeKept = task.Fault == TetrahedronFault::Shape;
-    if (!mesh.RequestDisturbed(target, isSizeKept) && mesh.FindHole(target, task.Tetrahedron) &&
+    if (!mesh.RequestEncroached(target, isSizeKept) && mesh.FindCavity(target, task.Tetrahedron) &&
       (!isSizeKept || mesh.IsClear(target)))
     {
       mesh.Insert(target);

@@ -37,7 +37,7 @@ public:
    * Marks triangles of the input where the refinement did not end because their facet is curved.
    * Returns whether any of them was not marked before.
    */
-  bool FindCrumpled(std::vector<char>& isExact) const;
+  bool FindOverrefined(std::vector<char>& isExact) const;
 
   /** Whether no limit was reached: all triangles are as the plan wants them. */
   bool IsSettled() const
@@ -153,7 +153,7 @@ Status SurfaceRefiner::SplitRequested()
   return Status();
 }
 
-bool SurfaceRefiner::FindCrumpled(std::vector<char>& isExact) const
+bool SurfaceRefiner::FindOverrefined(std::vector<char>& isExact) const
 {
   bool isAnyNew = false;
   const auto mark = [&](Id source)
@@ -167,10 +167,10 @@ bool SurfaceRefiner::FindCrumpled(std::vector<char>& isExact) const
   {
     return isAnyNew;
   }
-  const std::vector<char>& isCrumpled = this->Refinement->GetCrumpled();
-  for (std::size_t source = 0; source < isCrumpled.size(); ++source)
+  const std::vector<char>& isOverrefined = this->Refinement->GetOverrefined();
+  for (std::size_t source = 0; source < isOverrefined.size(); ++source)
   {
-    if (isCrumpled[source] != 0)
+    if (isOverrefined[source] != 0)
     {
       mark(static_cast<Id>(source));
     }
@@ -345,7 +345,7 @@ Status SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
     SurfaceRefiner refiner(this->Input, this->Options, plan, part, output);
     const Status status = refiner.Run();
     if (status.IsAborted() || this->IsStoppedByUser(output) ||
-      !refiner.FindCrumpled(this->Options.StructuralEdges.IsExact))
+      !refiner.FindOverrefined(this->Options.StructuralEdges.IsExact))
     {
       if (!status.IsOk())
       {

@@ -64,19 +64,19 @@ constexpr double LayerEndRatio = 0.1;
  * partner. passing: where the edges pass each other, or -1.
  */
 bool PartnerPoints::PlaceOnLine(
-  Id segment, Id disturbing, double& way, Vec3& along, double& passing) const
+  Id segment, Id encroaching, double& way, Vec3& along, double& passing) const
 {
   passing = -1.0;
   const EdgeIds& ends = this->Surface.GetSegment(segment).Points;
   const Vec3& a = this->Points[ends[0]];
-  const Vec3& p = this->Points[disturbing];
+  const Vec3& p = this->Points[encroaching];
   const Vec3 edge = this->Points[ends[1]] - a;
   const Vec3 direction = (1.0 / Norm(edge)) * edge;
   const std::vector<EdgeIds>& edges = this->Surface.GetInputEdges();
   const Id own = this->Surface.GetSegment(segment).InputEdge;
   // Of several edges at the point the one along this edge matters.
   double best = PerpendicularCosine;
-  for (Id other : this->Incidences.GetEdges(disturbing))
+  for (Id other : this->Incidences.GetEdges(encroaching))
   {
     if (other == own)
     {
@@ -130,21 +130,21 @@ bool PartnerPoints::PlaceOnLine(
  * far from the corner. The foot of the perpendicular would be nearer to the corner, the point
  * matching the foot nearer still, and so on around the corner.
  */
-bool PartnerPoints::RotateToSegment(Id segment, Id disturbing, double& way) const
+bool PartnerPoints::RotateToSegment(Id segment, Id encroaching, double& way) const
 {
   const RefinableSurface::Segment& piece = this->Surface.GetSegment(segment);
-  if (this->Rules == MatchingRules::Usual || !this->Incidences.GetEdges(disturbing).empty())
+  if (this->Rules == MatchingRules::Usual || !this->Incidences.GetEdges(encroaching).empty())
   {
     return false;
   }
   const Vec3& a = this->Points[piece.Points[0]];
   const Vec3& b = this->Points[piece.Points[1]];
-  const Vec3& p = this->Points[disturbing];
+  const Vec3& p = this->Points[encroaching];
   double nearest = Infinity;
   for (Id corner : this->Surface.GetInputEdges()[piece.InputEdge])
   {
     const double distance = Distance(p, this->Points[corner]);
-    for (Id facet : this->Incidences.GetFacets(disturbing))
+    for (Id facet : this->Incidences.GetFacets(encroaching))
     {
       const IdLists::Range corners = this->Incidences.GetCorners(facet);
       if (distance < nearest && std::binary_search(corners.begin(), corners.end(), corner))
@@ -161,7 +161,7 @@ bool PartnerPoints::RotateToSegment(Id segment, Id disturbing, double& way) cons
     return true;
   }
   const Vec3 direction = (1.0 / Distance(a, b)) * (b - a);
-  const Vec3 normal = this->GetNormalAt(disturbing);
+  const Vec3 normal = this->GetNormalAt(encroaching);
   const double sine = Dot(normal, direction);
   const double cosine = std::sqrt(std::max(0.0, 1.0 - sine * sine));
   if (normal == Vec3() || cosine < MirrorCosine)
@@ -182,7 +182,7 @@ Vec3 PartnerPoints::GetNormalAt(Id point) const
     : Vec3();
 }
 
-Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id disturbing) const
+Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id encroaching) const
 {
   const EdgeIds& ends = this->Surface.GetSegment(segment).Points;
   const Vec3& a = this->Points[ends[0]];
@@ -192,17 +192,17 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id disturbing) const
   const bool isLayered = this->Rules == MatchingRules::ThinLayers;
   const double needleGap = isLayered ? LayerGapRatio : NeedleGapRatio;
   const double closeEnd = isLayered ? LayerEndRatio : CloseEndRatio;
-  for (int attempt = 0; disturbing != NoId; ++attempt)
+  for (int attempt = 0; encroaching != NoId; ++attempt)
   {
-    const Vec3& p = this->Points[disturbing];
+    const Vec3& p = this->Points[encroaching];
     const double foot = Dot(p - a, direction);
     const double height = Distance(p, a + foot * direction);
     const bool isThin = height < ThinGapRatio * length;
     double way = foot;
     Vec3 along = direction;
     double passing;
-    const bool isPartner = this->PlaceOnLine(segment, disturbing, way, along, passing) ||
-      this->RotateToSegment(segment, disturbing, way);
+    const bool isPartner = this->PlaceOnLine(segment, encroaching, way, along, passing) ||
+      this->RotateToSegment(segment, encroaching, way);
     if (passing > 0.0)
     {
       return a + passing * direction;
@@ -236,11 +236,11 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id disturbing) const
       // Another point that is much nearer to the position is matched exactly instead.
       NearestPointVisitor visitor(position, NoId, CloseMatchRatio * height);
       this->Octree.Visit(visitor, visitor.GetReach());
-      if (attempt == 0 && visitor.Nearest != NoId && visitor.Nearest != disturbing &&
+      if (attempt == 0 && visitor.Nearest != NoId && visitor.Nearest != encroaching &&
         visitor.Nearest != ends[0] && visitor.Nearest != ends[1] &&
         !this->Incidences.GetEdges(visitor.Nearest).empty())
       {
-        disturbing = visitor.Nearest;
+        encroaching = visitor.Nearest;
         continue;
       }
       return MatchExactly(SnapToCoordinates(position, p, this->Diagonal), p, length, 10,
@@ -270,14 +270,14 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id disturbing) const
   return 0.5 * (a + b);
 }
 
-bool PartnerPoints::RotateAboutEdge(Id t, Id disturbing, Vec3& target) const
+bool PartnerPoints::RotateAboutEdge(Id t, Id encroaching, Vec3& target) const
 {
   const RefinableSurface::Triangle& triangle = this->Surface.GetTriangle(t);
-  const Vec3& p = this->Points[disturbing];
+  const Vec3& p = this->Points[encroaching];
   const Vec3 center = GetCircumcenter(this->Points[triangle.Points[0]],
     this->Points[triangle.Points[1]], this->Points[triangle.Points[2]]);
   double nearest = Infinity;
-  for (Id facet : this->Incidences.GetFacets(disturbing))
+  for (Id facet : this->Incidences.GetFacets(encroaching))
   {
     this->Incidences.ForEachSharedEdge(facet, triangle.Facet,
       [&](Id edge)
@@ -300,21 +300,21 @@ bool PartnerPoints::RotateAboutEdge(Id t, Id disturbing, Vec3& target) const
   return nearest < Infinity;
 }
 
-bool PartnerPoints::RotateAboutCorner(Id t, Id disturbing, Vec3& target) const
+bool PartnerPoints::RotateAboutCorner(Id t, Id encroaching, Vec3& target) const
 {
   const RefinableSurface::Triangle& triangle = this->Surface.GetTriangle(t);
   const IdLists::Range corners = this->Incidences.GetCorners(triangle.Facet);
-  const Vec3& p = this->Points[disturbing];
+  const Vec3& p = this->Points[encroaching];
   double nearest = Infinity;
   Id corner = NoId;
-  for (Id facet : this->Incidences.GetFacets(disturbing))
+  for (Id facet : this->Incidences.GetFacets(encroaching))
   {
     const IdLists::Range others = this->Incidences.GetCorners(facet);
     const bool isSmaller = others.size() < corners.size();
     for (Id candidate : isSmaller ? others : corners)
     {
       const double distance = Distance(p, this->Points[candidate]);
-      if (candidate != disturbing && distance < nearest &&
+      if (candidate != encroaching && distance < nearest &&
         std::binary_search(
           (isSmaller ? corners : others).begin(), (isSmaller ? corners : others).end(), candidate))
       {
@@ -336,7 +336,7 @@ bool PartnerPoints::RotateAboutCorner(Id t, Id disturbing, Vec3& target) const
   const Vec3 inPlane = arm - Dot(arm, normal) * normal;
   // A point within another plane facet is mirrored at the plane midway between the two, which leads
   // back to it; that of an edge has no other facet in which it would have to be met again.
-  const Vec3 own = this->GetNormalAt(disturbing);
+  const Vec3 own = this->GetNormalAt(encroaching);
   const double cosine = Dot(own, normal);
   if (this->Rules == MatchingRules::Usual || std::abs(cosine) < MirrorCosine)
   {
@@ -356,13 +356,13 @@ bool PartnerPoints::RotateAboutCorner(Id t, Id disturbing, Vec3& target) const
  * until both are equally far from the line where the two planes meet, somewhere outside: that is
  * type R again, and mutual.
  */
-bool PartnerPoints::Project(Id t, Id disturbing, Vec3& target) const
+bool PartnerPoints::Project(Id t, Id encroaching, Vec3& target) const
 {
   const TriangleIds& ids = this->Surface.GetTriangle(t).Points;
   const Vec3& a = this->Points[ids[0]];
   const Vec3 normal = Cross(this->Points[ids[1]] - a, this->Points[ids[2]] - a);
   const double radius = Distance(a, GetCircumcenter(a, this->Points[ids[1]], this->Points[ids[2]]));
-  const Vec3& p = this->Points[disturbing];
+  const Vec3& p = this->Points[encroaching];
   Vec3 unit = (1.0 / Norm(normal)) * normal;
   unit = Dot(unit, p - a) < 0.0 ? -1.0 * unit : unit;
   const double height = Dot(unit, p - a);
@@ -373,7 +373,7 @@ bool PartnerPoints::Project(Id t, Id disturbing, Vec3& target) const
   target = p - height * unit;
   double best = 0.0;
   Vec3 other;
-  for (Id facet : this->Incidences.GetFacets(disturbing))
+  for (Id facet : this->Incidences.GetFacets(encroaching))
   {
     const Vec3& candidate = this->Incidences.GetNormal(facet);
     const double cosine = Dot(candidate, unit);
@@ -392,27 +392,27 @@ bool PartnerPoints::Project(Id t, Id disturbing, Vec3& target) const
   return true;
 }
 
-bool PartnerPoints::PlaceInFacet(Id t, Id disturbing, Vec3& target) const
+bool PartnerPoints::PlaceInFacet(Id t, Id encroaching, Vec3& target) const
 {
   // The point lies in the same (curved) facet: matches would come ever closer to it.
-  const IdLists::Range facets = this->Incidences.GetFacets(disturbing);
+  const IdLists::Range facets = this->Incidences.GetFacets(encroaching);
   if (std::find(facets.begin(), facets.end(), this->Surface.GetTriangle(t).Facet) != facets.end())
   {
     return false;
   }
   // However close to other points: only points that match exactly leave each other alone.
-  return this->RotateAboutEdge(t, disturbing, target) ||
-    this->RotateAboutCorner(t, disturbing, target) || this->Project(t, disturbing, target);
+  return this->RotateAboutEdge(t, encroaching, target) ||
+    this->RotateAboutCorner(t, encroaching, target) || this->Project(t, encroaching, target);
 }
 
 /** Moves a point in a plane facet by rounding errors, to match one of another facet exactly. */
-Vec3 PartnerPoints::MatchAcross(Id t, Id disturbing, const Vec3& position, double radius) const
+Vec3 PartnerPoints::MatchAcross(Id t, Id encroaching, const Vec3& position, double radius) const
 {
-  const Vec3& p = this->Points[disturbing];
+  const Vec3& p = this->Points[encroaching];
   const Vec3& own = this->Incidences.GetNormal(this->Surface.GetTriangle(t).Facet);
   Vec3 across;
   double best = 0.5;
-  for (Id facet : this->Incidences.GetFacets(disturbing))
+  for (Id facet : this->Incidences.GetFacets(encroaching))
   {
     const double cosine = Dot(this->Incidences.GetNormal(facet), own);
     if (std::abs(cosine) > best)

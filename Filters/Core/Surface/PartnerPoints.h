@@ -6,7 +6,7 @@
  * A point that encroaches on an edge or a triangle is answered by its partner there (thesis 6.3,
  * types P and R). Neither of the two encroaches on the pieces that end at the other, so two
  * features cannot keep encroaching on each other. Filters/Core/README.md has the proofs. The
- * thesis, and names in the code, call the encroaching point the disturbing one.
+ * thesis calls the encroaching point the disturbing one.
  *
  *  1. Partner on an edge: the point as far from the common perpendicular as the encroaching point
  *     is on its own edge. If the edges have a common corner, this is a rotation about it (type R);
@@ -74,26 +74,26 @@ public:
    * Where to split a segment on which a point encroaches; NoId: the segment is split for another
    * reason.
    */
-  Vec3 PlaceOnSegment(Id segment, Id disturbing) const;
+  Vec3 PlaceOnSegment(Id segment, Id encroaching) const;
 
   /**
    * The partner in the plane of a triangle, which may lie beyond its facet. False if there is none.
    */
-  bool PlaceInFacet(Id triangle, Id disturbing, Vec3& target) const;
+  bool PlaceInFacet(Id triangle, Id encroaching, Vec3& target) const;
 
   /**
    * Moves a point in the plane of a triangle by rounding errors, so that it matches the encroaching
    * point exactly. Radius: of the circumcircle of the triangle that is refined.
    */
-  Vec3 MatchAcross(Id triangle, Id disturbing, const Vec3& position, double radius) const;
+  Vec3 MatchAcross(Id triangle, Id encroaching, const Vec3& position, double radius) const;
 
 private:
-  bool PlaceOnLine(Id segment, Id disturbing, double& way, Vec3& along, double& passing) const;
-  bool RotateToSegment(Id segment, Id disturbing, double& way) const;
+  bool PlaceOnLine(Id segment, Id encroaching, double& way, Vec3& along, double& passing) const;
+  bool RotateToSegment(Id segment, Id encroaching, double& way) const;
   Vec3 GetNormalAt(Id point) const;
-  bool RotateAboutEdge(Id triangle, Id disturbing, Vec3& target) const;
-  bool RotateAboutCorner(Id triangle, Id disturbing, Vec3& target) const;
-  bool Project(Id triangle, Id disturbing, Vec3& target) const;
+  bool RotateAboutEdge(Id triangle, Id encroaching, Vec3& target) const;
+  bool RotateAboutCorner(Id triangle, Id encroaching, Vec3& target) const;
+  bool Project(Id triangle, Id encroaching, Vec3& target) const;
 
   const RefinableSurface& Surface;
   SurfaceIncidences& Incidences;

@@ -87,7 +87,7 @@ void RefinableSurface::TurnTriangle(Id t)
   Triangle& triangle = this->Triangles[t];
   std::swap(triangle.Points[1], triangle.Points[2]);
   std::swap(triangle.Labels.Front, triangle.Labels.Back);
-  triangle.IsTurned = !triangle.IsTurned;
+  triangle.IsReversed = !triangle.IsReversed;
   std::swap(triangle.Adjacent[0], triangle.Adjacent[2]);
   for (int i = 0; i < 3; i += 2)
   {
@@ -401,7 +401,7 @@ void RefinableSurface::Export(TriangleMesh& surface) const
   {
     TriangleIds ids = triangle.Points;
     RegionPair labels = triangle.Labels;
-    if (triangle.IsTurned)
+    if (triangle.IsReversed)
     {
       std::swap(ids[1], ids[2]);
       std::swap(labels.Front, labels.Back);

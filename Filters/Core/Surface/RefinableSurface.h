@@ -39,7 +39,7 @@ public:
     Id Source = NoId;
     RegionPair Labels;
     /** Reversed against the input; Export() sets it back. */
-    bool IsTurned = false;
+    bool IsReversed = false;
   };
 
   struct Segment

@@ -24,7 +24,7 @@ constexpr std::size_t ReportInterval = 256;
  * In curved facets, points closer to others than this are too close, in shortest edges of the input
  * triangle.
  */
-constexpr double CrumplingRatio = 1.0 / 8.0;
+constexpr double OverrefinementRatio = 1.0 / 8.0;
 /**
  * If another point is closer to a match than this part of the encroaching point's distance, it is
  * match enough. The triangle is too large then: a match would encroach on what lies between.
@@ -306,8 +306,8 @@ bool SurfaceRefinement::IsUnresolved(Id triangle) const
   for (int i = 0; i < 3; ++i)
   {
     const Id segment = this->Surface->GetSegmentAt(triangle, i);
-    if (segment != NoId && static_cast<std::size_t>(segment) < this->IsDisturbed.size() &&
-      this->IsDisturbed[segment] != 0)
+    if (segment != NoId && static_cast<std::size_t>(segment) < this->IsEncroached.size() &&
+      this->IsEncroached[segment] != 0)
     {
       return true;
     }
@@ -388,8 +388,8 @@ void SurfaceRefinement::GiveUp()
   }
   for (const auto& [length, segment] : this->EdgeQueue)
   {
-    this->IsDisturbed.resize(this->Surface->GetNumberOfSegments(), 0);
-    this->IsDisturbed[segment] = 1;
+    this->IsEncroached.resize(this->Surface->GetNumberOfSegments(), 0);
+    this->IsEncroached[segment] = 1;
   }
   this->Queue.clear();
   this->EdgeQueue.clear();
@@ -399,7 +399,7 @@ void SurfaceRefinement::JudgeRelaxed()
 {
   this->WeakTriangles.clear();
   this->NumberOfFailures = static_cast<Id>(std::count(this->IsBad.begin(), this->IsBad.end(), 1) +
-    std::count(this->IsDisturbed.begin(), this->IsDisturbed.end(), 1));
+    std::count(this->IsEncroached.begin(), this->IsEncroached.end(), 1));
   if (this->Options.Criterion == SurfaceCriterion::Delaunay || !this->IsRelaxed())
   {
     return;
@@ -410,12 +410,12 @@ void SurfaceRefinement::JudgeRelaxed()
   {
     this->WeakTriangles[t] = this->IsGood(t, found, true) ? 0 : 1;
   }
-  this->IsDisturbed.resize(this->Surface->GetNumberOfSegments(), 0);
+  this->IsEncroached.resize(this->Surface->GetNumberOfSegments(), 0);
   for (Id s = 0; s < this->Surface->GetNumberOfSegments() && this->AreEdgesTested(); ++s)
   {
     DiametralSphereVisitor visitor(this->Points, this->Surface->GetSegment(s).Points);
     this->Octree.Visit(visitor, visitor.GetReach());
-    this->IsDisturbed[s] = visitor.Found != NoId ? 1 : 0;
+    this->IsEncroached[s] = visitor.Found != NoId ? 1 : 0;
   }
 }
 
@@ -536,13 +536,13 @@ void SurfaceRefinement::TestAgainAround(const Vec3& position)
   }
 }
 
-bool SurfaceRefinement::SplitSegment(Id segment, Id disturbing)
+bool SurfaceRefinement::SplitSegment(Id segment, Id encroaching)
 {
   const EdgeIds ends = this->Surface->GetSegment(segment).Points;
   const Vec3 a = this->Points[ends[0]];
   const Vec3 b = this->Points[ends[1]];
   const double length = Distance(a, b);
-  Vec3 position = this->Partners->PlaceOnSegment(segment, disturbing);
+  Vec3 position = this->Partners->PlaceOnSegment(segment, encroaching);
   for (int attempt = 0; attempt < 2; ++attempt)
   {
     if (std::min(Distance(position, a), Distance(position, b)) >= this->MinimumEdge &&
@@ -569,9 +569,9 @@ bool SurfaceRefinement::SplitSegment(Id segment, Id disturbing)
   return false;
 }
 
-SurfaceRefinement::DisturbedEdge SurfaceRefinement::FindDisturbedEdge(Id t) const
+SurfaceRefinement::EncroachedEdge SurfaceRefinement::FindEncroachedEdge(Id t) const
 {
-  DisturbedEdge best;
+  EncroachedEdge best;
   double bestDepth = Infinity;
   const auto consider = [&](Id segment, const std::vector<Id>& points)
   {
@@ -615,32 +615,32 @@ SurfaceRefinement::DisturbedEdge SurfaceRefinement::FindDisturbedEdge(Id t) cons
   return best;
 }
 
-bool SurfaceRefinement::ResolveInFacet(Id t, Id disturbing, const Vec3& target, bool isMirrored)
+bool SurfaceRefinement::ResolveInFacet(Id t, Id encroaching, const Vec3& target, bool isMirrored)
 {
   const RefinableSurface& surface = *this->Surface;
   const TriangleIds start = surface.GetTriangle(t).Points;
   FacetWalk::Landing landing;
-  if (!this->Walk->Run(t, isMirrored ? disturbing : NoId, target, landing))
+  if (!this->Walk->Run(t, isMirrored ? encroaching : NoId, target, landing))
   {
     return false;
   }
   if (landing.Segment != NoId)
   {
     const EdgeIds& ends = surface.GetSegment(landing.Segment).Points;
-    const auto isDisturbedBy = [&](const Vec3& p)
+    const auto isEncroachedBy = [&](const Vec3& p)
     { return InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], p) >= 0; };
-    const bool isDisturbed = disturbing != NoId && isDisturbedBy(this->Points[disturbing]);
-    if (isMirrored && !isDisturbed && this->IsMatchedByEnd(landing.Segment, disturbing, target))
+    const bool isEncroached = encroaching != NoId && isEncroachedBy(this->Points[encroaching]);
+    if (isMirrored && !isEncroached && this->IsMatchedByEnd(landing.Segment, encroaching, target))
     {
       return false;
     }
     const bool isTargetPartner =
-      this->Plan.Rules != MatchingRules::Usual && isMirrored && isDisturbedBy(target);
+      this->Plan.Rules != MatchingRules::Usual && isMirrored && isEncroachedBy(target);
     // On a curved facet the walk may lead to an edge that has nothing to do with the triangle.
-    return (isDisturbed || isDisturbedBy(target) ||
-             std::any_of(
-               start.begin(), start.end(), [&](Id p) { return isDisturbedBy(this->Points[p]); })) &&
-      this->SplitSegment(landing.Segment, isDisturbed || isTargetPartner ? disturbing : NoId);
+    return (isEncroached || isEncroachedBy(target) ||
+             std::any_of(start.begin(), start.end(),
+               [&](Id p) { return isEncroachedBy(this->Points[p]); })) &&
+      this->SplitSegment(landing.Segment, isEncroached || isTargetPartner ? encroaching : NoId);
   }
 
   // A point that does not encroach on the triangle would not remove it (on curved facets).
@@ -653,8 +653,8 @@ bool SurfaceRefinement::ResolveInFacet(Id t, Id disturbing, const Vec3& target, 
   }
   if (isMirrored && this->Plan.Rules == MatchingRules::ThinLayers)
   {
-    const double reach = CloseMatchRatio * Distance(position, this->Points[disturbing]);
-    NearestPointVisitor visitor(position, disturbing, reach);
+    const double reach = CloseMatchRatio * Distance(position, this->Points[encroaching]);
+    NearestPointVisitor visitor(position, encroaching, reach);
     this->Octree.Visit(visitor, visitor.GetReach());
     const IdLists::Range facets =
       visitor.Nearest != NoId ? this->Incidences->GetFacets(visitor.Nearest) : IdLists::Range();
@@ -666,18 +666,18 @@ bool SurfaceRefinement::ResolveInFacet(Id t, Id disturbing, const Vec3& target, 
   const Id current = landing.Triangle;
   if (landing.Edge != NoId && surface.GetSegmentAt(current, landing.Edge) != NoId)
   {
-    return this->SplitSegment(surface.GetSegmentAt(current, landing.Edge), disturbing);
+    return this->SplitSegment(surface.GetSegmentAt(current, landing.Edge), encroaching);
   }
 
   // A point that would encroach on an edge of the facet must not be made: split the edge instead.
   const Id encroached = this->Walk->FindEncroachedSegment(current, position);
   if (encroached != NoId)
   {
-    if (isMirrored && this->IsMatchedByEnd(encroached, disturbing, position))
+    if (isMirrored && this->IsMatchedByEnd(encroached, encroaching, position))
     {
       return false;
     }
-    return this->SplitSegment(encroached, isMirrored ? disturbing : NoId);
+    return this->SplitSegment(encroached, isMirrored ? encroaching : NoId);
   }
 
   const TriangleIds ids = surface.GetTriangle(current).Points;
@@ -764,7 +764,7 @@ bool SurfaceRefinement::FindTooCoarse(Id t, Id& segment) const
  * triangle may encroach on its neighbors, which are bent against it, and so on with ever smaller
  * triangles. Points much closer to each other than those of the input are a sign of that.
  */
-void SurfaceRefinement::NoteCrumpling(Id t, Id newPoint)
+void SurfaceRefinement::NoteOverrefinement(Id t, Id newPoint)
 {
   const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
   if (this->ShortestEdges.empty() || newPoint >= static_cast<Id>(this->Points.size()) ||
@@ -772,11 +772,11 @@ void SurfaceRefinement::NoteCrumpling(Id t, Id newPoint)
   {
     return;
   }
-  const double reach = CrumplingRatio * this->ShortestEdges[triangle.Source];
+  const double reach = OverrefinementRatio * this->ShortestEdges[triangle.Source];
   if (this->HasPointNear(this->Points[newPoint], reach, newPoint))
   {
-    this->IsCrumpled.resize(this->ShortestEdges.size(), 0);
-    this->IsCrumpled[triangle.Source] = 1;
+    this->IsOverrefined.resize(this->ShortestEdges.size(), 0);
+    this->IsOverrefined[triangle.Source] = 1;
   }
 }
 
@@ -784,13 +784,13 @@ void SurfaceRefinement::NoteCrumpling(Id t, Id newPoint)
  * Whether an end of a segment matches the encroaching point as well as the position does. The usual
  * rules do not ask for it.
  */
-bool SurfaceRefinement::IsMatchedByEnd(Id segment, Id disturbing, const Vec3& position) const
+bool SurfaceRefinement::IsMatchedByEnd(Id segment, Id encroaching, const Vec3& position) const
 {
   const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
   const double nearest =
     std::min(Distance(position, this->Points[ends[0]]), Distance(position, this->Points[ends[1]]));
   return this->Plan.Rules != MatchingRules::Usual &&
-    nearest < CloseMatchRatio * Distance(position, this->Points[disturbing]);
+    nearest < CloseMatchRatio * Distance(position, this->Points[encroaching]);
 }
 
 /**
@@ -867,14 +867,15 @@ void SurfaceRefinement::Process(Id t, QueueState state)
   {
     return;
   }
-  if (!this->IsCrumpled.empty() && this->IsCrumpled[this->Surface->GetTriangle(t).Source] != 0)
+  if (!this->IsOverrefined.empty() &&
+    this->IsOverrefined[this->Surface->GetTriangle(t).Source] != 0)
   {
     this->IsBad[t] = 1;
     return;
   }
   // Whatever is done now, t is looked at again: the new point need not have changed it.
   this->IsBad[t] = 0;
-  const DisturbedEdge edge = this->FindDisturbedEdge(t);
+  const EncroachedEdge edge = this->FindEncroachedEdge(t);
   if (edge.Segment != NoId && state == QueueState::First &&
     this->Options.Criterion == SurfaceCriterion::SmallestSphere && !this->IsRescuing())
   {
@@ -891,20 +892,21 @@ void SurfaceRefinement::Process(Id t, QueueState state)
     this->Enqueue(t, QueueState::Last, this->GetNextNumber());
     return;
   }
-  const Id disturbing = !this->Found.InsideSmallestSphere.empty()
+  const Id encroaching = !this->Found.InsideSmallestSphere.empty()
     ? this->Found.InsideSmallestSphere.front()
     : !this->Found.OnSmallestSphere.empty() ? this->Found.OnSmallestSphere.front()
     : !this->Found.Cocircular.empty()       ? this->Found.Cocircular.front()
                                             : NoId;
   const Id newPoint = static_cast<Id>(this->Points.size());
   Vec3 target;
-  const bool isMirrored = disturbing != NoId && this->Partners->PlaceInFacet(t, disturbing, target);
-  if ((isMirrored && this->ResolveInFacet(t, disturbing, target, true)) ||
-    (this->FindShellPoint(t, target) && this->ResolveInFacet(t, disturbing, target, false)) ||
-    this->ResolveInFacet(t, disturbing, this->FindCircumcenter(t), false) ||
+  const bool isMirrored =
+    encroaching != NoId && this->Partners->PlaceInFacet(t, encroaching, target);
+  if ((isMirrored && this->ResolveInFacet(t, encroaching, target, true)) ||
+    (this->FindShellPoint(t, target) && this->ResolveInFacet(t, encroaching, target, false)) ||
+    this->ResolveInFacet(t, encroaching, this->FindCircumcenter(t), false) ||
     this->SplitLongestEdge(t))
   {
-    this->NoteCrumpling(t, newPoint);
+    this->NoteOverrefinement(t, newPoint);
     this->Enqueue(t);
     return;
   }
@@ -950,8 +952,8 @@ void SurfaceRefinement::ProcessEdge()
   this->CollectIncidences();
   if (!this->SplitSegment(segment, visitor.Found))
   {
-    this->IsDisturbed.resize(this->Surface->GetNumberOfSegments(), 0);
-    this->IsDisturbed[segment] = 1;
+    this->IsEncroached.resize(this->Surface->GetNumberOfSegments(), 0);
+    this->IsEncroached[segment] = 1;
   }
 }
 

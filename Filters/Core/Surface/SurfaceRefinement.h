@@ -145,7 +145,7 @@ public:
    * Marks triangles of the input in curved facets where points come too close to each other; empty
    * if there are none. These triangles are not refined further.
    */
-  const std::vector<char>& GetCrumpled() const { return this->IsCrumpled; }
+  const std::vector<char>& GetOverrefined() const { return this->IsOverrefined; }
 
   /** Triangles that may have been changed since this was last asked for, ascending. */
   std::vector<Id> TakeTouched();
@@ -171,7 +171,7 @@ private:
     Last
   };
 
-  struct DisturbedEdge
+  struct EncroachedEdge
   {
     Id Segment = NoId;
     /** The point that encroaches on the segment, and its distance from the middle. */
@@ -197,7 +197,7 @@ private:
   void Saturate();
   void EnqueueAll();
   void Process(Id t, QueueState state);
-  void NoteCrumpling(Id t, Id newPoint);
+  void NoteOverrefinement(Id t, Id newPoint);
   void ProcessEdge();
   bool AreEdgesTested() const
   {
@@ -221,12 +221,12 @@ private:
   bool FindTooCoarse(Id t, Id& segment) const;
 
   /** The edge of a bad triangle that is encroached on most, or none. */
-  DisturbedEdge FindDisturbedEdge(Id t) const;
+  EncroachedEdge FindEncroachedEdge(Id t) const;
 
   // Each returns true if it has changed the surface.
   bool ResolveByFlip(Id t);
-  bool ResolveInFacet(Id t, Id disturbing, const Vec3& target, bool isMirrored);
-  bool SplitSegment(Id segment, Id disturbing);
+  bool ResolveInFacet(Id t, Id encroaching, const Vec3& target, bool isMirrored);
+  bool SplitSegment(Id segment, Id encroaching);
   bool SplitLongestEdge(Id t);
 
   void Legalize(std::vector<Id>& uses);
@@ -235,7 +235,7 @@ private:
   void Touch(Id t);
   Vec3 FindCircumcenter(Id t) const;
   bool FindShellPoint(Id t, Vec3& target) const;
-  bool IsMatchedByEnd(Id segment, Id disturbing, const Vec3& position) const;
+  bool IsMatchedByEnd(Id segment, Id encroaching, const Vec3& position) const;
   void Enqueue(Id t);
   void Enqueue(Id t, QueueState state, double order);
   double GetNextNumber() { return static_cast<double>(this->NumberOfEnqueued++); }
@@ -282,7 +282,7 @@ private:
   std::unique_ptr<FacetWalk> Walk;
   /** Shortest edge of each triangle of the input; empty if all facets are plane. */
   std::vector<double> ShortestEdges;
-  std::vector<char> IsCrumpled;
+  std::vector<char> IsOverrefined;
   BallIndex Proofs;
   /** Triangles to be tested, as a heap. */
   std::vector<QueueEntry> Queue;
@@ -305,7 +305,7 @@ private:
   std::vector<std::pair<double, Id>> EdgeQueue;
   BallIndex EmptyEdges;
   /** Marks segments that are encroached on and cannot be split. */
-  std::vector<char> IsDisturbed;
+  std::vector<char> IsEncroached;
 };
 } // namespace cdm
 

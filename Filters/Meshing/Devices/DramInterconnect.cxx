@@ -4,25 +4,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 namespace cdm
 {
 namespace
 {
+constexpr Id Insulator = 0;
+
 /** Parallel lines in the middles of strips of equal width. */
 struct Comb
 {
   double Pitch;
   int Number;
 
-  int GetStrip(double place) const
+  int GetStrip(double position) const
   {
-    return std::clamp(static_cast<int>(std::floor(place / this->Pitch)), 0, this->Number - 1);
+    return std::clamp(static_cast<int>(std::floor(position / this->Pitch)), 0, this->Number - 1);
   }
   double GetCenter(int strip) const { return (strip + 0.5) * this->Pitch; }
-  double GetDistance(double place) const
+  double GetDistance(double position) const
   {
-    return std::abs(place - this->GetCenter(this->GetStrip(place)));
+    return std::abs(position - this->GetCenter(this->GetStrip(position)));
   }
 };
 
@@ -47,9 +51,56 @@ void AddFlankLines(std::vector<double>& lines, double center, const Flank& flank
     lines.push_back(center + halfWidth);
   }
 }
-} // namespace
+/** Lines, plugs and levels of the device. */
+struct Plan
+{
+  explicit Plan(const DramParameters& p);
+  Id GetWordLine(double y) const { return 1 + this->WordLines.GetStrip(y); }
+  Id GetBitLine(double x) const { return 1 + this->WordLines.Number + this->BitLines.GetStrip(x); }
+  double GetPlugDistance(double x, double y) const;
 
-std::string MakeDramInterconnect(const DramParameters& p, Device& device)
+  /** Word lines stand on the first level, bit lines on the third, plugs on 0. */
+  double Levels[6];
+  /** By how much the sides of lines come in from bottom to top, for each unit of height. */
+  double Slope;
+  /**
+   * Lines are narrower at the top, plugs as much at the bottom, so that the masks have common
+   * edges.
+   */
+  Flank Sides;
+  Comb WordLines;
+  Comb BitLines;
+};
+
+Plan::Plan(const DramParameters& p)
+  : WordLines{ p.LinePitch, p.NumberOfWordLines }, BitLines{ p.LinePitch, p.NumberOfBitLines }
+{
+  this->Levels[0] = 0.0;
+  for (int i = 1; i < 6; ++i)
+  {
+    this->Levels[i] = this->Levels[i - 1] + (i % 2 == 0 ? p.LineThickness : p.InsulatorThickness);
+  }
+  const CosineSine slant = GetCosineSine(p.SidewallAngle);
+  this->Slope = slant.Sine / slant.Cosine;
+  const double halfWidth = 0.5 * p.LineWidth;
+  this->Sides = { halfWidth - this->Slope * p.LineThickness, halfWidth };
+}
+
+/**
+ * The distance from the axis of a plug, along x or y, the larger one; or one beyond all plugs.
+ * Between the word lines each bit line has a plug in every other gap.
+ */
+double Plan::GetPlugDistance(double x, double y) const
+{
+  const double pitch = this->WordLines.Pitch;
+  const double gap = std::round(y / pitch);
+  const bool isPlug = gap > 0.0 && gap < this->WordLines.Number &&
+    (static_cast<int>(gap) + this->BitLines.GetStrip(x)) % 2 == 0;
+  return isPlug ? std::max(this->BitLines.GetDistance(x), std::abs(y - gap * pitch))
+                : this->WordLines.Number * pitch;
+}
+
+std::string CheckParameters(const DramParameters& p, const Plan& plan)
 {
   std::string problem = CheckLengths({ { "LinePitch", p.LinePitch }, { "LineWidth", p.LineWidth },
     { "LineThickness", p.LineThickness }, { "InsulatorThickness", p.InsulatorThickness } });
@@ -57,65 +108,93 @@ std::string MakeDramInterconnect(const DramParameters& p, Device& device)
   {
     problem = "SidewallAngle has to be in the range from 0.1 to 45 degrees.";
   }
-  // Levels: word lines stand on z1, bit lines on z3, plugs on 0.
-  const double z1 = p.InsulatorThickness;
-  const double z2 = z1 + p.LineThickness;
-  const double z3 = z2 + p.InsulatorThickness;
-  const double z4 = z3 + p.LineThickness;
-  const double z5 = z4 + p.InsulatorThickness;
-  const CosineSine slant = GetCosineSine(p.SidewallAngle);
-  const double slope = slant.Sine / slant.Cosine;
-  const double halfWidth = 0.5 * p.LineWidth;
-  // Lines are narrower at the top, plugs as much at the bottom, so that the masks have common
-  // edges.
-  const Flank flank{ halfWidth - slope * p.LineThickness, halfWidth };
   if (problem.empty())
   {
     problem = CheckLess({ "2 LineWidth", 2.0 * p.LineWidth }, { "LinePitch", p.LinePitch });
   }
   if (problem.empty())
   {
-    problem = CheckLess({ "2 tan(SidewallAngle) LineThickness", 2.0 * slope * p.LineThickness },
-      { "LineWidth", p.LineWidth });
+    problem =
+      CheckLess({ "2 tan(SidewallAngle) LineThickness", 2.0 * plan.Slope * p.LineThickness },
+        { "LineWidth", p.LineWidth });
   }
-  if (!problem.empty())
-  {
-    return problem;
-  }
+  return problem;
+}
 
-  const Comb wordLines{ p.LinePitch, p.NumberOfWordLines };
-  const Comb bitLines{ p.LinePitch, p.NumberOfBitLines };
-  const double lengthX = p.NumberOfBitLines * p.LinePitch;
-  const double lengthY = p.NumberOfWordLines * p.LinePitch;
-  std::vector<double> x{ 0.0, lengthX };
-  std::vector<double> y{ 0.0, lengthY };
-  for (int i = 0; i < p.NumberOfBitLines; ++i)
+/** Lines of the layout along x and y, in which all masks have their edges. */
+std::string MakeLines(const Plan& plan, std::vector<double>& x, std::vector<double>& y)
+{
+  const double pitch = plan.WordLines.Pitch;
+  x = { 0.0, plan.BitLines.Number * pitch };
+  y = { 0.0, plan.WordLines.Number * pitch };
+  for (int i = 0; i < plan.BitLines.Number; ++i)
   {
-    AddFlankLines(x, bitLines.GetCenter(i), flank);
+    AddFlankLines(x, plan.BitLines.GetCenter(i), plan.Sides);
   }
-  for (int i = 0; i < p.NumberOfWordLines; ++i)
+  for (int i = 0; i < plan.WordLines.Number; ++i)
   {
-    AddFlankLines(y, wordLines.GetCenter(i), flank);
+    AddFlankLines(y, plan.WordLines.GetCenter(i), plan.Sides);
     if (i > 0)
     {
-      AddFlankLines(y, i * p.LinePitch, flank);
+      AddFlankLines(y, i * pitch, plan.Sides);
     }
   }
-  problem = SortLines(x, "LinePitch, LineWidth, LineThickness and InsulatorThickness");
+  constexpr const char* parameters = "LinePitch, LineWidth, LineThickness and InsulatorThickness";
+  std::string problem = SortLines(x, parameters);
   if (problem.empty())
   {
-    problem = SortLines(y, "LinePitch, LineWidth, LineThickness and InsulatorThickness");
+    problem = SortLines(y, parameters);
   }
+  return problem.empty() ? CheckAscending({ std::begin(plan.Levels), std::end(plan.Levels) },
+                             "LineThickness and InsulatorThickness")
+                         : problem;
+}
+
+void AddLayers(const Plan& plan, GridLayout& layout)
+{
+  const Flank& flank = plan.Sides;
+  const double* const z = plan.Levels;
+  // Positions on the outline of a plug count as inside, whatever was rounded.
+  const double outline = flank.Outer * (1.0 + 1e-9);
+  const auto getInsulator = [](double, double) { return Insulator; };
+  const auto getPlug = [&plan, outline](double x, double y)
+  { return plan.GetPlugDistance(x, y) < outline ? plan.GetBitLine(x) : Insulator; };
+  layout.AddLayer(
+    [&](double x, double y)
+    {
+      const double distance = plan.GetPlugDistance(x, y);
+      return distance < outline && !flank.IsInner(distance) ? z[3] : 0.0;
+    },
+    getInsulator);
+  layout.AddLayer(z[1], getPlug);
+  layout.AddLayer([&](double, double y)
+    { return flank.IsInner(plan.WordLines.GetDistance(y)) ? z[2] : z[1]; },
+    [&](double, double y) { return plan.GetWordLine(y); });
+  layout.AddLayer(z[2], getPlug);
+  layout.AddLayer(z[3], getPlug);
+  layout.AddLayer([&](double x, double)
+    { return flank.IsInner(plan.BitLines.GetDistance(x)) ? z[4] : z[3]; },
+    [&](double x, double) { return plan.GetBitLine(x); });
+  layout.AddLayer(z[4], getInsulator);
+  layout.AddLayer(z[5], getInsulator);
+}
+} // namespace
+
+std::string MakeDramInterconnect(const DramParameters& p, Device& device)
+{
+  const Plan plan(p);
+  std::string problem = CheckParameters(p, plan);
+  std::vector<double> x;
+  std::vector<double> y;
   if (problem.empty())
   {
-    problem = CheckAscending({ 0.0, z1, z2, z3, z4, z5 }, "LineThickness and InsulatorThickness");
+    problem = MakeLines(plan, x, y);
   }
   if (!problem.empty())
   {
     return problem;
   }
 
-  constexpr Id insulator = 0;
   device.RegionNames = { "Insulator" };
   for (int i = 0; i < p.NumberOfWordLines; ++i)
   {
@@ -125,51 +204,17 @@ std::string MakeDramInterconnect(const DramParameters& p, Device& device)
   {
     device.RegionNames.push_back("BitLine" + std::to_string(i + 1));
   }
-  const auto getWordLine = [=](double v) -> Id { return 1 + wordLines.GetStrip(v); };
-  const auto getBitLine = [=](double u) -> Id
-  { return 1 + p.NumberOfWordLines + bitLines.GetStrip(u); };
-
-  // Between the word lines each bit line has a plug in every other gap.
-  const auto getPlugDistance = [=](double u, double v)
-  {
-    const double gap = std::round(v / p.LinePitch);
-    const bool isPlug = gap > 0.0 && gap < p.NumberOfWordLines &&
-      (static_cast<int>(gap) + bitLines.GetStrip(u)) % 2 == 0;
-    return isPlug ? std::max(bitLines.GetDistance(u), std::abs(v - gap * p.LinePitch)) : lengthY;
-  };
-  // Places on the outline of a plug count as inside, whatever was rounded.
-  const double outline = halfWidth * (1.0 + 1e-9);
-  const auto getPlugRegion = [=](double u, double v, Id other)
-  { return getPlugDistance(u, v) < outline ? getBitLine(u) : other; };
-
   GridLayout layout(x, y, 0.0);
-  layout.AddLayer(
-    [=](double u, double v)
-    {
-      const double distance = getPlugDistance(u, v);
-      return distance < outline && !flank.IsInner(distance) ? z3 : 0.0;
-    },
-    [](double, double) { return insulator; });
-  layout.AddLayer(z1, [=](double u, double v) { return getPlugRegion(u, v, insulator); });
-  layout.AddLayer([=](double, double v)
-    { return flank.IsInner(wordLines.GetDistance(v)) ? z2 : z1; },
-    [=](double, double v) { return getWordLine(v); });
-  layout.AddLayer(z2, [=](double u, double v) { return getPlugRegion(u, v, insulator); });
-  layout.AddLayer(z3, [=](double u, double v) { return getPlugRegion(u, v, insulator); });
-  layout.AddLayer([=](double u, double)
-    { return flank.IsInner(bitLines.GetDistance(u)) ? z4 : z3; },
-    [=](double u, double) { return getBitLine(u); });
-  layout.AddLayer(z4, [](double, double) { return insulator; });
-  layout.AddLayer(z5, [](double, double) { return insulator; });
+  AddLayers(plan, layout);
   layout.MakeBoundary(device);
 
   for (std::size_t region = 1; region < device.RegionNames.size(); ++region)
   {
     device.Contacts.push_back({ device.RegionNames[region] + "Contact",
-      { insulator, static_cast<Id>(region) }, [](const Vec3&) { return true; } });
+      { Insulator, static_cast<Id>(region) }, [](const Vec3&) { return true; } });
   }
   device.Contacts.push_back(
-    { "SubstrateContact", { OutsideRegion, insulator }, [](const Vec3& v) { return v.Z == 0.0; } });
+    { "SubstrateContact", { OutsideRegion, Insulator }, [](const Vec3& v) { return v.Z == 0.0; } });
   return {};
 }
 } // namespace cdm

@@ -3,13 +3,35 @@
 #include "Devices/LayeredStructure.h"
 #include "RoundHole.h"
 
+#include <array>
 #include <utility>
+#include <vector>
 
 namespace cdm
 {
-std::string MakeLinedVia(const LinedViaParameters& p, Device& device)
+namespace
 {
-  const bool hasTrench = p.HasTrench;
+enum Region : Id
+{
+  Insulator,
+  BottomMetal,
+  Barrier,
+  Gas
+};
+
+enum Zone
+{
+  /** Outside of the trench. */
+  Field,
+  TrenchWall,
+  /** Floor of the trench, or all around the via where there is no trench. */
+  Floor,
+  ViaWall,
+  Hole
+};
+
+std::string CheckParameters(const LinedViaParameters& p)
+{
   const double barrier = p.BarrierThickness;
   const Parameter height{ "ViaHeight", p.ViaHeight };
   const Parameter box{ "BoxSize", p.BoxSize };
@@ -22,7 +44,7 @@ std::string MakeLinedVia(const LinedViaParameters& p, Device& device)
       { "ViaDiameter", p.ViaDiameter } },
     { { "BarrierAsymmetry", p.BarrierAsymmetry },
       { "cos(180 / NumberOfSegments)", GetCosineSine(180.0 / p.NumberOfSegments).Cosine } } };
-  if (hasTrench)
+  if (p.HasTrench)
   {
     const Parameter width{ "TrenchWidth", p.TrenchWidth };
     const Parameter depth{ "TrenchDepth", p.TrenchDepth };
@@ -40,54 +62,50 @@ std::string MakeLinedVia(const LinedViaParameters& p, Device& device)
   {
     problem = problem.empty() ? CheckLess(small, large) : problem;
   }
+  return problem;
+}
 
-  // From the landing of the via upwards; where there is a trench it ends on top of the last but
-  // two.
+/**
+ * From the landing of the via upwards; where there is a trench it ends on top of the last but two.
+ */
+std::vector<double> MakeLevels(const LinedViaParameters& p)
+{
+  const double barrier = p.BarrierThickness;
   std::vector<double> levels{ 0.0, barrier, p.ViaHeight, p.ViaHeight + barrier };
-  if (hasTrench)
+  if (p.HasTrench)
   {
     levels.push_back(p.ViaHeight + p.TrenchDepth);
     levels.push_back(levels.back() + barrier);
   }
   levels.push_back(levels.back() + p.GasHeight);
-  const double boxEdge = 0.5 * p.BoxSize;
-  const double wall = 0.5 * p.TrenchWidth;
-  const double radius = 0.5 * p.ViaDiameter;
-  if (problem.empty())
-  {
-    problem = CheckAscending(
-      levels, "ViaHeight, BarrierThickness, TrenchDepth, GasHeight and BottomLineThickness");
-  }
-  if (problem.empty())
-  {
-    problem = CheckAscending({ radius - barrier, radius, hasTrench ? wall - barrier : boxEdge,
-                               hasTrench ? wall : 2.0 * boxEdge },
-      "ViaDiameter, BarrierThickness, TrenchWidth and BoxSize");
-  }
+  return levels;
+}
+
+/** Whether positions made of the parameters differ. */
+std::string CheckPositions(const LinedViaParameters& p, const std::vector<double>& levels)
+{
+  const std::string problem = CheckAscending(
+    levels, "ViaHeight, BarrierThickness, TrenchDepth, GasHeight and BottomLineThickness");
   if (!problem.empty())
   {
     return problem;
   }
+  const double radius = 0.5 * p.ViaDiameter;
+  const double boxEdge = 0.5 * p.BoxSize;
+  const double wall = 0.5 * p.TrenchWidth;
+  return CheckAscending(
+    { radius - p.BarrierThickness, radius, p.HasTrench ? wall - p.BarrierThickness : boxEdge,
+      p.HasTrench ? wall : 2.0 * boxEdge },
+    "ViaDiameter, BarrierThickness, TrenchWidth and BoxSize");
+}
 
-  enum Region : Id
-  {
-    Insulator,
-    BottomMetal,
-    Barrier,
-    Gas
-  };
-  device.RegionNames = { "Insulator", "BottomMetal", "Barrier", "Gas" };
-  enum Zone
-  {
-    /** Outside of the trench. */
-    Field,
-    TrenchWall,
-    /** Floor of the trench, or all around the via where there is no trench. */
-    Floor,
-    ViaWall,
-    Hole
-  };
-  LayeredStructure structure(2, -p.BottomLineThickness);
+/** Adds the cells of the layout; the result is the zone of each. */
+std::vector<Zone> AddCells(const LinedViaParameters& p, LayeredStructure& structure)
+{
+  const double barrier = p.BarrierThickness;
+  const double boxEdge = 0.5 * p.BoxSize;
+  const double wall = 0.5 * p.TrenchWidth;
+  const double radius = 0.5 * p.ViaDiameter;
   std::vector<Zone> zones;
   const auto addCell = [&](std::vector<Id> outline, Zone zone)
   {
@@ -96,15 +114,15 @@ std::string MakeLinedVia(const LinedViaParameters& p, Device& device)
   };
   // Strips along y.
   std::vector<double> x{ -boxEdge, boxEdge };
-  if (hasTrench)
+  if (p.HasTrench)
   {
     x = { -boxEdge, -wall, -(wall - barrier), wall - barrier, wall, boxEdge };
   }
   std::vector<std::array<Id, 2>> lines;
-  for (const double place : x)
+  for (const double position : x)
   {
-    const Id first = structure.AddVertex(place, -boxEdge);
-    lines.push_back({ first, structure.AddVertex(place, boxEdge) });
+    const Id first = structure.AddVertex(position, -boxEdge);
+    lines.push_back({ first, structure.AddVertex(position, boxEdge) });
   }
   const std::size_t middle = lines.size() / 2 - 1;
   for (std::size_t i = 0; i + 1 < lines.size(); ++i)
@@ -137,32 +155,53 @@ std::string MakeLinedVia(const LinedViaParameters& p, Device& device)
     addCell({ hole.Circle[i], hole.Circle[next], inner[next], inner[i] }, ViaWall);
   }
   addCell(std::move(inner), Hole);
+  return zones;
+}
 
-  // From which level on a zone is barrier, and gas; insulator below.
+void AddLayers(
+  const std::vector<double>& levels, const std::vector<Zone>& zones, LayeredStructure& structure)
+{
+  // For each zone the layer from which on it is barrier, and gas; it is insulator below.
   const int surface = static_cast<int>(levels.size()) - 3;
-  const auto getRegion = [=](Zone zone, int layer) -> Id
-  {
-    const int barrierBegins = zone == Field ? surface : zone > Floor ? 0 : 2;
-    const int gasBegins = zone == Hole ? 1 : zone > TrenchWall ? 3 : surface + 1;
-    return layer < barrierBegins ? Insulator : layer < gasBegins ? Barrier : Gas;
-  };
+  const std::pair<int, int> begins[] = { { surface, surface + 1 }, { 2, surface + 1 }, { 2, 3 },
+    { 0, 3 }, { 0, 1 } };
   structure.AddLayer(0.0, std::vector<Id>(zones.size(), BottomMetal));
   for (int layer = 0; layer + 1 < static_cast<int>(levels.size()); ++layer)
   {
     std::vector<Id> regions;
     for (const Zone zone : zones)
     {
-      regions.push_back(getRegion(zone, layer));
+      const auto [barrier, gas] = begins[zone];
+      regions.push_back(layer < barrier ? Insulator : layer < gas ? Barrier : Gas);
     }
     structure.AddLayer(levels[layer + 1], std::move(regions));
   }
+}
+} // namespace
+
+std::string MakeLinedVia(const LinedViaParameters& p, Device& device)
+{
+  std::string problem = CheckParameters(p);
+  const std::vector<double> levels = MakeLevels(p);
+  if (problem.empty())
+  {
+    problem = CheckPositions(p, levels);
+  }
+  if (!problem.empty())
+  {
+    return problem;
+  }
+  device.RegionNames = { "Insulator", "BottomMetal", "Barrier", "Gas" };
+  LayeredStructure structure(2, -p.BottomLineThickness);
+  const std::vector<Zone> zones = AddCells(p, structure);
+  AddLayers(levels, zones, structure);
   device.Boundary = structure.MakeBoundary(device.FacetIds);
   const double top = levels.back();
   device.Contacts = { { "Inlet", { OutsideRegion, Gas },
                         [=](const Vec3& v) { return v.Z == top; } },
     { "Surface", { Barrier, Gas }, [](const Vec3&) { return true; } },
     { "BottomContact", { OutsideRegion, BottomMetal },
-      [=](const Vec3& v) { return v.Z == -p.BottomLineThickness; } } };
+      [bottom = -p.BottomLineThickness](const Vec3& v) { return v.Z == bottom; } } };
   return {};
 }
 } // namespace cdm

@@ -4,55 +4,128 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace cdm
 {
-std::string MakeTwoLayerInterconnect(const TwoLayerParameters& p, Device& device)
+namespace
 {
-  std::string problem = CheckLengths({ { "LinePitch", p.LinePitch }, { "LineWidth", p.LineWidth },
-    { "LineThickness", p.LineThickness }, { "InsulatorThickness", p.InsulatorThickness },
-    { "BulkDepth", p.BulkDepth }, { "StepLength", p.StepLength } });
-  if (problem.empty())
-  {
-    problem = CheckLess({ "LineWidth + 2 StepLength", p.LineWidth + 2.0 * p.StepLength },
-      { "LinePitch", p.LinePitch });
-  }
-  if (!problem.empty())
-  {
-    return problem;
-  }
+enum Region : Id
+{
+  Bulk,
+  Oxide,
+  LowerLine1,
+  LowerLine2,
+  UpperLine1,
+  UpperLine2
+};
 
-  // Two lines on each layer, in the middles of two strips: the lower ones along y, the others along
-  // x.
-  const double size = 2.0 * p.LinePitch;
-  const double halfWidth = 0.5 * p.LineWidth;
-  const double centers[2] = { 0.5 * p.LinePitch, 1.5 * p.LinePitch };
-  const auto getDistance = [&centers](double place)
-  { return std::min(std::abs(place - centers[0]), std::abs(place - centers[1])); };
-  std::vector<double> x{ 0.0, size };
-  std::vector<double> y{ 0.0, size };
-  // The oxide comes down in steps at these distances from the center of a lower line.
-  std::vector<double> offsets;
+/**
+ * Two lines on each layer, in the middles of two strips: the lower ones along y, the others along x.
+ */
+struct Plan
+{
+  explicit Plan(const TwoLayerParameters& p);
+  bool IsOnLine(double position) const { return !(this->GetDistance(position) > this->HalfWidth); }
+  bool IsInFirstStrip(double position) const { return position < 0.5 * this->Size; }
+  double GetDistance(double position) const
+  {
+    return std::min(std::abs(position - this->Centers[0]), std::abs(position - this->Centers[1]));
+  }
+  double GetStep(double x) const;
+
+  double Size;
+  double HalfWidth;
+  double Centers[2];
+  /** The oxide comes down in steps at these distances from the center of a lower line. */
+  std::vector<double> Offsets;
+};
+
+Plan::Plan(const TwoLayerParameters& p)
+  : Size(2.0 * p.LinePitch),
+    HalfWidth(0.5 * p.LineWidth), Centers{ 0.5 * p.LinePitch, 1.5 * p.LinePitch }
+{
   for (int i = 0; i <= p.ProfileSegments; ++i)
   {
-    offsets.push_back(halfWidth + p.StepLength * i / p.ProfileSegments);
+    this->Offsets.push_back(this->HalfWidth + p.StepLength * i / p.ProfileSegments);
   }
-  for (const double center : centers)
+}
+
+/**
+ * The height of the step that the oxide makes over a lower line, from 0 to 1. Positions on lines of
+ * the layout are off by roundings: they go to the nearest of the offsets.
+ */
+double Plan::GetStep(double x) const
+{
+  const double distance = this->GetDistance(x);
+  const auto nearest = std::min_element(this->Offsets.begin(), this->Offsets.end(),
+    [distance](double a, double b) { return std::abs(a - distance) < std::abs(b - distance); });
+  const double segments = static_cast<double>(this->Offsets.size() - 1);
+  return 1.0 - GetSmoothStep(static_cast<double>(nearest - this->Offsets.begin()) / segments);
+}
+
+std::string CheckParameters(const TwoLayerParameters& p)
+{
+  const std::string problem =
+    CheckLengths({ { "LinePitch", p.LinePitch }, { "LineWidth", p.LineWidth },
+      { "LineThickness", p.LineThickness }, { "InsulatorThickness", p.InsulatorThickness },
+      { "BulkDepth", p.BulkDepth }, { "StepLength", p.StepLength } });
+  return problem.empty()
+    ? CheckLess({ "LineWidth + 2 StepLength", p.LineWidth + 2.0 * p.StepLength },
+        { "LinePitch", p.LinePitch })
+    : problem;
+}
+
+/** Lines of the layout along x and y, in which all masks have their edges. */
+std::string MakeLines(const Plan& plan, std::vector<double>& x, std::vector<double>& y)
+{
+  x = { 0.0, plan.Size };
+  y = { 0.0, plan.Size };
+  for (const double center : plan.Centers)
   {
     for (const double sign : { -1.0, 1.0 })
     {
-      y.push_back(center + sign * halfWidth);
-      for (const double offset : offsets)
+      y.push_back(center + sign * plan.HalfWidth);
+      for (const double offset : plan.Offsets)
       {
         x.push_back(center + sign * offset);
       }
     }
   }
-  problem = SortLines(x, "LinePitch, LineWidth and StepLength");
-  if (problem.empty())
+  const std::string problem = SortLines(x, "LinePitch, LineWidth and StepLength");
+  return problem.empty() ? SortLines(y, "LinePitch and LineWidth") : problem;
+}
+
+void AddLayers(const TwoLayerParameters& p, const Plan& plan, GridLayout& layout)
+{
+  const auto getOxideTop = [&](double x, double)
+  { return p.InsulatorThickness + p.LineThickness * plan.GetStep(x); };
+  layout.AddLayer(0.0, [](double, double) { return Bulk; });
+  layout.AddLayer([&](double x, double) { return plan.GetStep(x) == 1.0 ? p.LineThickness : 0.0; },
+    [&](double x, double) -> Id {
+      return !plan.IsOnLine(x) ? Oxide : plan.IsInFirstStrip(x) ? LowerLine1 : LowerLine2;
+    });
+  layout.AddLayer(getOxideTop, [](double, double) { return Oxide; });
+  layout.AddLayer([&](double x, double y) { return getOxideTop(x, y) + p.LineThickness; },
+    [&](double, double y) -> Id
+    {
+      return !plan.IsOnLine(y) ? OutsideRegion
+                               : Id(plan.IsInFirstStrip(y) ? UpperLine1 : UpperLine2);
+    });
+}
+} // namespace
+
+std::string MakeTwoLayerInterconnect(const TwoLayerParameters& p, Device& device)
+{
+  std::string problem = CheckParameters(p);
+  if (!problem.empty())
   {
-    problem = SortLines(y, "LinePitch and LineWidth");
+    return problem;
   }
+  const Plan plan(p);
+  std::vector<double> x;
+  std::vector<double> y;
+  problem = MakeLines(plan, x, y);
   const double oxideOnLine = p.LineThickness + p.InsulatorThickness;
   if (problem.empty())
   {
@@ -64,40 +137,9 @@ std::string MakeTwoLayerInterconnect(const TwoLayerParameters& p, Device& device
   {
     return problem;
   }
-
-  enum Region : Id
-  {
-    Bulk,
-    Oxide,
-    LowerLine1,
-    LowerLine2,
-    UpperLine1,
-    UpperLine2
-  };
   device.RegionNames = { "Bulk", "Oxide", "LowerLine1", "LowerLine2", "UpperLine1", "UpperLine2" };
-  const auto getFirst = [size](double place) { return place < 0.5 * size; };
-  // Places on lines of the layout are off by roundings: they go to the nearest of the offsets.
-  const auto getStep = [=](double u)
-  {
-    const double distance = getDistance(u);
-    const auto nearest = std::min_element(offsets.begin(), offsets.end(),
-      [distance](double a, double b) { return std::abs(a - distance) < std::abs(b - distance); });
-    const double place = static_cast<double>(nearest - offsets.begin()) / p.ProfileSegments;
-    return 1.0 - GetSmoothStep(place);
-  };
-  const auto getOxideTop = [=](double u, double)
-  { return p.InsulatorThickness + p.LineThickness * getStep(u); };
   GridLayout layout(x, y, -p.BulkDepth);
-  layout.AddLayer(0.0, [](double, double) { return Bulk; });
-  layout.AddLayer([=](double u, double) { return getStep(u) == 1.0 ? p.LineThickness : 0.0; },
-    [=](double u, double) -> Id {
-      return getDistance(u) > halfWidth ? Oxide : getFirst(u) ? LowerLine1 : LowerLine2;
-    });
-  layout.AddLayer(getOxideTop, [](double, double) { return Oxide; });
-  layout.AddLayer([=](double u, double v) { return getOxideTop(u, v) + p.LineThickness; },
-    [=](double, double v) -> Id {
-      return getDistance(v) > halfWidth ? OutsideRegion : Id(getFirst(v) ? UpperLine1 : UpperLine2);
-    });
+  AddLayers(p, plan, layout);
   layout.MakeBoundary(device);
 
   const auto isAnywhere = [](const Vec3&) { return true; };

@@ -15,7 +15,7 @@
 #include "Distributed/ProcessGroup.h"
 
 #include "Core/Basics/Status.h"
-#include "Core/Delaunay/PartTetrahedralization.h"
+#include "Core/Delaunay/PartPoints.h"
 #include "Core/Search/SpacePartition.h"
 
 #include <vtkSmartPointer.h>

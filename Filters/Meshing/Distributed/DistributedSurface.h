@@ -14,7 +14,7 @@
 #include "Distributed/ProcessGroup.h"
 
 #include "Core/Basics/Status.h"
-#include "Core/Delaunay/PartTetrahedralization.h"
+#include "Core/Delaunay/PartPoints.h"
 #include "Core/Meshes/TriangleMesh.h"
 
 #include <vtkSmartPointer.h>

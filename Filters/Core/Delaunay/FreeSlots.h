@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file FreePlaces.h
+ * @file FreeSlots.h
  * @brief Free slots of arrays that a thread may fill: those of removed things, and unused ranges.
  */
-#ifndef cdmFreePlaces_h
-#define cdmFreePlaces_h
+#ifndef cdmFreeSlots_h
+#define cdmFreeSlots_h
 
 #include "Core/Basics/Types.h"
 
@@ -15,7 +15,7 @@
 
 namespace cdm
 {
-class FreePlaces
+class FreeSlots
 {
 public:
   std::size_t GetSize() const { return this->Size; }
@@ -23,9 +23,9 @@ public:
   /** Ranges [begin, end) that were never used. */
   const std::vector<std::pair<Id, Id>>& GetRanges() const { return this->Ranges; }
 
-  void Add(Id place)
+  void Add(Id slot)
   {
-    this->Removed.push_back(place);
+    this->Removed.push_back(slot);
     ++this->Size;
   }
   void AddRange(Id begin, Id end)
@@ -40,21 +40,21 @@ public:
     --this->Size;
     if (!this->Removed.empty())
     {
-      const Id place = this->Removed.back();
+      const Id slot = this->Removed.back();
       this->Removed.pop_back();
-      return place;
+      return slot;
     }
     std::pair<Id, Id>& range = this->Ranges.back();
-    const Id place = range.first++;
+    const Id slot = range.first++;
     if (range.first == range.second)
     {
       this->Ranges.pop_back();
     }
-    return place;
+    return slot;
   }
 
   /** Gives slots to another object, as many as that one still wants. */
-  void MoveTo(FreePlaces& to, std::size_t wanted)
+  void MoveTo(FreeSlots& to, std::size_t wanted)
   {
     while (to.Size < wanted && !this->Removed.empty())
     {

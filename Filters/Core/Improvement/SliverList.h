@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SliverList.h
+ * @brief The slivers of a mesh that is refined, the worst first.
+ *
+ * Tetrahedra across thin layers never count: no better ones exist there. Those across sharp angles
+ * are asked for by themselves. A list stays usable while the mesh changes: IsGone() tells which of
+ * its tetrahedra have been replaced.
+ */
+#ifndef cdmSliverList_h
+#define cdmSliverList_h
+
+#include "Core/Improvement/RefinedMesh.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace cdm
+{
+/** Points are moved where angles are below this multiple of the target: it leaves some room. */
+constexpr double MoveRatio = 1.1;
+/** Passes over the slivers that are left. */
+constexpr int MaximumSliverPasses = 20;
+
+struct Sliver
+{
+  /** The smallest dihedral angle, in degrees. */
+  double Angle;
+  Id Tetrahedron;
+  std::int64_t Stamp;
+};
+
+/**
+ * Tetrahedra with a dihedral angle below the target (degrees).
+ * @param isSharp whether those across sharp angles are meant, or all others
+ */
+std::vector<Sliver> FindSlivers(double target, bool isSharp, const RefinedMesh& mesh);
+
+/** Number of slivers that are not across sharp angles. */
+std::size_t CountSlivers(double target, const RefinedMesh& mesh);
+
+/** Whether the tetrahedron has been replaced since it was found. */
+bool IsGone(const Sliver& sliver, const RefinedMesh& mesh);
+} // namespace cdm
+
+#endif

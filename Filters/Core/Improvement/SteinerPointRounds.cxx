@@ -1,0 +1,533 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Improvement/SteinerPointRounds.h"
+
+#include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Improvement/SteinerPointChecks.h"
+#include "Core/Meshes/MeshBoundary.h"
+#include "Core/Meshes/ShortestEdges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+/**
+ * Longest edge on the boundary where MaximumVolume is given, in edges of the regular tetrahedron of
+ * that volume.
+ */
+constexpr double BoundaryEdgeRatio = 1.15;
+/**
+ * If more than this part of the boundary triangles is requested to be split, the mesh is made anew.
+ */
+constexpr double LargestSplitRatio = 0.05;
+/** Fewest point ids that a round reserves for new points of the boundary. */
+constexpr Id FewestReservedPoints = 256;
+
+Id GetMaximumNewPoints(
+  const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options)
+{
+  if (options.MaximumNewPoints > 0)
+  {
+    return options.MaximumNewPoints;
+  }
+  constexpr Id largest = std::numeric_limits<Id>::max() / 8;
+  const bool hasSizes =
+    options.MaximumVolume > 0.0 || options.MaximumEdgeLength > 0.0 || input.Sizing;
+  return hasSizes
+    ? largest
+    : static_cast<Id>(std::min<std::size_t>(largest, 50000 + 200 * input.Mesh->Points.size()));
+}
+
+std::vector<Id> MakeAscendingIds(std::size_t count)
+{
+  std::vector<Id> ids(count);
+  std::iota(ids.begin(), ids.end(), 0);
+  return ids;
+}
+
+std::vector<Vec3> GetPositions(const std::vector<InteriorPoint>& interior)
+{
+  std::vector<Vec3> positions;
+  positions.reserve(interior.size());
+  for (const InteriorPoint& point : interior)
+  {
+    positions.push_back(point.Position);
+  }
+  return positions;
+}
+
+std::vector<InteriorPoint> Select(
+  const std::vector<InteriorPoint>& interior, const std::vector<Id>& selected)
+{
+  std::vector<InteriorPoint> points;
+  points.reserve(selected.size());
+  for (Id p : selected)
+  {
+    points.push_back(interior[p]);
+  }
+  return points;
+}
+} // namespace
+
+SteinerPointRounds::SteinerPointRounds(const SteinerPointRefinerInput& input,
+  const SteinerPointRefinerOptions& options, const ExecutionContext& context,
+  SteinerPointRefinerReport& report)
+  : Input(input), Options(options), Context(context), Report(report)
+{
+}
+
+bool SteinerPointRounds::IsMarkedFree(Id point) const
+{
+  return !this->Input.IsFree.empty() && this->Input.IsFree[point] != 0;
+}
+
+void SteinerPointRounds::ExtractSurface()
+{
+  if (this->Input.Boundary == nullptr)
+  {
+    this->Surface = ExtractBoundary(*this->Input.Mesh);
+    this->InputCells = std::move(this->Surface.SourceCells);
+  }
+  else
+  {
+    this->Surface = *this->Input.Boundary;
+    this->InputCells = MakeAscendingIds(this->Surface.Triangles.size());
+  }
+  this->Surface.SourceCells = MakeAscendingIds(this->Surface.Triangles.size());
+  this->SurfaceSources = RemoveUnusedPoints(this->Surface);
+  for (Id p : this->SurfaceSources)
+  {
+    this->IsSurfaceFree.push_back(this->IsMarkedFree(p));
+  }
+}
+
+void SteinerPointRounds::ExtractInterior()
+{
+  const TetMesh& mesh = *this->Input.Mesh;
+  for (Id p : FindPointsInside(mesh, this->SurfaceSources))
+  {
+    if (!this->Input.IsRemoved.empty() && this->Input.IsRemoved[p])
+    {
+      ++this->Report.RemovedPoints;
+      continue;
+    }
+    const bool isFree = this->Input.AreInteriorPointsFree || this->IsMarkedFree(p);
+    this->Interior.push_back({ mesh.Points[p], 0.0, isFree, p, this->Memory.MakeName() });
+  }
+  for (const Vec3& position : this->Input.NewPoints)
+  {
+    this->Interior.push_back({ position, 0.0, false, NoId, this->Memory.MakeName() });
+  }
+}
+
+/**
+ * Numbers the facets of the surface as it was given: on smaller triangles, as later surfaces have
+ * them, structural edges could be missed.
+ */
+Status SteinerPointRounds::FindFacets()
+{
+  StructuralEdgesOutput edges;
+  const Status status = ExtractStructuralEdges(
+    this->Surface, this->Options.StructuralEdges, this->Context.Part(0.0, 0.0), edges);
+  if (status.IsOk())
+  {
+    this->Facets =
+      NumberFacets(SortEdgeUses(this->Surface.Triangles, this->Surface.Points.size()), edges.Edges);
+  }
+  return this->Translate(status, {});
+}
+
+/** The surface facet of each triangle of the current surface. */
+std::vector<Id> SteinerPointRounds::GetFacets() const
+{
+  std::vector<Id> facets;
+  for (Id first : this->Surface.SourceCells)
+  {
+    facets.push_back(this->Facets[first]);
+  }
+  return facets;
+}
+
+ExecutionContext SteinerPointRounds::GetContext() const
+{
+  const double done = 1.0 - std::pow(0.8, static_cast<double>(this->Report.Rounds));
+  const double next = 1.0 - std::pow(0.8, static_cast<double>(this->Report.Rounds + 1));
+  return this->Context.Part(done, next);
+}
+
+/** Translates a message about triangles of the surface into cells of the input. */
+Status SteinerPointRounds::Translate(Status status, const std::vector<Id>& sources) const
+{
+  std::vector<Id> cells;
+  for (Id triangle : status.Cells)
+  {
+    const Id source = sources.empty() ? triangle : sources[triangle];
+    cells.push_back(this->InputCells[this->Surface.SourceCells[source]]);
+  }
+  SortUnique(cells);
+  if (!status.IsAborted())
+  {
+    status.Message = "The boundary of the mesh: " + status.Message;
+  }
+  status.Cells = std::move(cells);
+  status.Points.clear();
+  return status;
+}
+
+RefinedMeshOptions SteinerPointRounds::GetMeshOptions() const
+{
+  RefinedMeshOptions options;
+  options.Limits = { this->Options.RadiusEdgeRatio, this->Options.MaximumVolume,
+    this->Options.MaximumEdgeLength, this->Input.Sizing };
+  options.MaximumNewPoints = GetMaximumNewPoints(this->Input, this->Options) -
+    this->Report.BoundaryPoints - this->Report.InteriorPoints;
+  options.Reserve = FewestReservedPoints + static_cast<Id>(this->Surface.Points.size()) / 4;
+  if (this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges)
+  {
+    options.SharpPlaneAngle = SharpPlaneAngleOfEmptySpheres;
+  }
+  options.SurfaceSizes = this->SurfaceSizes;
+  return options;
+}
+
+DelaunaySurfaceRefinerOptions SteinerPointRounds::GetSurfaceOptions() const
+{
+  DelaunaySurfaceRefinerOptions options;
+  options.Criterion = std::max(this->Options.Criterion, SurfaceCriterion::SmallestSphere);
+  options.StructuralEdges.AccuracyAngle = this->Options.StructuralEdges.AccuracyAngle;
+  options.StructuralEdges.FlatnessRatio = this->Options.StructuralEdges.FlatnessRatio;
+  options.MaximumEdgeLength = this->Options.MaximumEdgeLength;
+  options.MeshPointClearanceRatio = 0.0;
+  if (this->Options.MaximumVolume > 0.0)
+  {
+    const double edge =
+      BoundaryEdgeRatio * std::cbrt(6.0 * std::sqrt(2.0) * this->Options.MaximumVolume);
+    options.MaximumEdgeLength =
+      options.MaximumEdgeLength > 0.0 ? std::min(options.MaximumEdgeLength, edge) : edge;
+  }
+  return options;
+}
+
+Status SteinerPointRounds::StartFirst()
+{
+  this->ExtractSurface();
+  this->ExtractInterior();
+  Status status = this->FindFacets().Then([this] { return this->RemakeMesh(); });
+  // Nothing was requested yet: a surface that got no new points is not stuck.
+  this->HasSplitNothing = false;
+  return status;
+}
+
+Status SteinerPointRounds::StartNext()
+{
+  const bool hasMoved = std::exchange(this->HasMovedPoints, false);
+  Status status = this->CanSplitInPlace() ? this->SplitInPlace() : this->RemakeMesh();
+  this->HasSplitNothing = this->HasSplitNothing && !hasMoved;
+  return status;
+}
+
+/** Refines the surface, splitting what was requested, and makes the mesh of it anew. */
+Status SteinerPointRounds::RemakeMesh()
+{
+  const ExecutionContext context = this->GetContext();
+  DelaunaySurfaceRefinerOutput refined;
+  Status status = this->RefineSurface(context.Part(0.0, 0.3), refined);
+  if (!status.IsOk())
+  {
+    return status;
+  }
+  if (this->Mesh && !refined.WeakTriangles.empty())
+  {
+    return this->RestoreState(context.Part(0.3, 1.0));
+  }
+  this->Edges = std::move(refined.StructuralEdges);
+  status = this->MakeMesh(refined.Surface, Select(this->Interior, refined.KeptMeshPoints),
+    refined.Surface.SourceCells, context.Part(0.3, 0.4));
+  if (status.IsOk())
+  {
+    this->HasSplitNothing = refined.NewPoints.empty();
+    this->Report.BoundaryPoints += static_cast<Id>(refined.NewPoints.size());
+    this->Report.UnresolvedTriangles = static_cast<Id>(refined.UnresolvedTriangles.size());
+    this->Report.WeakTriangles = static_cast<Id>(refined.WeakTriangles.size());
+  }
+  return status;
+}
+
+/** Refines the surface for the points inside of the mesh so far, and splits what was requested. */
+Status SteinerPointRounds::RefineSurface(
+  const ExecutionContext& context, DelaunaySurfaceRefinerOutput& refined)
+{
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &this->Surface;
+  input.Sizing = this->Input.Sizing;
+  DelaunaySurfaceRefinerOptions options = this->GetSurfaceOptions();
+  options.StructuralEdges.Facets = this->GetFacets();
+  if (this->Mesh)
+  {
+    this->Interior = this->Mesh->GetInterior();
+    input.TrianglesToSplit = this->Mesh->GetRequests().Triangles;
+    input.EdgesToSplit = this->Mesh->GetRequests().Edges;
+  }
+  const std::vector<Vec3> points = GetPositions(this->Interior);
+  input.MeshPoints = &points;
+  Status status = RefineDelaunaySurface(input, options, context, refined);
+  return status.IsOk() ? status : this->Translate(std::move(status), {});
+}
+
+/**
+ * Tetrahedralizes the given surface with the given interior points, and makes it the current
+ * surface. sourceCells: for each triangle its source in the surface so far.
+ */
+Status SteinerPointRounds::MakeMesh(const TriangleMesh& surface,
+  const std::vector<InteriorPoint>& interior, const std::vector<Id>& sourceCells,
+  const ExecutionContext& context)
+{
+  const std::vector<Vec3> points = GetPositions(interior);
+  AdvancingFrontTetrahedralizerInput input;
+  input.Surface = &surface;
+  input.MeshPoints = &points;
+  AdvancingFrontTetrahedralizerOutput made;
+  Status status = TetrahedralizeByAdvancingFront(input, {}, context, made);
+  if (!status.IsOk())
+  {
+    return this->Translate(std::move(status), sourceCells);
+  }
+  // Until here the mesh of the round before counts.
+  ++this->Report.Rounds;
+  this->CollectReport();
+  this->Interior = Select(interior, made.MeshPointSources);
+  for (Id& source : made.Boundary.SourceCells)
+  {
+    source = this->Surface.SourceCells[sourceCells[source]];
+  }
+  made.Boundary.Points = surface.Points;
+  this->TakeMesh(std::move(made));
+  return status;
+}
+
+/** Makes a mesh and its boundary, which has all points of the surface, the current ones. */
+void SteinerPointRounds::TakeMesh(AdvancingFrontTetrahedralizerOutput made)
+{
+  this->Mesh.reset();
+  this->Surface = std::move(made.Boundary);
+  this->CollectSurfaceSizes();
+  this->Mesh = std::make_unique<RefinedMesh>(std::move(made.Mesh),
+    RefinedBoundary{ this->Surface, this->Edges, this->Edges }, this->Interior, this->Memory,
+    this->GetMeshOptions());
+  this->IsSurfaceFree.resize(this->Surface.Points.size(), 1);
+  this->IsNew.resize(this->Surface.Points.size(), 1);
+  this->Mesh->NoteNewPoints(this->IsNew);
+  std::fill(this->IsNew.begin(), this->IsNew.end(), 0);
+}
+
+void SteinerPointRounds::NoteState()
+{
+  this->Noted = { this->Surface, this->Edges, this->Mesh->GetInterior() };
+}
+
+/**
+ * Goes back to the noted state, because the requested splits would leave triangles whose smallest
+ * spheres are not empty. Part of the splits may have been made already.
+ */
+Status SteinerPointRounds::RestoreState(const ExecutionContext& context)
+{
+  this->HasSplitNothing = true;
+  this->HasFinalBoundary = true;
+  this->Report.BoundaryPoints -=
+    static_cast<Id>(this->Surface.Points.size() - this->Noted.Surface.Points.size());
+  this->Surface.SourceCells = this->Noted.Surface.SourceCells;
+  this->Edges = std::move(this->Noted.Edges);
+  return this->MakeMesh(this->Noted.Surface, this->Noted.Interior,
+    MakeAscendingIds(this->Surface.SourceCells.size()), context);
+}
+
+/**
+ * Whether the mesh can be split in place: few splits are requested and all facets are plane. Curved
+ * ones may need several attempts.
+ */
+bool SteinerPointRounds::CanSplitInPlace() const
+{
+  return this->Options.StructuralEdges.AccuracyAngle == 0.0 &&
+    this->Report.UnresolvedTriangles == 0 &&
+    static_cast<double>(this->CountRequests()) <
+    LargestSplitRatio * static_cast<double>(this->Surface.Triangles.size());
+}
+
+/** Splits the boundary in the mesh itself; what cannot be done there is done in a new mesh. */
+Status SteinerPointRounds::SplitInPlace()
+{
+  const std::size_t before = this->Surface.Points.size();
+  Status status;
+  const bool isDone = this->Mesh->SplitBoundary(
+    this->GetSurfaceOptions(), this->Input.Sizing, this->GetContext(), status);
+  const std::size_t after = this->Surface.Points.size();
+  this->Report.BoundaryPoints += static_cast<Id>(after - before);
+  if (!status.IsOk())
+  {
+    return this->Translate(std::move(status), {});
+  }
+  if (!isDone)
+  {
+    return this->RemakeMesh();
+  }
+  ++this->Report.Rounds;
+  this->HasSplitNothing = after == before;
+  if (!this->SurfaceSizes.empty())
+  {
+    const std::size_t first = this->CollectSurfaceSizes();
+    this->Mesh->SetSurfaceSizes(static_cast<Id>(first), this->SurfaceSizes);
+  }
+  this->IsSurfaceFree.resize(after, 1);
+  this->IsNew.assign(after, 0);
+  return status;
+}
+
+/**
+ * Gives sizes to the surface points that have none yet: from the points around them, and from edges
+ * and facets that come close to each other. Returns the first such point.
+ */
+std::size_t SteinerPointRounds::CollectSurfaceSizes()
+{
+  const std::size_t first = this->SurfaceSizes.size();
+  if (first == 0)
+  {
+    return first;
+  }
+  this->SurfaceSizes.resize(this->Surface.Points.size(), -1.0);
+  this->SpreadSurfaceSizes();
+  for (std::size_t p = first; p < this->SurfaceSizes.size(); ++p)
+  {
+    this->SurfaceSizes[p] = this->Features->Find(this->Surface.Points[p], this->SurfaceSizes[p]);
+  }
+  return first;
+}
+
+/** Bounds unknown sizes, which are negative, by known ones: from point to point along edges. */
+void SteinerPointRounds::SpreadSurfaceSizes()
+{
+  bool isDone = false;
+  while (!isDone)
+  {
+    isDone = true;
+    std::vector<double> sizes = this->SurfaceSizes;
+    const auto spread = [&](Id p, Id q)
+    {
+      if (this->SurfaceSizes[p] >= 0.0 || this->SurfaceSizes[q] < 0.0)
+      {
+        return;
+      }
+      const double size =
+        this->SurfaceSizes[q] + Distance(this->Surface.Points[p], this->Surface.Points[q]);
+      sizes[p] = sizes[p] < 0.0 ? size : std::min(sizes[p], size);
+      isDone = false;
+    };
+    for (const TriangleIds& ids : this->Surface.Triangles)
+    {
+      for (int i = 0; i < 3; ++i)
+      {
+        spread(ids[i], ids[(i + 1) % 3]);
+        spread(ids[i], ids[(i + 2) % 3]);
+      }
+    }
+    this->SurfaceSizes = std::move(sizes);
+  }
+}
+
+void SteinerPointRounds::MeasureSizes()
+{
+  this->Features = std::make_unique<FeatureSizes>(
+    this->Surface.Points, this->Surface.Triangles, this->GetFacets(), this->Edges);
+  const std::vector<double> sizes = FindShortestEdges(this->Mesh->GetMesh());
+  this->SurfaceSizes.assign(
+    sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(this->Surface.Points.size()));
+  this->Mesh->SetSizes(sizes);
+  this->HasSplitNothing = false;
+}
+
+bool SteinerPointRounds::TakeSurfacePositions(const std::vector<Vec3>& positions)
+{
+  bool isAnyMoved = false;
+  for (std::size_t p = 0; p < positions.size(); ++p)
+  {
+    if (positions[p] != this->Surface.Points[p])
+    {
+      this->Surface.Points[p] = positions[p];
+      this->IsNew[p] = 1;
+      isAnyMoved = true;
+      ++this->Report.MovedPoints;
+      if (p < this->SurfaceSources.size())
+      {
+        this->SurfaceSources[p] = NoId;
+      }
+    }
+  }
+  this->HasMovedPoints = this->HasMovedPoints || isAnyMoved;
+  return isAnyMoved;
+}
+
+void SteinerPointRounds::CollectReport()
+{
+  if (this->Mesh)
+  {
+    const RefinedMeshReport& report = this->Mesh->GetReport();
+    this->Report.InteriorPoints += report.InsertedPoints;
+    this->Report.MovedPoints += report.MovedPoints;
+    this->Report.RemovedPoints += report.RemovedPoints;
+  }
+}
+
+TetMesh SteinerPointRounds::Finish()
+{
+  this->CollectReport();
+  this->Interior = this->Mesh->GetInterior();
+  return this->Mesh->MakeMesh();
+}
+
+void SteinerPointRounds::MakeOutput(SteinerPointRefinerOutput& output)
+{
+  std::vector<Id> sources = this->SurfaceSources;
+  sources.resize(this->Surface.Points.size(), NoId);
+  for (const InteriorPoint& point : this->Interior)
+  {
+    sources.push_back(point.Source);
+  }
+  std::vector<Id> order = MakeAscendingIds(sources.size());
+  std::stable_sort(order.begin(), order.end(),
+    [&](Id a, Id b)
+    {
+      constexpr Id last = std::numeric_limits<Id>::max();
+      return (sources[a] == NoId ? last : sources[a]) < (sources[b] == NoId ? last : sources[b]);
+    });
+  std::vector<Id> newIds(sources.size());
+  std::vector<Vec3> points;
+  for (Id p : order)
+  {
+    newIds[p] = static_cast<Id>(points.size());
+    points.push_back(output.Mesh.Points[p]);
+    output.PointSources.push_back(sources[p]);
+    const Id inside = p - static_cast<Id>(this->Surface.Points.size());
+    output.IsFree.push_back(inside >= 0 ? this->Interior[inside].IsFree : this->IsSurfaceFree[p]);
+  }
+  output.Mesh.Points = std::move(points);
+  output.Boundary = std::move(this->Surface);
+  for (Id& source : output.Boundary.SourceCells)
+  {
+    source = this->InputCells[source];
+  }
+  output.Boundary.Points = output.Mesh.Points;
+  for (TriangleIds& ids : output.Boundary.Triangles)
+  {
+    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]] };
+  }
+  for (TetrahedronIds& ids : output.Mesh.Tetrahedra)
+  {
+    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]], newIds[ids[3]] };
+  }
+}
+} // namespace cdm
