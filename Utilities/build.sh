@@ -19,6 +19,7 @@ if [ "$1" = ON ]; then
     libeigen3-dev gmsh       # solvers, and meshes to compare with
     xdotool imagemagick      # a mouse for the GUI, and pictures of the whole screen
     clang-format-14 clang-tidy-14   # the style of the sources
+    python3-venv             # environments for the wheel
   )
 fi
 packages+=(${more_packages[@]+"${more_packages[@]}"})

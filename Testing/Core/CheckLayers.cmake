@@ -3,7 +3,7 @@
 # only those before it.
 #   cmake -D SOURCE_DIR=<folder of the project> -P CheckLayers.cmake
 set(folders Basics Geometry Search Meshes Certificate BoxMethod Sizing Delaunay Repair Surface
-  MeshPoints Volume Improvement MovingBoundary Voxels Pipeline)
+  MeshPoints Volume Improvement MovingBoundary Voxels Pipeline CInterface)
 file(GLOB core "${SOURCE_DIR}/Filters/Core/*/*.h" "${SOURCE_DIR}/Filters/Core/*/*.cxx")
 file(GLOB_RECURSE meshing "${SOURCE_DIR}/Filters/Meshing/*.h"
   "${SOURCE_DIR}/Filters/Meshing/*.cxx")

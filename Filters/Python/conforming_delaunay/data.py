@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Surfaces and meshes as NumPy arrays, and where they come from and go to."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
+
+import numpy as np
+
+from . import _engine, files
+
+if TYPE_CHECKING:
+    import meshio
+    import pyvista
+    from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
+
+#: A surface: a Surface; points and polygons; a vtkPolyData or pyvista.PolyData; or a file.
+SurfaceLike = Union["Surface", Tuple[Any, Any], "vtkPolyData", str, "os.PathLike[str]"]
+#: Longest edges: a function of x, y and z; points and lengths; points, lengths and tetrahedra;
+#: or a VTK data set with the point array Sizing.
+SizingLike = Any
+
+
+@dataclasses.dataclass
+class Surface:
+    """Polygons, of any orientation and in any order.
+
+    Attributes:
+        points: (n, 3) float64, model units.
+        connectivity: point ids of all polygons, one after the other.
+        offsets: polygon i has connectivity[offsets[i]:offsets[i + 1]].
+        labels: (m, 2), the region on the side of each polygon that its normal points to and on
+            the other side, -1 for outside; or None: regions are found.
+        facets: (m,), the structural facet of each polygon, or None.
+        source_cells: (m,), of a surface that a stage has made: the polygon of its input that each
+            triangle comes from, or -1.
+    """
+
+    points: np.ndarray
+    connectivity: np.ndarray
+    offsets: np.ndarray
+    labels: Optional[np.ndarray] = None
+    facets: Optional[np.ndarray] = None
+    source_cells: Optional[np.ndarray] = None
+
+    @property
+    def triangles(self) -> np.ndarray:
+        """(m, 3); ValueError if there are other polygons."""
+        if np.any(np.diff(self.offsets) != 3):
+            raise ValueError("The surface has polygons that are no triangles: triangulate it.")
+        return self.connectivity.reshape(-1, 3)
+
+    @classmethod
+    def from_triangles(cls, points: Any, triangles: Any, **others: Any) -> "Surface":
+        """From (n, 3) points and (m, k) point ids of polygons with k corners each."""
+        ids = np.asarray(triangles)
+        if ids.ndim != 2:
+            raise ValueError("The polygons have to be an array with a row of ids for each.")
+        return cls(
+            _as_points(points), ids.reshape(-1), np.arange(0, ids.size + 1, ids.shape[1]), **others
+        )
+
+    @classmethod
+    def from_any(cls, surface: SurfaceLike) -> "Surface":
+        """From whatever describes a surface, see SurfaceLike."""
+        if isinstance(surface, Surface):
+            return surface
+        if isinstance(surface, (str, os.PathLike)):
+            return cls.read(surface)
+        if hasattr(surface, "GetPolys"):
+            from . import vtk_data
+
+            return vtk_data.to_surface(surface)
+        try:
+            points, polygons = surface
+        except (TypeError, ValueError):
+            raise TypeError(
+                "A surface is a pair of points and polygons, a vtkPolyData, or the name of a file, "
+                f"not {type(surface).__name__}."
+            ) from None
+        if isinstance(polygons, np.ndarray) and polygons.ndim == 2:
+            return cls.from_triangles(points, polygons)
+        sizes = [len(polygon) for polygon in polygons]
+        connectivity = np.fromiter((i for polygon in polygons for i in polygon), np.int64)
+        return cls(_as_points(points), connectivity, np.concatenate([[0], np.cumsum(sizes)]))
+
+    @classmethod
+    def read(cls, path: Union[str, "os.PathLike[str]"]) -> "Surface":
+        """From a file: STL by itself, other formats by VTK or meshio, where installed."""
+        return files.read_surface(path)
+
+    def to_vtk(self) -> "vtkPolyData":
+        """The polygons, with the cell arrays BoundaryLabels and StructuralFacetId."""
+        from . import vtk_data
+
+        return vtk_data.from_surface(self)
+
+    def to_pyvista(self) -> "pyvista.PolyData":
+        import pyvista
+
+        return pyvista.wrap(self.to_vtk())
+
+
+@dataclasses.dataclass
+class Mesh:
+    """Tetrahedra of one or more regions, exactly Delaunay, with their boundary.
+
+    Attributes:
+        points: (n, 3) float64, model units.
+        tetrahedra: (m, 4) int32, positively oriented.
+        regions: (m,) int32.
+        boundary: outer and interface facets as triangles on the points of the mesh, with labels,
+            facets, and the polygons of the input that they come from.
+        unresolved_triangles: those of the boundary that miss the criterion, ascending.
+        faults: (m,) uint8, why a tetrahedron misses what was asked for: 0 it does not, 1 size,
+            2 shape, 3 sliver, 4 at a sharp angle or in a thin layer; empty: none does.
+        is_free: (n,) uint8, whether a point may be moved; empty: not known.
+        verdict: INVALID, NOT DELAUNAY, DELAUNAY or CLEAN FOR FINITE VOLUMES.
+        certificate: the verdict, its reasons, numbers: three lines.
+        warnings: what was not done as asked.
+    """
+
+    points: np.ndarray
+    tetrahedra: np.ndarray
+    regions: np.ndarray
+    boundary: Optional[Surface] = None
+    unresolved_triangles: np.ndarray = dataclasses.field(
+        default_factory=lambda: np.empty(0, np.int32)
+    )
+    faults: np.ndarray = dataclasses.field(default_factory=lambda: np.empty(0, np.uint8))
+    is_free: np.ndarray = dataclasses.field(default_factory=lambda: np.empty(0, np.uint8))
+    verdict: str = ""
+    certificate: str = ""
+    warnings: List[str] = dataclasses.field(default_factory=list)
+
+    def __repr__(self) -> str:
+        return (
+            f"<Mesh: {len(self.tetrahedra)} tetrahedra, {len(self.points)} points, "
+            f"{len(np.unique(self.regions))} regions; {self.verdict or 'not certified'}>"
+        )
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        """To a file: VTU by itself, what meshio knows by meshio, where installed."""
+        files.write_mesh(path, self)
+
+    def to_vtk(self) -> "vtkUnstructuredGrid":
+        """The tetrahedra, with the arrays RegionId, RefinementFault, FreePoint and Certificate."""
+        from . import vtk_data
+
+        return vtk_data.from_mesh(self)
+
+    def to_pyvista(self) -> "pyvista.UnstructuredGrid":
+        import pyvista
+
+        return pyvista.wrap(self.to_vtk())
+
+    def to_meshio(self) -> "meshio.Mesh":
+        """The tetrahedra, with the cell data RegionId."""
+        import meshio
+
+        return meshio.Mesh(
+            self.points, [("tetra", self.tetrahedra)], cell_data={"RegionId": [self.regions]}
+        )
+
+
+def _as_points(points: Any) -> np.ndarray:
+    array = np.asarray(points, np.float64)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"Points have to be an array of shape (n, 3), not {array.shape}.")
+    return array
+
+
+def polygon_inputs(surface: Surface) -> Dict[str, Any]:
+    """The arrays of a surface for a stage that takes polygons."""
+    return {
+        "points": surface.points,
+        "polygon_connectivity": surface.connectivity,
+        "polygon_offsets": surface.offsets,
+        "labels": surface.labels,
+        "facets": surface.facets,
+    }
+
+
+def triangle_inputs(surface: Surface) -> Dict[str, Any]:
+    """The arrays of a surface for a stage that takes triangles."""
+    return {"points": surface.points, "triangles": surface.triangles, "labels": surface.labels}
+
+
+def mesh_inputs(mesh: Mesh) -> Dict[str, Any]:
+    """The arrays of a mesh for a stage that takes tetrahedra."""
+    return {"points": mesh.points, "tetrahedra": mesh.tetrahedra, "regions": mesh.regions}
+
+
+def sizing_inputs(sizing: SizingLike) -> Tuple[Dict[str, Any], Optional[_engine.SizingFunction]]:
+    """Arrays for a stage, and a function; see SizingLike."""
+    if sizing is None:
+        return {}, None
+    if callable(sizing):
+        return {}, sizing
+    if hasattr(sizing, "GetPointData"):
+        from . import vtk_data
+
+        sizing = vtk_data.to_sizing(sizing)
+    points, lengths, *tetrahedra = sizing
+    return {
+        "sizing_points": _as_points(points),
+        "sizing_lengths": np.asarray(lengths, np.float64),
+        "sizing_tetrahedra": np.asarray(tetrahedra[0]) if tetrahedra else None,
+    }, None
+
+
+def make_surface(arrays: Dict[str, Any]) -> Surface:
+    """The surface that a stage has made."""
+    labels = arrays.get("labels")
+    facets = arrays.get("facets")
+    return Surface.from_triangles(
+        arrays["points"],
+        arrays["triangles"],
+        labels=labels if labels is not None and len(labels) else None,
+        facets=facets if facets is not None and len(facets) else None,
+        source_cells=arrays.get("source_cells"),
+    )
+
+
+def make_mesh(arrays: Dict[str, Any]) -> Mesh:
+    """The mesh that a stage has made."""
+    none = np.empty(0, np.uint8)
+    return Mesh(
+        arrays["points"],
+        arrays["tetrahedra"],
+        arrays["regions"],
+        make_surface(arrays) if "triangles" in arrays else None,
+        arrays.get("unresolved_triangles", np.empty(0, np.int32)),
+        arrays.get("faults", none),
+        arrays.get("is_free", none),
+        arrays.get("verdict", ""),
+        arrays.get("certificate", ""),
+        arrays["warnings"].splitlines() if arrays.get("warnings") else [],
+    )
