@@ -13,6 +13,7 @@
 #include <vtkDataSet.h>
 #include <vtkDoubleArray.h>
 #include <vtkGradientFilter.h>
+#include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkMath.h>
@@ -30,6 +31,26 @@ vtkStandardNewMacro(vtkSizingFromSolution);
 
 namespace
 {
+/** Whether there are cells other than points. */
+bool HasCells(vtkDataSet* input)
+{
+  // Blanked cells are cells, but VTK 9.3 calls them empty. Where a surface is resampled to an image
+  // all of them are blanked.
+  if (vtkImageData* image = vtkImageData::SafeDownCast(input))
+  {
+    return image->GetDataDimension() > 0;
+  }
+  for (vtkIdType cell = 0; cell < input->GetNumberOfCells(); ++cell)
+  {
+    const int type = input->GetCellType(cell);
+    if (type != VTK_EMPTY_CELL && type != VTK_VERTEX && type != VTK_POLY_VERTEX)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 /** Checks the solution: one finite number for each point of a data set that can have a gradient. */
 cdm::Status CheckSolution(vtkDataSet* input, vtkDataArray* solution)
 {
@@ -38,13 +59,7 @@ cdm::Status CheckSolution(vtkDataSet* input, vtkDataArray* solution)
   {
     return status;
   }
-  bool hasCells = false;
-  for (vtkIdType cell = 0; cell < input->GetNumberOfCells() && !hasCells; ++cell)
-  {
-    const int type = input->GetCellType(cell);
-    hasCells = type != VTK_EMPTY_CELL && type != VTK_VERTEX && type != VTK_POLY_VERTEX;
-  }
-  if (!hasCells)
+  if (!HasCells(input))
   {
     return cdm::Status::InvalidInput(
       "The input has no cells but points: a solution has no gradient on points alone.");

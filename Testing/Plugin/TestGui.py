@@ -59,7 +59,7 @@ with tempfile.TemporaryDirectory() as folder:
     GuiTesting.CheckPicture(picture)
     difference = ImageComparison.FindDifference(
         os.path.join(folder, "State.png"),
-        os.path.join(os.environ["CDM_DATA_DIR"], "Baselines", "RegionCut.png"))
+        ImageComparison.GetBaseline("RegionCut.png"))
     assert difference is None, difference
     for name, expected in (("changed", [1.0, 0.0005]), ("undone", [0.0, 0.0]),
                            ("redone", [1.0, 0.0005])):
