@@ -13,7 +13,6 @@
 #include <vtkDataSet.h>
 #include <vtkDoubleArray.h>
 #include <vtkGradientFilter.h>
-#include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkMath.h>
@@ -31,26 +30,6 @@ vtkStandardNewMacro(vtkSizingFromSolution);
 
 namespace
 {
-/** Whether there are cells other than points. */
-bool HasCells(vtkDataSet* input)
-{
-  // Blanked cells are cells, but VTK 9.3 calls them empty. Where a surface is resampled to an image
-  // all of them are blanked.
-  if (vtkImageData* image = vtkImageData::SafeDownCast(input))
-  {
-    return image->GetDataDimension() > 0;
-  }
-  for (vtkIdType cell = 0; cell < input->GetNumberOfCells(); ++cell)
-  {
-    const int type = input->GetCellType(cell);
-    if (type != VTK_EMPTY_CELL && type != VTK_VERTEX && type != VTK_POLY_VERTEX)
-    {
-      return true;
-    }
-  }
-  return false;
-}
-
 /** Checks the solution: one finite number for each point of a data set that can have a gradient. */
 cdm::Status CheckSolution(vtkDataSet* input, vtkDataArray* solution)
 {
@@ -59,7 +38,13 @@ cdm::Status CheckSolution(vtkDataSet* input, vtkDataArray* solution)
   {
     return status;
   }
-  if (!HasCells(input))
+  bool hasCells = false;
+  for (vtkIdType cell = 0; cell < input->GetNumberOfCells() && !hasCells; ++cell)
+  {
+    const int type = input->GetCellType(cell);
+    hasCells = type != VTK_EMPTY_CELL && type != VTK_VERTEX && type != VTK_POLY_VERTEX;
+  }
+  if (!hasCells)
   {
     return cdm::Status::InvalidInput(
       "The input has no cells but points: a solution has no gradient on points alone.");
@@ -119,6 +104,7 @@ int vtkSizingFromSolution::RequestData(
   {
     return 1;
   }
+  const vtkSmartPointer<vtkDataSet> data = vtkCoreBridge::CopyWithoutBlanking(input);
   vtkDataArray* solution = this->GetInputArrayToProcess(0, inputVector);
   const int components = this->Anisotropic ? 3 : 1;
   std::vector<double> sizes[3];
@@ -126,7 +112,7 @@ int vtkSizingFromSolution::RequestData(
     [&]
     {
       const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(this);
-      cdm::Status step = CheckSolution(input, solution);
+      cdm::Status step = CheckSolution(data, solution);
       if (step.IsOk() && this->MaximumSize > 0.0 && this->MinimumSize > this->MaximumSize)
       {
         step = cdm::Status::InvalidInput("MinimumSize is larger than MaximumSize.");
@@ -135,7 +121,7 @@ int vtkSizingFromSolution::RequestData(
       {
         return step;
       }
-      const vtkSmartPointer<vtkDataArray> gradient = ComputeGradient(input, solution);
+      const vtkSmartPointer<vtkDataArray> gradient = ComputeGradient(data, solution);
       if (!context.Continue(0.5, "Limiting sizes"))
       {
         return cdm::Status::Aborted();
@@ -180,7 +166,7 @@ int vtkSizingFromSolution::RequestData(
       cdm::SizingCells cells;
       if (this->Gradation > 0.0)
       {
-        step = vtkCoreBridge::ToSizingCells(input, cells);
+        step = vtkCoreBridge::ToSizingCells(data, cells);
       }
       for (int i = 0; i < components && step.IsOk() && this->Gradation > 0.0; ++i)
       {
