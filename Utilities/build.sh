@@ -7,20 +7,28 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 packages=(
   g++ cmake ninja-build            # compiler and build tools
-  paraview-dev python3-paraview    # ParaView 5.11 with its VTK 9.2, pvpython
-  mpi-default-dev                  # ParaView's CMake package asks for MPI
+  paraview-dev python3-paraview    # ParaView with its VTK, pvpython
+  mpi-default-dev python3-dev      # ParaView's CMake package asks for MPI and Python
   libcgal-dev                      # exact predicates
   libgtest-dev                     # unit tests
-  xvfb libqt5svg5                  # a display, and the icons of the GUI on it
+  xvfb                             # a display
   qttools5-dev qtxmlpatterns5-dev-tools   # help pages in ParaView
 )
 if [ "$1" = ON ]; then
   packages+=(
     libeigen3-dev gmsh       # solvers, and meshes to compare with
     xdotool imagemagick      # a mouse for the GUI, and pictures of the whole screen
-    clang-format-14 clang-tidy-14   # the style of the sources
     python3-venv             # environments for the wheel
   )
+fi
+# Debian 12 has ParaView 5.11 with VTK 9.2 and Qt 5, Debian 13 has ParaView 5.13 with VTK 9.3 and Qt 6.
+if grep -q '^VERSION_ID="12"' /etc/os-release; then
+  packages+=(libqt5svg5)           # the icons of the GUI
+  if [ "$1" = ON ]; then
+    packages+=(clang-format-14 clang-tidy-14)   # the style of the sources
+  fi
+else
+  packages+=(qt6-svg-plugins qt6-base-dev)      # the icons of the GUI, and what the plugin adds to it
 fi
 packages+=(${more_packages[@]+"${more_packages[@]}"})
 

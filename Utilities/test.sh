@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # bash Utilities/test.sh [CTEST OPTION...]
-# Installs what is missing (Debian 12), builds everything into build/, and runs all tests.
+# Installs what is missing (Debian 12 or 13), builds everything into build/, and runs all tests.
 source "$(dirname "${BASH_SOURCE[0]}")/build.sh" ON
 
 echo "== testing"

@@ -4,6 +4,7 @@
 #include "CoreBridge/Execution.h"
 #include "CoreBridge/Inputs.h"
 #include "CoreBridge/Reports.h"
+#include "vtkConformingDelaunayCompatibility.h"
 
 #include "Core/Basics/SortedIds.h"
 
@@ -13,7 +14,6 @@
 #include <vtkExecutive.h>
 #include <vtkFieldData.h>
 #include <vtkInformation.h>
-#include <vtkNumberToString.h>
 #include <vtkObjectFactory.h>
 #include <vtkPolyData.h>
 #include <vtkStringArray.h>
@@ -321,14 +321,14 @@ void GroupCollector::Write(std::ostream& file) const
   {
     node = node == 0 ? 0 : ++numberOfNodes;
   }
-  const vtkNumberToString convert;
+  using vtkConformingDelaunayCompatibility::ToText;
   file << "$EndPhysicalNames\n$Nodes\n" << numberOfNodes << "\n";
   for (std::size_t i = 0; i < nodes.size(); ++i)
   {
     if (nodes[i] != 0)
     {
       const cdm::Vec3& p = this->Mesh.Points[i];
-      file << nodes[i] << " " << convert(p.X) << " " << convert(p.Y) << " " << convert(p.Z) << "\n";
+      file << nodes[i] << " " << ToText(p.X) << " " << ToText(p.Y) << " " << ToText(p.Z) << "\n";
     }
   }
 

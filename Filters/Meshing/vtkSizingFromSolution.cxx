@@ -104,6 +104,7 @@ int vtkSizingFromSolution::RequestData(
   {
     return 1;
   }
+  const vtkSmartPointer<vtkDataSet> data = vtkCoreBridge::CopyWithoutBlanking(input);
   vtkDataArray* solution = this->GetInputArrayToProcess(0, inputVector);
   const int components = this->Anisotropic ? 3 : 1;
   std::vector<double> sizes[3];
@@ -111,7 +112,7 @@ int vtkSizingFromSolution::RequestData(
     [&]
     {
       const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(this);
-      cdm::Status step = CheckSolution(input, solution);
+      cdm::Status step = CheckSolution(data, solution);
       if (step.IsOk() && this->MaximumSize > 0.0 && this->MinimumSize > this->MaximumSize)
       {
         step = cdm::Status::InvalidInput("MinimumSize is larger than MaximumSize.");
@@ -120,7 +121,7 @@ int vtkSizingFromSolution::RequestData(
       {
         return step;
       }
-      const vtkSmartPointer<vtkDataArray> gradient = ComputeGradient(input, solution);
+      const vtkSmartPointer<vtkDataArray> gradient = ComputeGradient(data, solution);
       if (!context.Continue(0.5, "Limiting sizes"))
       {
         return cdm::Status::Aborted();
@@ -165,7 +166,7 @@ int vtkSizingFromSolution::RequestData(
       cdm::SizingCells cells;
       if (this->Gradation > 0.0)
       {
-        step = vtkCoreBridge::ToSizingCells(input, cells);
+        step = vtkCoreBridge::ToSizingCells(data, cells);
       }
       for (int i = 0; i < components && step.IsOk() && this->Gradation > 0.0; ++i)
       {

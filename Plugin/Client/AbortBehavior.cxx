@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AbortBehavior.h"
 
+#include "Compatibility.h"
+
 #include <pqApplicationCore.h>
 #include <pqPipelineSource.h>
 #include <pqProgressManager.h>
@@ -186,7 +188,7 @@ bool AbortBehavior::eventFilter(QObject* receiver, QEvent* event)
     case QEvent::MouseButtonRelease:
     {
       // Qt hands it to the window first, then to the widget.
-      const QPoint where = static_cast<QMouseEvent*>(event)->globalPos();
+      const QPoint where = Compatibility::GetScreenPosition(static_cast<QMouseEvent*>(event));
       return !(this->Button &&
         (receiver == this->Button ||
           (qobject_cast<QWindow*>(receiver) &&

@@ -167,7 +167,10 @@ void RegionColors::Update(pqDataRepresentation* representation)
   {
     vtkSMPropertyHelper(colors, "IndexedLookup").Set(0);
     colors->UpdateVTKObjects();
-    vtkSMPVRepresentationProxy::RescaleTransferFunctionToDataRange(representation->getProxy());
+    if (auto* proxy = vtkSMPVRepresentationProxy::SafeDownCast(representation->getProxy()))
+    {
+      proxy->RescaleTransferFunctionToDataRange();
+    }
     representation->renderViewEventually();
   }
   // Data are empty after an error, and will be back.

@@ -120,7 +120,9 @@ for frame in range(frames):
     if front.GetNumberOfCells() > 0:
         producer, display = Show3D(view, front, ORANGE)
         # A little towards the camera: it lies on faces of the tetrahedra.
-        display.Position = [0.00045, -0.001, 0.0005]
+        # ParaView 5.11 has another name for that.
+        name = "Translation" if "Translation" in display.ListProperties() else "Position"
+        setattr(display, name, [0.00045, -0.001, 0.0005])
         shown.append(producer)
     path = os.path.join(folder, "advancing_front_%04d.png" % frame)
     SaveScreenshot(path, view, ImageResolution=[1000, 800])

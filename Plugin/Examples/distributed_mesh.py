@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A MOS transistor meshed by several processes, for pvbatch under MPI.
 
-    PV_PLUGIN_PATH=build/lib/paraview-5.11/plugins/ConformingDelaunay \\
+    PV_PLUGIN_PATH=build/lib/paraview/plugins/ConformingDelaunay \\
         mpiexec -n 4 pvbatch Plugin/Examples/distributed_mesh.py [FOLDER]
 
 The first process refines the surface and places mesh points; all of them make the tetrahedra, each

@@ -77,5 +77,5 @@ if __name__ in ("__main__", "__vtkconsole__"):
     activeClip = CutRegions(GetActiveSource(), activeView)
     SetActiveSource(activeClip)
     # The handles of the plane would hide what is cut.
-    Hide3DWidgets(proxy=activeClip.ClipType)
+    HideInteractiveWidgets(proxy=activeClip.ClipType)
     Render(activeView)

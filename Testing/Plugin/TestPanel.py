@@ -28,7 +28,7 @@ def WaitForState(folder, name):
 def TakePicture(name):
     """As soon as ParaView has drawn what is expected; if it does not, at the end."""
     picture = os.path.join(os.environ["CDM_OUTPUT_DIR"], name)
-    baseline = os.path.join(os.environ["CDM_DATA_DIR"], "Baselines", name)
+    baseline = ImageComparison.GetBaseline(name)
     end = time.monotonic() + SECONDS
     while time.monotonic() < end:
         subprocess.run([os.environ["CDM_IMPORT"], "-window", "root", "-crop", PANEL, "+repage",

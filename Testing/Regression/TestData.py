@@ -33,7 +33,7 @@ def GetFiles():
 def GetOrigin(name):
     """The test that draws a baseline."""
     # The manual's pictures are named in its pages, not in the test.
-    if re.match(r"Baselines/(Page|Tutorial)\w+\.png$", name):
+    if re.match(r"Baselines/(VTK\d\.\d/)?(Page|Tutorial)\w+\.png$", name):
         return "drawn by `Testing/Plugin/TestDocumentation.py`"
     testing = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     for folder in ("Regression", "Plugin"):

@@ -6,7 +6,9 @@ the image or where the sizes differ. VTK's own comparison forgives shifts and av
 not see a missing triangle or a slightly smaller body.
 
     AssertSameAsBaseline("Name.png")    compares $CDM_OUTPUT_DIR/Name.png with
-                                        $CDM_DATA_DIR/Baselines/Name.png
+                                        $CDM_DATA_DIR/Baselines/Name.png, or with
+                                        $CDM_DATA_DIR/Baselines/VTK9.3/Name.png if there is one and
+                                        this is VTK 9.3: it draws some edges otherwise than 9.2
     python3 ImageComparison.py A B      compares two files, exit code 0 or 1
     python3 ImageComparison.py          tests itself
 """
@@ -17,6 +19,7 @@ import sys
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkVersion
 from vtkmodules.vtkIOImage import vtkPNGReader
 
 LEVELS = 8
@@ -55,6 +58,39 @@ def FindDifference(imagePath, baselinePath):
     return None
 
 
+def GetVersionBaseline(name):
+    """The path that a baseline of this version of VTK alone has."""
+    version = "VTK%d.%d" % (vtkVersion.GetVTKMajorVersion(), vtkVersion.GetVTKMinorVersion())
+    return os.path.join(os.environ["CDM_DATA_DIR"], "Baselines", version, name)
+
+
+def GetCommonBaseline(name):
+    """The path of the baseline for all versions that have none of their own."""
+    return os.path.join(os.environ["CDM_DATA_DIR"], "Baselines", name)
+
+
+def GetBaseline(name):
+    """The path of the baseline to compare with."""
+    path = GetVersionBaseline(name)
+    return path if os.path.exists(path) else GetCommonBaseline(name)
+
+
+def UpdateBaseline(name):
+    """The image becomes the baseline; with VTK 9.3 that of this version, where it is not the same."""
+    imagePath = os.path.join(os.environ["CDM_OUTPUT_DIR"], name)
+    common, own = GetCommonBaseline(name), GetVersionBaseline(name)
+    isCommon = vtkVersion.GetVTKMinorVersion() <= 2
+    if not isCommon and os.path.exists(common) and FindDifference(imagePath, common) is None:
+        if os.path.exists(own):
+            os.remove(own)
+        print(name, "is as its baseline")
+        return
+    path = common if isCommon else own
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    shutil.copyfile(imagePath, path)
+    print("new baseline", path)
+
+
 def IsBlank(imagePath):
     """True if all pixels have one colour."""
     pixels = ReadPixels(imagePath)
@@ -67,11 +103,10 @@ def AssertSameAsBaseline(name):
     With CDM_UPDATE_BASELINES=1 in the environment the image becomes the baseline.
     """
     imagePath = os.path.join(os.environ["CDM_OUTPUT_DIR"], name)
-    baselinePath = os.path.join(os.environ["CDM_DATA_DIR"], "Baselines", name)
     if os.environ.get("CDM_UPDATE_BASELINES") == "1":
-        shutil.copyfile(imagePath, baselinePath)
-        print("new baseline", baselinePath)
+        UpdateBaseline(name)
         return
+    baselinePath = GetBaseline(name)
     try:
         difference = FindDifference(imagePath, baselinePath)
     except FileNotFoundError as missing:

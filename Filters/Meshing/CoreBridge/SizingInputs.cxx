@@ -7,6 +7,7 @@
 
 #include "Core/Basics/IdLimits.h"
 
+#include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDataSet.h>
 #include <vtkGenericCell.h>
@@ -72,11 +73,10 @@ public:
     : Values(values), Components(values->GetNumberOfComponents())
   {
     // A copy of its own: locators build caches in the data set that they search.
-    this->Data.TakeReference(data->NewInstance());
-    this->Data->ShallowCopy(data);
+    this->Data = vtkCoreBridge::CopyWithoutBlanking(data);
     // Grids along the axes find cells by themselves.
     this->IsGrid = (data->IsA("vtkImageData") || data->IsA("vtkRectilinearGrid")) &&
-      data->GetNumberOfCells() > 0 && !data->HasAnyBlankCells();
+      data->GetNumberOfCells() > 0;
     if (data->GetNumberOfCells() > 0 && !this->IsGrid)
     {
       this->Cells->SetDataSet(this->Data);
@@ -390,6 +390,16 @@ cdm::Status ToSizing(vtkDataSet* input, cdm::SizingField& sizing)
   sizing = cdm::SizingField(
     [interpolator](const cdm::Vec3& position) { return (*interpolator)(position); }, minima);
   return {};
+}
+
+//--------------------------------------------------------------------------------------------------
+vtkSmartPointer<vtkDataSet> CopyWithoutBlanking(vtkDataSet* input)
+{
+  auto copy = vtk::TakeSmartPointer(input->NewInstance());
+  copy->ShallowCopy(input);
+  copy->GetPointData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+  copy->GetCellData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+  return copy;
 }
 
 //--------------------------------------------------------------------------------------------------

@@ -9,6 +9,8 @@
 #include "Core/Basics/Status.h"
 #include "Core/Sizing/SizingField.h"
 
+#include <vtkSmartPointer.h>
+
 class vtkDataSet;
 
 namespace vtkCoreBridge
@@ -20,6 +22,12 @@ namespace vtkCoreBridge
  * tensor with the lengths as its principal values. The field keeps what it needs of the input.
  */
 cdm::Status ToSizing(vtkDataSet* input, cdm::SizingField& sizing);
+
+/**
+ * A shallow copy in which nothing is blanked. Where a surface is resampled to an image all cells are
+ * blanked, and VTK 9.3 finds neither cells nor gradients there.
+ */
+vtkSmartPointer<vtkDataSet> CopyWithoutBlanking(vtkDataSet* input);
 
 /** Points and cells of any data set. */
 cdm::Status ToSizingCells(vtkDataSet* input, cdm::SizingCells& cells);
