@@ -12,6 +12,10 @@ import subprocess
 import sys
 import tempfile
 
+from vtkmodules.vtkFiltersCore import vtkTriangleFilter
+from vtkmodules.vtkFiltersSources import vtkCubeSource
+from vtkmodules.vtkIOGeometry import vtkSTLWriter
+
 with open(os.path.join(os.environ["CDM_SOURCE_DIR"], "README.md"), encoding="utf-8") as readme:
     blocks = re.findall(r"^```(\w+)\n(.*?)^```", readme.read(), re.MULTILINE | re.DOTALL)
 
@@ -34,8 +38,18 @@ with tempfile.TemporaryDirectory() as folder:
     os.symlink(os.environ["CDM_BINARY_DIR"], os.path.join(folder, "build"))
     os.symlink(os.path.join(os.environ["CDM_SOURCE_DIR"], "Data"), os.path.join(folder, "Data"))
 
+    # The STL file of the first example: a brick.
+    cube = vtkCubeSource()
+    cube.SetXLength(10.0)
+    triangles = vtkTriangleFilter()
+    triangles.SetInputConnection(cube.GetOutputPort())
+    writer = vtkSTLWriter()
+    writer.SetInputConnection(triangles.GetOutputPort())
+    writer.SetFileName(os.path.join(folder, "part.stl"))
+    writer.Write()
+
     scripts = GetBlocks("python")
-    assert len(scripts) >= 2, "the README shows proxies and classes"
+    assert len(scripts) >= 3, "the README shows functions, proxies and classes"
     for i, text in enumerate(scripts):
         script = os.path.join(folder, "example%d.py" % i)
         with open(script, "w", encoding="utf-8") as file:

@@ -142,6 +142,8 @@ class _Arrays:
 
     def set(self, name: str, value: Any) -> None:
         array = np.asarray(value)
+        function: Any
+        kind: Any
         if array.dtype.kind == "f":
             array = np.ascontiguousarray(array, np.float64)
             function, kind = _library.cdmSetReals, ctypes.c_double

@@ -40,9 +40,9 @@ def read_stl(path: Path) -> "Surface":
         corners = np.frombuffer(content, record, count, 84)["corners"].reshape(-1, 3)
     else:
         words = content.split()
-        places = [i + 1 for i, word in enumerate(words) if word.lower() == b"vertex"]
+        starts = [i + 1 for i, word in enumerate(words) if word.lower() == b"vertex"]
         try:
-            corners = np.array([words[i : i + 3] for i in places], np.float64).reshape(-1, 3)
+            corners = np.array([words[i : i + 3] for i in starts], np.float64).reshape(-1, 3)
         except ValueError:
             raise ValueError(f"{os.fspath(path)} is no STL file, or it is cut off.") from None
         if len(corners) == 0 or len(corners) % 3 != 0:

@@ -37,8 +37,10 @@ class MeshingWarning(UserWarning):
 
 
 def _number(name: str, value: Any, choices: Sequence[str]) -> Optional[int]:
-    if value is None or isinstance(value, (int, np.integer)):
-        return value
+    if value is None:
+        return None
+    if isinstance(value, (int, np.integer)):
+        return int(value)
     try:
         return choices.index(str(value).lower())
     except ValueError:
