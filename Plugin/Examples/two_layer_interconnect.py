@@ -24,7 +24,7 @@ def Run(folder):
 
     def GetLength(x, y, z):
         """As fine as the lines and the oxide on them ask for, coarser in the silicon."""
-        return numpy.where(z > 0.0, numpy.maximum(0.12 - 0.25 * z, 0.07), 0.12 - 2.0 * z)
+        return numpy.where(z > 0.0, numpy.maximum(0.13 - 0.27 * z, 0.075), 0.13 - 3.5 * z)
 
     mesh = gallery.MakeMesh(device, sizing=gallery.MakeSizing(device, GetLength))
     wrong = gallery.Report("Two-layer interconnect", mesh, THESIS)

@@ -23,7 +23,7 @@ REACTION = 0.5  # rate at the surface over the diffusion coefficient, per microm
 CONCENTRATION = "WF6"
 RANGE = (0.2, 1.0)  # of the colours
 DIRECTION = (0.35, -1.0, 0.45)
-SMALLEST = 0.027  # micrometres: edges at the surface of the refined via
+SMALLEST = 0.030  # micrometres: edges at the surface of the refined via
 
 
 def GetPoints(data, name):
