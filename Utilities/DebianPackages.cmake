@@ -29,8 +29,10 @@ set(CPACK_VERBATIM_VARIABLES ON)
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
-set(CPACK_COMPONENTS_ALL runtime python paraview_plugins documentation autoload development)
-foreach (component IN ITEMS RUNTIME PYTHON PARAVIEW_PLUGINS DOCUMENTATION AUTOLOAD)
+# ParaView's macros install the list of plugins without a component.
+set(CPACK_COMPONENTS_ALL
+  runtime python paraview_plugins Unspecified documentation autoload development)
+foreach (component IN ITEMS RUNTIME PYTHON PARAVIEW_PLUGINS UNSPECIFIED DOCUMENTATION AUTOLOAD)
   set(CPACK_COMPONENT_${component}_GROUP main)
 endforeach ()
 set(CPACK_COMPONENT_DEVELOPMENT_GROUP development)

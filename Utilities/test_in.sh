@@ -34,20 +34,25 @@ make_system() {
 
 # Runs a command in a system, with /proc and /dev while it runs.
 run_in() {
-  local system="$1"
+  mounted="$1"
   shift
-  unmount() {
-    umount --recursive --lazy "$system/proc" "$system/dev" 2>/dev/null || true
-  }
   trap unmount EXIT
-  mount --types proc proc "$system/proc"
-  mount --rbind /dev "$system/dev"
-  mount --make-rslave "$system/dev"
+  mount --types proc proc "$mounted/proc"
+  mount --rbind /dev "$mounted/dev"
+  mount --make-rslave "$mounted/dev"
   env --ignore-environment HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 \
     ${http_proxy:+http_proxy="$http_proxy"} ${https_proxy:+https_proxy="$https_proxy"} \
-    chroot "$system" "$@"
+    chroot "$mounted" "$@"
   unmount
 }
+
+unmount() {
+  if [ -n "$mounted" ]; then
+    umount --recursive --lazy "$mounted/proc" "$mounted/dev" 2>/dev/null || true
+  fi
+  mounted=
+}
+mounted=
 
 system="$systems/$release"
 if [ "$script" = packages ]; then
