@@ -6,15 +6,38 @@ if (NOT CONFORMINGDELAUNAY_BUILD_PLUGIN)
   return()
 endif ()
 
-# ParaView's programs load the plugins that these files list. They lie beside the programs, in /usr/bin;
-# Debian's packages have none.
-set(plugin_list
-  "../${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/conforming_delaunay.plugins.xml")
-foreach (program IN ITEMS paraview pvserver)
-  file(WRITE "${CMAKE_BINARY_DIR}/packages/${program}.conf" "${plugin_list}\n")
-  install(FILES "${CMAKE_BINARY_DIR}/packages/${program}.conf" DESTINATION "${CMAKE_INSTALL_BINDIR}"
-    COMPONENT autoload EXCLUDE_FROM_ALL)
-endforeach ()
+# ParaView's programs load the plugins that a file with the name of the program lists. Debian 12 has no
+# such files; they are looked for beside the programs, in /usr/bin. Debian 13 has one, which goes first: it
+# is diverted (dpkg-divert), and ours has its lines, too. A plugin in /usr/share/paraview/plugins, which
+# that file names, would be known but not loaded.
+set(plugin_list "/usr/${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/conforming_delaunay.plugins.xml")
+get_filename_component(versioned_dir "${PARAVIEW_PLUGIN_SUBDIR}" DIRECTORY)
+set(debian_list "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/${versioned_dir}/paraview.conf")
+set(packages_dir "${CMAKE_BINARY_DIR}/packages")
+file(WRITE "${packages_dir}/pvserver.conf" "${plugin_list}\n")
+install(FILES "${packages_dir}/pvserver.conf" DESTINATION "${CMAKE_INSTALL_BINDIR}"
+  COMPONENT autoload EXCLUDE_FROM_ALL)
+set(known_plugins)
+set(list_dir "${CMAKE_INSTALL_BINDIR}")
+if (EXISTS "${debian_list}")
+  file(READ "${debian_list}" known_plugins)
+  get_filename_component(list_dir "${debian_list}" DIRECTORY)
+  foreach (script IN ITEMS preinst postrm)
+    configure_file(Utilities/DebianPackages.${script}.in "${packages_dir}/${script}" @ONLY)
+    file(CHMOD "${packages_dir}/${script}" PERMISSIONS
+      OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+    list(APPEND CPACK_DEBIAN_MAIN_PACKAGE_CONTROL_EXTRA "${packages_dir}/${script}")
+  endforeach ()
+endif ()
+string(STRIP "${known_plugins}" known_plugins)
+if (NOT known_plugins STREQUAL "")
+  string(APPEND known_plugins "\n")
+endif ()
+# In case this build runs where the packages are installed.
+string(REPLACE "${plugin_list}\n" "" known_plugins "${known_plugins}")
+file(WRITE "${packages_dir}/paraview.conf" "${known_plugins}${plugin_list}\n")
+install(FILES "${packages_dir}/paraview.conf" DESTINATION "${list_dir}"
+  COMPONENT autoload EXCLUDE_FROM_ALL)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME conforming-delaunay)
@@ -53,5 +76,5 @@ set(paraview_range
 set(CPACK_DEBIAN_MAIN_PACKAGE_DEPENDS
   "${paraview_range}, python3-paraview, python3-numpy, libc6, libstdc++6, libgmp10")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "conforming-delaunay (= ${PROJECT_VERSION}), paraview-dev, mpi-default-dev, python3-dev, g++, cmake")
+  "conforming-delaunay (= ${PROJECT_VERSION}), paraview-dev, mpi-default-dev, python3-dev, g++, cmake, make | ninja-build")
 include(CPack)

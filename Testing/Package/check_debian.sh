@@ -56,7 +56,9 @@ ctest --test-dir consumer-build --output-on-failure
 
 echo "== removed"
 apt-get purge -q -y conforming-delaunay conforming-delaunay-dev
-left="$(find / -xdev \( -iname '*conforming*delaunay*' -o -name 'libcdm*' -o -name paraview.conf \) \
+# Files of other packages are as they were.
+dpkg --verify paraview python3-paraview
+left="$(find / -xdev \( -iname '*conforming*delaunay*' -o -name 'libcdm*' -o -name '*.distrib' \) \
   -not -path "$PWD/*" -not -path '/proc/*' -not -path '/project/*' -not -path '/root/*' \
   -not -path '/var/cache/*' | head)"
 if [ -n "$left" ]; then
