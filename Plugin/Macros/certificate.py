@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A macro: has the selected tetrahedra certified, and writes the certificate into the view.
 
-In ParaView: Macros > Import new macro, once; then select a mesh and choose the macro. It adds the
+In ParaView, where the plugin has it in the menu Macros: select a mesh, choose Certificate. It adds the
 filter Delaunay Mesh Criteria, whose output Faults shows what is wrong with the mesh, if anything
 is.
 """

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A macro: cuts the mesh open and gives each region a color of its own, with its name.
 
-In ParaView: Macros > Import new macro, once; then select a mesh with the cell array RegionId and
-choose the macro. The half of the mesh in front of a plane across the shortest side of its bounding
+In ParaView, where the plugin has it in the menu Macros: select a mesh with the cell array RegionId and
+choose Region cut. The half of the mesh in front of a plane across the shortest side of its bounding
 box goes, in whole tetrahedra, and the camera looks at the cut. The plane can be moved in the
 properties of the clip that the macro makes; there, Show Plane shows it.
 """
