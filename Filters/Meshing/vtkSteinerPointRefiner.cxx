@@ -19,11 +19,59 @@
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <vector>
+
 vtkStandardNewMacro(vtkSteinerPointRefiner);
 
 namespace
 {
 constexpr const char* RemovePointName = "RemovePoint";
+
+/** What the engine's input refers to, of the data sets at the four ports. */
+struct PortInputs
+{
+  vtkUnstructuredGrid* Mesh;
+  vtkDataSet* Sizing;
+  vtkPolyData* Boundary;
+  vtkPointSet* NewPoints;
+
+  cdm::TetMesh EngineMesh;
+  cdm::TriangleMesh EngineBoundary;
+
+  bool HasBoundary() const { return this->Boundary && this->Boundary->GetNumberOfCells() > 0; }
+};
+
+cdm::Status ReadInputs(
+  PortInputs& ports, cdm::SteinerPointRefinerInput& input, std::vector<cdm::Id>& facets)
+{
+  input.Mesh = &ports.EngineMesh;
+  return vtkCoreBridge::ToTetMesh(ports.Mesh, ports.EngineMesh)
+    .Then(
+      [&] {
+        return ports.Sizing ? vtkCoreBridge::ToSizing(ports.Sizing, input.Sizing) : cdm::Status();
+      })
+    .Then([&]
+      { return vtkCoreBridge::ToFlags(ports.Mesh, vtkCoreBridge::FreePointName, input.IsFree); })
+    .Then([&] { return vtkCoreBridge::ToFlags(ports.Mesh, RemovePointName, input.IsRemoved); })
+    .Then(
+      [&]
+      {
+        return ports.NewPoints
+          ? vtkCoreBridge::ToPoints(ports.NewPoints, "points to be put in", input.NewPoints)
+          : cdm::Status();
+      })
+    .Then(
+      [&]
+      {
+        if (!ports.HasBoundary())
+        {
+          return cdm::Status();
+        }
+        input.Boundary = &ports.EngineBoundary;
+        return vtkCoreBridge::ToTriangleMesh(ports.Boundary, ports.EngineBoundary)
+          .Then([&] { return vtkCoreBridge::ToFacets(ports.Boundary, facets); });
+      });
+}
 } // namespace
 
 //--------------------------------------------------------------------------------------------------
@@ -57,74 +105,43 @@ int vtkSteinerPointRefiner::FillOutputPortInformation(int port, vtkInformation* 
 int vtkSteinerPointRefiner::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkUnstructuredGrid* input = vtkUnstructuredGrid::GetData(inputVector[0]);
-  vtkDataSet* sizingInput = vtkDataSet::GetData(inputVector[1]);
-  vtkPolyData* boundaryInput = vtkPolyData::GetData(inputVector[2]);
-  vtkPointSet* pointInput = vtkPointSet::GetData(inputVector[3]);
-  if (vtkCoreBridge::IsIdleProcess(input, outputVector))
+  PortInputs ports{ vtkUnstructuredGrid::GetData(inputVector[0]),
+    vtkDataSet::GetData(inputVector[1]), vtkPolyData::GetData(inputVector[2]),
+    vtkPointSet::GetData(inputVector[3]), {}, {} };
+  if (vtkCoreBridge::IsIdleProcess(ports.Mesh, outputVector))
   {
     return 1;
   }
 
-  cdm::TetMesh mesh;
-  cdm::TriangleMesh boundary;
   cdm::SteinerPointRefinerInput engineInput;
-  engineInput.Mesh = &mesh;
+  cdm::SteinerPointRefinerOptions options;
+  options.RadiusEdgeRatio = this->RadiusEdgeRatio;
+  options.DihedralAngleTarget = this->DihedralAngleTarget;
+  options.MaximumVolume = this->MaximumVolume;
+  options.MaximumEdgeLength = this->MaximumEdgeLength;
+  options.MinimumEdgeLength = this->MinimumEdgeLength;
+  options.Criterion = static_cast<cdm::SurfaceCriterion>(this->Criterion);
+  options.StructuralEdges.AccuracyAngle = this->AccuracyAngle;
+  options.StructuralEdges.FlatnessRatio = this->FlatnessRatio;
+  options.MaximumNewPoints = this->MaximumNewPoints;
+  engineInput.AreInteriorPointsFree = this->FreeInteriorPoints;
   cdm::SteinerPointRefinerOutput result;
-  // Errors count cells of the boundary if there is one.
-  vtkDataSet* namedInput = input;
   const cdm::Status status = cdm::RunGuarded(
     [&]
     {
-      cdm::Status step = vtkCoreBridge::ToTetMesh(input, mesh);
-      if (step.IsOk() && sizingInput)
-      {
-        step = vtkCoreBridge::ToSizing(sizingInput, engineInput.Sizing);
-      }
-      if (step.IsOk())
-      {
-        step = vtkCoreBridge::ToFlags(input, vtkCoreBridge::FreePointName, engineInput.IsFree);
-      }
-      if (step.IsOk())
-      {
-        step = vtkCoreBridge::ToFlags(input, RemovePointName, engineInput.IsRemoved);
-      }
-      if (step.IsOk() && pointInput)
-      {
-        step = vtkCoreBridge::ToPoints(pointInput, "points to be put in", engineInput.NewPoints);
-      }
-      if (step.IsOk() && boundaryInput && boundaryInput->GetNumberOfCells() > 0)
-      {
-        namedInput = boundaryInput;
-        step = vtkCoreBridge::ToTriangleMesh(boundaryInput, boundary);
-        engineInput.Boundary = &boundary;
-      }
-      cdm::SteinerPointRefinerOptions options;
-      if (step.IsOk() && engineInput.Boundary)
-      {
-        step = vtkCoreBridge::ToFacets(boundaryInput, options.StructuralEdges.Facets);
-      }
-      if (!step.IsOk())
-      {
-        return step;
-      }
-      engineInput.AreInteriorPointsFree = this->FreeInteriorPoints;
-      options.RadiusEdgeRatio = this->RadiusEdgeRatio;
-      options.DihedralAngleTarget = this->DihedralAngleTarget;
-      options.MaximumVolume = this->MaximumVolume;
-      options.MaximumEdgeLength = this->MaximumEdgeLength;
-      options.MinimumEdgeLength = this->MinimumEdgeLength;
-      options.Criterion = static_cast<cdm::SurfaceCriterion>(this->Criterion);
-      options.StructuralEdges.AccuracyAngle = this->AccuracyAngle;
-      options.StructuralEdges.FlatnessRatio = this->FlatnessRatio;
-      options.MaximumNewPoints = this->MaximumNewPoints;
-      step =
-        cdm::RefineBySteinerPoints(engineInput, options, vtkCoreBridge::MakeContext(this), result);
-      if (boundaryInput)
-      {
-        vtkCoreBridge::OffsetCells(step.Cells, vtkCoreBridge::GetFirstPolygon(boundaryInput));
-      }
-      return step;
+      return ReadInputs(ports, engineInput, options.StructuralEdges.Facets)
+        .Then(
+          [&]
+          {
+            cdm::Status step = cdm::RefineBySteinerPoints(
+              engineInput, options, vtkCoreBridge::MakeContext(this), result);
+            if (ports.Boundary)
+            {
+              vtkCoreBridge::OffsetCells(
+                step.Cells, vtkCoreBridge::GetFirstPolygon(ports.Boundary));
+            }
+            return step;
+          });
     });
   const cdm::SteinerPointRefinerReport& report = result.Report;
   this->NumberOfBoundaryPoints = report.BoundaryPoints;
@@ -139,13 +156,15 @@ int vtkSteinerPointRefiner::RequestData(
   this->NumberOfNegativeCouplings = report.NegativeCouplings;
   if (!status.IsOk())
   {
-    return vtkCoreBridge::ReportFailure(this, outputVector, status, namedInput);
+    // Errors count cells of the boundary once it is read.
+    return vtkCoreBridge::ReportFailure(this, outputVector, status,
+      engineInput.Boundary ? static_cast<vtkDataSet*>(ports.Boundary) : ports.Mesh);
   }
 
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector, 0);
   vtkCoreBridge::RemoveCertificate(output->GetFieldData());
   vtkCoreBridge::FromTetMesh(result.Mesh, output);
-  vtkCoreBridge::InterpolateTuplesInCells(input, result.PointSources, output);
+  vtkCoreBridge::InterpolateTuplesInCells(ports.Mesh, result.PointSources, output);
   output->GetPointData()->RemoveArray(RemovePointName);
   vtkCoreBridge::FromFlags(vtkCoreBridge::FreePointName, result.IsFree, output->GetPointData());
   vtkPolyData* boundaryOutput = vtkPolyData::GetData(outputVector, 1);
@@ -153,7 +172,7 @@ int vtkSteinerPointRefiner::RequestData(
   boundaryOutput->GetPointData()->PassData(output->GetPointData());
   if (engineInput.Boundary)
   {
-    vtkCoreBridge::CopyTriangleTuples(boundaryInput, result.Boundary.SourceCells, boundaryOutput);
+    vtkCoreBridge::CopyTriangleTuples(ports.Boundary, result.Boundary.SourceCells, boundaryOutput);
   }
 
   vtkCoreBridge::FromFaults(result.Faults, output);
