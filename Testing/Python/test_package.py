@@ -2,6 +2,7 @@
 """Tests of the package conforming_delaunay: with NumPy alone, and with whatever VTK is there."""
 
 import importlib.util
+import json
 import os
 import subprocess
 import sys
@@ -47,8 +48,14 @@ class NumPyAlone(unittest.TestCase):
     def test_a_cube_has_its_volume_and_a_certificate(self):
         mesh = cd.mesh((CUBE_POINTS, CUBE_QUADS))
         self.assertAlmostEqual(volumes(mesh).sum(), 1.0, 12)
-        self.assertEqual(mesh.verdict, "DELAUNAY")
-        self.assertEqual(mesh.certificate.splitlines()[0], "DELAUNAY")
+        self.assertEqual(mesh.certificate.verdict, "DELAUNAY")
+        self.assertEqual(str(mesh.certificate).splitlines()[0], "DELAUNAY")
+        self.assertTrue(mesh.certificate.is_delaunay)
+        self.assertFalse(mesh.certificate.is_clean)
+        self.assertAlmostEqual(mesh.certificate.region_volumes[0], 1.0, 12)
+        self.assertEqual(mesh.certificate.flat_tetrahedra, {5: (0, 0), 10: (0, 0), 15: (0, 0)})
+        self.assertEqual(sum(mesh.certificate.faults.values()), 0)
+        self.assertAlmostEqual(mesh.certificate.smallest_dihedral_angle, 45.0, 9)
         self.assertEqual(len(mesh.boundary.triangles), 12)
         self.assertTrue(np.all(volumes(mesh) > 0.0))
         self.assertEqual(mesh.warnings, [])
@@ -62,7 +69,8 @@ class NumPyAlone(unittest.TestCase):
             add_steiner_points=True,
             maximum_edge_length=0.3,
         )
-        self.assertEqual(mesh.verdict, "CLEAN FOR FINITE VOLUMES")
+        self.assertEqual(mesh.certificate.verdict, "CLEAN FOR FINITE VOLUMES")
+        self.assertTrue(mesh.certificate.is_clean)
         self.assertLessEqual(lengths(mesh).max(), 0.3)
         boxes = cd.control_volumes(mesh)
         self.assertEqual(boxes.negative, 0)
@@ -192,13 +200,44 @@ class NumPyAlone(unittest.TestCase):
                 self.assertAlmostEqual(volumes(cd.mesh(name)).sum(), 1.0, 12)
             output = os.path.join(folder, "mesh.vtu")
             command = [sys.executable, "-m", "conforming_delaunay"]
-            run = subprocess.run(
-                command + [binary, output, "--maximum-edge-length", "0.5"],
-                stdout=subprocess.PIPE,
-                universal_newlines=True,
-            )
-            self.assertEqual(run.returncode, 0)
+            options = ["--maximum-edge-length", "0.5", "--no-remove-slivers"]
+
+            def run_command(*arguments):
+                return subprocess.run(
+                    command + list(arguments),
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.PIPE,
+                    universal_newlines=True,
+                )
+
+            run = run_command("mesh", binary, output, *options)
+            self.assertEqual(run.returncode, 0, run.stderr)
             self.assertTrue(run.stdout.startswith("DELAUNAY\n"), run.stdout)
+            run = run_command("mesh", binary, output, "--json", *options)
+            self.assertEqual(json.loads(run.stdout)["verdict"], "DELAUNAY")
+            self.assertEqual(run_command("mesh", binary, output, "--minimum-angle", "90").returncode, 2)
+            self.assertEqual(run_command("mesh", "nothing.stl", output).returncode, 2)
+            self.assertEqual(run_command("check").returncode, 2)
+            self.assertIn("check part.vtu", run_command("--help").stdout)
+            if HAS_VTK or HAS_MESHIO:
+                run = run_command("check", output, "--json")
+                self.assertEqual(run.returncode, 0, run.stderr)
+                self.assertEqual(json.loads(run.stdout)["faults"]["inverted tetrahedra"], 0)
+                boxes = os.path.join(folder, "boxes.npz")
+                self.assertEqual(run_command("volumes", output, boxes).returncode, 0)
+                with np.load(boxes) as arrays:
+                    self.assertAlmostEqual(arrays["box_volumes"].sum(), 1.0, 12)
+                mesh = cd.Mesh.read(output)
+                mesh.tetrahedra = mesh.tetrahedra[:, [1, 0, 2, 3]]
+                mesh.save(output)
+                run = run_command("check", output)
+                self.assertEqual(run.returncode, 1)
+                self.assertTrue(run.stdout.startswith("INVALID"), run.stdout)
+                self.assertEqual(run_command("mesh", binary, output, *options).returncode, 0)
+            else:
+                run = run_command("check", output)
+                self.assertEqual(run.returncode, 2)
+                self.assertIn("install", run.stderr)
             with open(output) as file:
                 self.assertIn("DELAUNAY", file.readlines()[1])
             if HAS_MESHIO:
@@ -216,10 +255,8 @@ class NumPyAlone(unittest.TestCase):
                 self.assertGreater(reader.GetOutput().GetNumberOfCells(), 6)
             with open(text, "w") as file:
                 file.write("solid nothing\n")
-            run = subprocess.run(
-                command + [text, output], stderr=subprocess.PIPE, universal_newlines=True
-            )
-            self.assertEqual(run.returncode, 1)
+            run = run_command("mesh", text, output)
+            self.assertEqual(run.returncode, 2)
             self.assertIn("no STL file", run.stderr)
 
 

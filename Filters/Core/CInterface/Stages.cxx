@@ -249,11 +249,19 @@ void Write(OutputWriter& writer, const MeshCertificate& certificate)
 {
   writer.Write("certificate", certificate.GetText());
   writer.Write("verdict", std::string(certificate.GetVerdictName()));
+  writer.Write("reasons", certificate.GetReasons());
   writer.Write("smallest_dihedral_angle", certificate.SmallestDihedralAngle);
   writer.Write("largest_dihedral_angle", certificate.LargestDihedralAngle);
   writer.Write("volume_error", certificate.LargestVolumeError);
-  std::vector<Id> faults(certificate.Faults.begin(), certificate.Faults.end());
-  writer.Write("fault_counts", std::move(faults));
+  writer.Write(
+    "fault_counts", std::vector<Id>(certificate.Faults.begin(), certificate.Faults.end()));
+  std::vector<EdgeIds> flat;
+  for (const FlatterTetrahedra& under :
+    { certificate.Under5Degrees, certificate.Under10Degrees, certificate.Under15Degrees })
+  {
+    flat.push_back({ under.Count, under.BetweenBoundaries });
+  }
+  writer.Write("flat_tetrahedra", std::move(flat));
   std::vector<Id> regions;
   std::vector<double> volumes;
   for (const RegionVolume& region : certificate.Regions)

@@ -23,12 +23,11 @@ from typing import Any, List
 
 from ._engine import Aborted, ErrorCode, MeshingError, OptionError
 from ._engine import version as __version__
-from .data import Mesh, Surface
+from .data import FAULTS, Certificate, Mesh, Surface
 from .meshing import (
     CRITERIA,
     PLACEMENTS,
     TEMPLATES,
-    Certificate,
     ControlVolumes,
     MeshingWarning,
     Problems,

@@ -103,6 +103,91 @@ class Surface:
         return pyvista.wrap(self.to_vtk())
 
 
+#: The faults that a mesh can have, in the order of MeshFault in Core/Certificate.
+FAULTS = (
+    "inverted tetrahedra",
+    "flat tetrahedra",
+    "overfull facets",
+    "tetrahedra that are not Delaunay",
+    "facets that are not Delaunay",
+    "boundary triangles with points in their smallest spheres",
+    "structural edges with points in their smallest spheres",
+    "open control volumes",
+    "negative couplings",
+    "negative cotangent sums",
+)
+
+
+@dataclasses.dataclass
+class Certificate:
+    """What a mesh is worth, computed from the mesh alone. As a string: its text.
+
+    Attributes:
+        verdict: INVALID, NOT DELAUNAY, DELAUNAY or CLEAN FOR FINITE VOLUMES.
+        reasons: a line: why the verdict is not better, or what it means.
+        text: verdict, reasons, numbers: three lines.
+        faults: how many there are, by their names in FAULTS. The last four are looked for in a
+            full check, and in meshes for finite volumes.
+        smallest_dihedral_angle: degrees.
+        largest_dihedral_angle: degrees.
+        flat_tetrahedra: by bound (5, 10 and 15 degrees) how many have a smaller dihedral angle, and
+            how many of these have all points on boundaries: the shape of the input causes them.
+        region_volumes: by region, cubic model units.
+        volume_error: largest relative difference to the volume that the boundary encloses.
+        smallest_dihedral_angles: of each tetrahedron, degrees; from certify() only.
+        radius_edge_ratios: of each tetrahedron; from certify() only.
+    """
+
+    verdict: str
+    reasons: str
+    text: str
+    faults: Dict[str, int]
+    smallest_dihedral_angle: float
+    largest_dihedral_angle: float
+    flat_tetrahedra: Dict[int, Tuple[int, int]]
+    region_volumes: Dict[int, float]
+    volume_error: float
+    smallest_dihedral_angles: np.ndarray
+    radius_edge_ratios: np.ndarray
+
+    def __str__(self) -> str:
+        return self.text
+
+    @property
+    def is_delaunay(self) -> bool:
+        """Whether the mesh is valid and Delaunay."""
+        return self.verdict in ("DELAUNAY", "CLEAN FOR FINITE VOLUMES")
+
+    @property
+    def is_clean(self) -> bool:
+        """Whether it is ready for finite volumes, too: no coupling is negative."""
+        return self.verdict == "CLEAN FOR FINITE VOLUMES"
+
+    def to_dict(self) -> Dict[str, Any]:
+        """All but what there is for each tetrahedron, as numbers, texts and dictionaries."""
+        fields = dataclasses.asdict(self)
+        del fields["text"], fields["smallest_dihedral_angles"], fields["radius_edge_ratios"]
+        return fields
+
+    @classmethod
+    def from_arrays(cls, arrays: Dict[str, Any]) -> "Certificate":
+        none = np.empty(0)
+        flat = arrays["flat_tetrahedra"].tolist()
+        return cls(
+            arrays["verdict"],
+            arrays["reasons"],
+            arrays["certificate"],
+            dict(zip(FAULTS, arrays["fault_counts"].tolist())),
+            float(arrays["smallest_dihedral_angle"][0]),
+            float(arrays["largest_dihedral_angle"][0]),
+            {bound: (row[0], row[1]) for bound, row in zip((5, 10, 15), flat)},
+            dict(zip(arrays["region_ids"].tolist(), arrays["region_volumes"].tolist())),
+            float(arrays["volume_error"][0]),
+            arrays.get("smallest_dihedral_angles", none),
+            arrays.get("radius_edge_ratios", none),
+        )
+
+
 @dataclasses.dataclass
 class Mesh:
     """Tetrahedra of one or more regions, exactly Delaunay, with their boundary.
@@ -117,8 +202,7 @@ class Mesh:
         faults: (m,) uint8, why a tetrahedron misses what was asked for: 0 it does not, 1 size,
             2 shape, 3 sliver, 4 at a sharp angle or in a thin layer; empty: none does.
         is_free: (n,) uint8, whether a point may be moved; empty: not known.
-        verdict: INVALID, NOT DELAUNAY, DELAUNAY or CLEAN FOR FINITE VOLUMES.
-        certificate: the verdict, its reasons, numbers: three lines.
+        certificate: of mesh(); the stages by themselves make none: certify() does.
         warnings: what was not done as asked.
     """
 
@@ -131,15 +215,20 @@ class Mesh:
     )
     faults: np.ndarray = dataclasses.field(default_factory=lambda: np.empty(0, np.uint8))
     is_free: np.ndarray = dataclasses.field(default_factory=lambda: np.empty(0, np.uint8))
-    verdict: str = ""
-    certificate: str = ""
+    certificate: Optional[Certificate] = None
     warnings: List[str] = dataclasses.field(default_factory=list)
 
     def __repr__(self) -> str:
         return (
             f"<Mesh: {len(self.tetrahedra)} tetrahedra, {len(self.points)} points, "
-            f"{len(np.unique(self.regions))} regions; {self.verdict or 'not certified'}>"
+            f"{len(np.unique(self.regions))} regions; "
+            f"{self.certificate.verdict if self.certificate else 'not certified'}>"
         )
+
+    @classmethod
+    def read(cls, path: Union[str, "os.PathLike[str]"]) -> "Mesh":
+        """Tetrahedra from a file that VTK or meshio reads, one of which has to be installed."""
+        return files.read_mesh(path)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """To a file: VTU by itself, what meshio knows by meshio, where installed."""
@@ -235,7 +324,6 @@ def make_mesh(arrays: Dict[str, Any]) -> Mesh:
         arrays.get("unresolved_triangles", np.empty(0, np.int32)),
         arrays.get("faults", none),
         arrays.get("is_free", none),
-        arrays.get("verdict", ""),
-        arrays.get("certificate", ""),
+        Certificate.from_arrays(arrays) if "certificate" in arrays else None,
         arrays["warnings"].splitlines() if arrays.get("warnings") else [],
     )

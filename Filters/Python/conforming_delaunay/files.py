@@ -75,6 +75,40 @@ def _read_with_meshio(path: Path) -> "Surface":
     return Surface.from_any((points, polygons))
 
 
+def read_mesh(path: Path) -> "Mesh":
+    """Reads tetrahedra and their regions; ValueError says what is wrong with the file."""
+    from .data import Mesh
+
+    name = os.fspath(path)
+    if not os.path.exists(name):
+        raise FileNotFoundError(f"There is no file {name}.")
+    try:
+        from . import vtk_data
+    except ImportError:
+        pass
+    else:
+        if os.path.splitext(name)[1].lower() in (".vtu", ".vtk"):
+            return vtk_data.read_mesh(name)
+    try:
+        import meshio
+    except ImportError:
+        raise ValueError(
+            f"{name}: meshes are read from .vtu and .vtk by VTK, and from others by meshio: install "
+            "one of them."
+        ) from None
+    read = meshio.read(path)
+    blocks = [i for i, block in enumerate(read.cells) if block.type == "tetra"]
+    if not blocks:
+        raise ValueError(f"{name} has no tetrahedra.")
+    tetrahedra = np.concatenate([read.cells[i].data for i in blocks])
+    regions = np.zeros(len(tetrahedra), np.int32)
+    for key in ("RegionId", "gmsh:physical"):
+        if key in read.cell_data:
+            regions = np.concatenate([read.cell_data[key][i] for i in blocks])
+            break
+    return Mesh(np.asarray(read.points, np.float64), tetrahedra, regions)
+
+
 def write_mesh(path: Path, mesh: "Mesh") -> None:
     """Writes a mesh; the ending of the name tells the format."""
     if os.path.splitext(os.fspath(path))[1].lower() == ".vtu":
@@ -99,7 +133,7 @@ def write_vtu(path: Path, mesh: "Mesh") -> None:
     point_data = [("FreePoint", mesh.is_free)] if len(mesh.is_free) else []
     lines = [
         '<?xml version="1.0"?>',
-        "<!-- " + escape(mesh.certificate).replace("--", "- -") + " -->",
+        "<!-- " + escape(str(mesh.certificate or "not certified")).replace("--", "- -") + " -->",
         '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" '
         'header_type="UInt64">',
         "<UnstructuredGrid>",

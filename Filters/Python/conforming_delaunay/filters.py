@@ -328,7 +328,7 @@ class vtkDelaunayMeshCriteria(_Stage):
     def execute(self, data: List[Any], options: Dict[str, Any]) -> List[Any]:
         mesh = vtk_data.to_mesh(data[0])
         certificate = meshing.certify(mesh, **options)
-        mesh.certificate = certificate.text
+        mesh.certificate = certificate
         result = mesh.to_vtk()
         cells = result.GetCellData()
         vtk_data._add(cells, "SmallestDihedralAngle", certificate.smallest_dihedral_angles)

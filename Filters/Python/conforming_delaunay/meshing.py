@@ -12,6 +12,7 @@ import numpy as np
 from . import _engine
 from ._engine import Progress
 from .data import (
+    Certificate,
     Mesh,
     SizingLike,
     Surface,
@@ -470,36 +471,12 @@ def refine_mesh(
     return make_mesh(result)
 
 
-@dataclasses.dataclass
-class Certificate:
-    """What a mesh is worth, whoever made it.
-
-    Attributes:
-        verdict: INVALID, NOT DELAUNAY, DELAUNAY or CLEAN FOR FINITE VOLUMES.
-        text: verdict, reasons, numbers: three lines.
-        smallest_dihedral_angles: of each tetrahedron, degrees.
-        radius_edge_ratios: of each tetrahedron.
-        region_volumes: by region, cubic model units.
-    """
-
-    verdict: str
-    text: str
-    smallest_dihedral_angles: np.ndarray
-    radius_edge_ratios: np.ndarray
-    region_volumes: Dict[int, float]
-
-
 def certify(
     mesh: Mesh, *, progress: Optional[Progress] = None, threads: int = 0
 ) -> Certificate:
     """Evaluates any tetrahedral mesh, in exact arithmetic, by all criteria of the thesis."""
-    result = _engine.run("certify", mesh_inputs(mesh), progress=progress, threads=threads)
-    return Certificate(
-        result["verdict"],
-        result["certificate"],
-        result["smallest_dihedral_angles"],
-        result["radius_edge_ratios"],
-        dict(zip(result["region_ids"].tolist(), result["region_volumes"].tolist())),
+    return Certificate.from_arrays(
+        _engine.run("certify", mesh_inputs(mesh), progress=progress, threads=threads)
     )
 
 

@@ -144,7 +144,7 @@ def from_mesh(mesh: "Mesh") -> "vtkUnstructuredGrid":
     if mesh.certificate:
         certificate = vtkStringArray()
         certificate.SetName("Certificate")
-        certificate.InsertNextValue(mesh.certificate)
+        certificate.InsertNextValue(mesh.certificate.text)
         grid.GetFieldData().AddArray(certificate)
     return grid
 
@@ -173,3 +173,17 @@ def read_surface(path: str) -> "Surface":
     if reader.GetOutput().GetNumberOfPolys() == 0:
         raise ValueError(f"{path} has no polygons.")
     return to_surface(reader.GetOutput())
+
+
+def read_mesh(path: str) -> "Mesh":
+    """Reads the tetrahedra of a .vtu or .vtk file."""
+    from vtkmodules.vtkIOLegacy import vtkUnstructuredGridReader
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+    is_xml = path.lower().endswith(".vtu")
+    reader = vtkXMLUnstructuredGridReader() if is_xml else vtkUnstructuredGridReader()
+    reader.SetFileName(path)
+    reader.Update()
+    if reader.GetOutput().GetNumberOfCells() == 0:
+        raise ValueError(f"{path} has no tetrahedra.")
+    return to_mesh(reader.GetOutput())
