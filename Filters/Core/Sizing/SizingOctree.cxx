@@ -18,6 +18,7 @@ constexpr int MaximumRoots = 8;
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 /** A cell counts the smallest spacing in it at least by this factor: a cusp is not averaged out. */
 constexpr double LargestGrowth = 4.0 / 3.0;
+constexpr const char* BalanceActivity = "Bounding the irregularity";
 
 /** Numbers of roots along the axes that make them as cubic as possible, with few of them. */
 SizingOctree::Units FindRoots(const Vec3& extents)
@@ -343,22 +344,92 @@ void SizingOctree::VisitNeighbors(const Node& node, std::vector<Id>& stack, Visi
   }
 }
 
-Status SizingOctree::Balance(const ExecutionContext& context)
+void SizingOctree::RequestSplits(
+  Id index, std::vector<Id>& stack, std::vector<SplitRequest>& requests) const
 {
-  // Works in rounds. First all leaves, later those that are new or had neighbors that were too
-  // coarse, name the neighbors that are too coarse. These are split along all axes that any leaf
-  // asks for.
-  struct Request
+  const Node& node = this->Nodes[index];
+  const auto visit = [&](const Node& neighbor)
   {
-    Id Node;
-    int Axes;
+    int axes = 0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int difference = node.Levels[axis] - neighbor.Levels[axis];
+      axes |= difference > this->Options.MaximumLevelDifference ? 1 << axis : 0;
+    }
+    if (axes != 0)
+    {
+      requests.push_back({ static_cast<Id>(&neighbor - this->Nodes.data()), axes });
+    }
   };
+  if (node.SplitAxes == 0)
+  {
+    this->VisitNeighbors(node, stack, visit);
+  }
+}
+
+bool SizingOctree::CollectRequests(const ExecutionContext& context, std::vector<Id>& active,
+  std::vector<SplitRequest>& requests) const
+{
   struct Block
   {
-    std::vector<Request> Requests;
+    std::vector<SplitRequest> Requests;
     /** The leaves that ask; a child of the split neighbor may still be too coarse. */
     std::vector<Id> Sources;
   };
+  std::vector<Block> blocks(GetNumberOfBlocks(active.size(), this->LoopOptions));
+  const auto ask = [&](std::size_t begin, std::size_t end, std::size_t block)
+  {
+    std::vector<Id> stack;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const std::size_t before = blocks[block].Requests.size();
+      this->RequestSplits(active[i], stack, blocks[block].Requests);
+      if (blocks[block].Requests.size() > before)
+      {
+        blocks[block].Sources.push_back(active[i]);
+      }
+    }
+  };
+  if (!ParallelLoop(active.size(), this->LoopOptions, context, BalanceActivity, ask))
+  {
+    return false;
+  }
+  requests.clear();
+  active.clear();
+  for (const Block& block : blocks)
+  {
+    requests.insert(requests.end(), block.Requests.begin(), block.Requests.end());
+    active.insert(active.end(), block.Sources.begin(), block.Sources.end());
+  }
+  return true;
+}
+
+Status SizingOctree::SplitRequested(std::vector<SplitRequest>& requests)
+{
+  std::sort(requests.begin(), requests.end(),
+    [](const SplitRequest& a, const SplitRequest& b) { return a.Node < b.Node; });
+  for (auto begin = requests.cbegin(), end = begin; begin != requests.cend(); begin = end)
+  {
+    int axes = 0;
+    for (; end != requests.cend() && end->Node == begin->Node; ++end)
+    {
+      axes |= end->Axes;
+    }
+    Status status = this->Split(begin->Node, axes);
+    if (!status.IsOk())
+    {
+      return status;
+    }
+  }
+  return {};
+}
+
+/**
+ * Works in rounds. First all leaves, later those that are new or had neighbors that were too coarse,
+ * name the neighbors that are too coarse. These are split along all axes that any leaf asks for.
+ */
+Status SizingOctree::Balance(const ExecutionContext& context)
+{
   std::vector<Id> active;
   for (std::size_t i = 0; i < this->Nodes.size(); ++i)
   {
@@ -367,68 +438,19 @@ Status SizingOctree::Balance(const ExecutionContext& context)
       active.push_back(static_cast<Id>(i));
     }
   }
-  const char* const activity = "Bounding the irregularity";
+  std::vector<SplitRequest> requests;
   for (double done = 0.0; !active.empty();)
   {
     const double next = done + 0.8 * (1.0 - done);
-    std::vector<Block> blocks(GetNumberOfBlocks(active.size(), this->LoopOptions));
-    const auto ask = [&](std::size_t begin, std::size_t end, std::size_t block)
-    {
-      std::vector<Id> stack;
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        const Node& node = this->Nodes[active[i]];
-        const std::size_t before = blocks[block].Requests.size();
-        const auto visit = [&](const Node& neighbor)
-        {
-          int axes = 0;
-          for (int axis = 0; axis < 3; ++axis)
-          {
-            const int difference = node.Levels[axis] - neighbor.Levels[axis];
-            axes |= difference > this->Options.MaximumLevelDifference ? 1 << axis : 0;
-          }
-          if (axes != 0)
-          {
-            blocks[block].Requests.push_back(
-              { static_cast<Id>(&neighbor - this->Nodes.data()), axes });
-          }
-        };
-        if (node.SplitAxes == 0)
-        {
-          this->VisitNeighbors(node, stack, visit);
-        }
-        if (blocks[block].Requests.size() > before)
-        {
-          blocks[block].Sources.push_back(active[i]);
-        }
-      }
-    };
-    if (!ParallelLoop(active.size(), this->LoopOptions, context.Part(done, next), activity, ask))
+    if (!this->CollectRequests(context.Part(done, next), active, requests))
     {
       return Status::Aborted();
     }
-    std::vector<Request> requests;
-    active.clear();
-    for (const Block& block : blocks)
-    {
-      requests.insert(requests.end(), block.Requests.begin(), block.Requests.end());
-      active.insert(active.end(), block.Sources.begin(), block.Sources.end());
-    }
-    std::sort(requests.begin(), requests.end(),
-      [](const Request& a, const Request& b) { return a.Node < b.Node; });
     const std::size_t firstNew = this->Nodes.size();
-    for (auto begin = requests.cbegin(), end = begin; begin != requests.cend(); begin = end)
+    Status status = this->SplitRequested(requests);
+    if (!status.IsOk())
     {
-      int axes = 0;
-      for (; end != requests.cend() && end->Node == begin->Node; ++end)
-      {
-        axes |= end->Axes;
-      }
-      const Status status = this->Split(begin->Node, axes);
-      if (!status.IsOk())
-      {
-        return status;
-      }
+      return status;
     }
     const auto classify = [&](std::size_t begin, std::size_t end, std::size_t)
     {
@@ -438,7 +460,7 @@ Status SizingOctree::Balance(const ExecutionContext& context)
       }
     };
     if (!ParallelLoop(this->Nodes.size() - firstNew, this->LoopOptions, context.Part(next, next),
-          activity, classify))
+          BalanceActivity, classify))
     {
       return Status::Aborted();
     }

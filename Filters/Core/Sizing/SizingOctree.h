@@ -99,6 +99,18 @@ private:
   Status Split(Id node, int axes);
   Status Refine(const ExecutionContext& context);
   Status Balance(const ExecutionContext& context);
+  /** Along which axes a node is to be split, as bits. */
+  struct SplitRequest
+  {
+    Id Node;
+    int Axes;
+  };
+  /** Adds the neighbors of a leaf that are too coarse for it; the stack is work space. */
+  void RequestSplits(Id index, std::vector<Id>& stack, std::vector<SplitRequest>& requests) const;
+  /** Those of the active leaves, of which only leaves with requests stay; false if aborted. */
+  bool CollectRequests(const ExecutionContext& context, std::vector<Id>& active,
+    std::vector<SplitRequest>& requests) const;
+  Status SplitRequested(std::vector<SplitRequest>& requests);
   template <typename Visitor>
   void VisitNeighbors(const Node& node, std::vector<Id>& stack, Visitor&& visit) const;
   void CollectLeaves();
