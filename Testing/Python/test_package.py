@@ -327,6 +327,23 @@ class WithVtk(unittest.TestCase):
         edges.Update()
         self.assertEqual(edges.GetOutputDataObject(0).GetNumberOfCells(), 12)
 
+    def test_other_cells_are_refused(self):
+        from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
+        from vtkmodules.vtkFiltersCore import vtkAppendFilter
+
+        tetrahedra = cd.mesh((CUBE_POINTS, CUBE_QUADS)).to_vtk()
+        boundary = cd.mesh((CUBE_POINTS, CUBE_QUADS)).boundary.to_vtk()
+        append = vtkAppendFilter()
+        append.AddInputData(tetrahedra)
+        append.AddInputData(boundary)
+        append.Update()
+        from conforming_delaunay import vtk_data
+
+        self.assertEqual(len(vtk_data.to_mesh(tetrahedra).tetrahedra), 6)
+        self.assertEqual(len(vtk_data.to_mesh(vtkUnstructuredGrid()).tetrahedra), 0)
+        with self.assertRaisesRegex(ValueError, "no tetrahedra"):
+            vtk_data.to_mesh(append.GetOutput())
+
     def test_sizing_as_a_data_set(self):
         from vtkmodules.vtkCommonCore import vtkDoubleArray
         from vtkmodules.vtkCommonDataModel import vtkImageData

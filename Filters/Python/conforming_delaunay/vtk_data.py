@@ -73,10 +73,9 @@ def to_sizing(data: Any) -> Tuple[np.ndarray, ...]:
 def _tetrahedra(grid: "vtkUnstructuredGrid") -> np.ndarray:
     if grid.GetNumberOfCells() == 0:
         return np.empty((0, 4), np.int64)
-    connectivity = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
-    if np.any(vtk_to_numpy(grid.GetDistinctCellTypesArray()) != _TETRAHEDRON):
+    if not grid.IsHomogeneous() or grid.GetCellType(0) != _TETRAHEDRON:
         raise ValueError("The mesh has cells that are no tetrahedra.")
-    return connectivity.reshape(-1, 4)
+    return vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4)
 
 
 def to_mesh(grid: "vtkUnstructuredGrid") -> "Mesh":
