@@ -82,9 +82,10 @@ def main():
     arguments = parser.parse_args()
     folder = os.path.join(arguments.shared, "complexes")
     index = os.path.join(folder, "INDEX.csv")
-    if not os.path.isfile(index):
-        print("Skipped: there is no " + index)
-        return 77
+    for needed in (index, arguments.validator):
+        if not os.path.isfile(needed):
+            print("Skipped: there is no " + needed)
+            return 77
     with open(index, newline="") as file:
         files = [row["file"] for row in csv.DictReader(file)]
     failures = []

@@ -93,9 +93,10 @@ def main():
     arguments = parser.parse_args()
     folder = os.path.join(arguments.shared, "data")
     index = os.path.join(folder, "INDEX.csv")
-    if not os.path.isfile(index):
-        print("Skipped: there is no " + index)
-        return 77
+    for needed in (index, arguments.validator):
+        if not os.path.isfile(needed):
+            print("Skipped: there is no " + needed)
+            return 77
     with open(index, newline="") as file:
         models = [row for row in csv.DictReader(file)
                   if row["status"] == "valid" and row["id"] not in TOO_LONG
