@@ -118,6 +118,7 @@ void ReadOptions(InputReader& reader, ConformingMesherOptions& options)
   ReadChoice(reader, "dihedral_angle_target", choices.DihedralAngleTarget, 0.0, 70.0);
   ReadChoice(reader, "radius_edge_ratio", choices.RadiusEdgeRatio, 0.0, Infinity);
   ReadChoice(reader, "maximum_edge_length", choices.MaximumEdgeLength, 0.0, Infinity);
+  ReadChoice(reader, "maximum_deviation", options.MaximumDeviation, 0.0, Infinity);
   reader.Read("generate_mesh_points", options.GeneratesMeshPoints);
   reader.Read("close_open_boundary", options.CloseOpenBoundary);
   reader.Read("maximum_volume", options.MaximumVolume, 0.0, Infinity);
@@ -325,6 +326,9 @@ Status MeshPolygonsStage(InputReader& reader, const SizingField& function,
   ConformingMesherInput input;
   input.Polygons = &polygons;
   input.Facets = ReadFacets(reader, static_cast<std::size_t>(polygons.GetNumberOfPolygons()));
+  reader.Read("cell_groups", input.CellGroups);
+  reader.Match("cell_groups", input.CellGroups.size(),
+    static_cast<std::size_t>(polygons.GetNumberOfPolygons()));
   reader.Read("mesh_points", meshPoints);
   input.MeshPoints = &meshPoints;
   reader.Read("mesh_points_free", input.AreMeshPointsFree);

@@ -6,6 +6,7 @@
 #include "Core/Improvement/SliverRemover.h"
 #include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/MeshBoundary.h"
+#include "Core/Pipeline/SurfaceCoarsener.h"
 #include "Core/Sizing/DefaultSize.h"
 #include "Core/Surface/StructuralEdges.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
@@ -67,6 +68,7 @@ public:
 private:
   Status TriangulateSurface();
   void ChooseSettings();
+  Status Coarsen();
   Status PlaceMeshPoints();
   Status RefineSurface();
   Status Tetrahedralize();
@@ -139,7 +141,7 @@ Status ConformingMesher::TriangulateSurface()
 {
   BoundaryTriangulatorOutput clean;
   Status status = TriangulateBoundary(*this->Input.Polygons, this->Options.Boundary,
-    this->GetPart("Boundary triangulation", 0.0, 0.1), clean);
+    this->GetPart("Boundary triangulation", 0.0, 0.05), clean);
   this->Output.Problems = std::move(clean.Problems);
   std::move(
     clean.Warnings.begin(), clean.Warnings.end(), std::back_inserter(this->Output.Warnings));
@@ -168,6 +170,14 @@ void ConformingMesher::ChooseSettings()
     this->Settings.MaximumEdgeLength = GetDefaultSize(this->Surface);
   }
   this->Output.Settings = this->Settings;
+}
+
+Status ConformingMesher::Coarsen()
+{
+  return this->Name(
+    CoarsenSurface(this->Input, this->Options.MaximumDeviation, this->Settings.MaximumEdgeLength,
+      this->GetPart("Surface coarsening", 0.05, 0.1), this->Surface, this->Output),
+    this->Surface.SourceCells);
 }
 
 Status ConformingMesher::PlaceMeshPoints()
@@ -427,6 +437,7 @@ Status ConformingMesher::Check()
 Status ConformingMesher::Run()
 {
   return this->TriangulateSurface()
+    .Then([this] { return this->Coarsen(); })
     .Then([this] { return this->PlaceMeshPoints(); })
     .Then([this] { return this->RefineSurface(); })
     .Then([this] { return this->Tetrahedralize(); })

@@ -27,6 +27,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 
 namespace
@@ -355,6 +356,39 @@ cdm::Status ToFacets(
     facets.push_back(static_cast<cdm::Id>(array->GetComponent(cells[i], 0)));
   }
   return status;
+}
+
+//--------------------------------------------------------------------------------------------------
+std::vector<cdm::Id> ToCellGroups(vtkPolyData* input, const std::vector<vtkIdType>& cells)
+{
+  std::vector<cdm::Id> groups;
+  vtkCellData* const data = input->GetCellData();
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* const array = data->GetArray(i);
+    if (!array || array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE ||
+      array == data->GetArray(BoundaryLabelsName) ||
+      array->GetNumberOfTuples() != input->GetNumberOfCells())
+    {
+      continue;
+    }
+    // The group so far and the tuple, as a key.
+    std::map<std::vector<double>, cdm::Id> numbers;
+    std::vector<cdm::Id> finer;
+    for (std::size_t cell = 0; cell < cells.size(); ++cell)
+    {
+      std::vector<double> key(array->GetNumberOfComponents() + 1);
+      array->GetTuple(cells[cell], key.data());
+      key.back() = groups.empty() ? 0 : groups[cell];
+      finer.push_back(numbers.emplace(key, static_cast<cdm::Id>(numbers.size())).first->second);
+    }
+    // Numbers of the cells themselves divide nothing.
+    if (2 * numbers.size() <= cells.size())
+    {
+      groups = std::move(finer);
+    }
+  }
+  return groups;
 }
 
 //--------------------------------------------------------------------------------------------------

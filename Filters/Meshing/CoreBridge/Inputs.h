@@ -42,6 +42,13 @@ cdm::Status ToFacets(vtkPolyData* input, std::vector<cdm::Id>& facets);
 cdm::Status ToFacets(
   vtkPolyData* input, const std::vector<vtkIdType>& cells, std::vector<cdm::Id>& facets);
 
+/**
+ * A number for each polygon that says which others have the same cell data, in integer arrays other
+ * than BoundaryLabels whose values repeat: the values of at least half of the polygons are those of
+ * others, too. Empty without such arrays.
+ */
+std::vector<cdm::Id> ToCellGroups(vtkPolyData* input, const std::vector<vtkIdType>& cells);
+
 /** Rows of region, neighbor, number of layers, first distance and growth ratio. */
 cdm::Status ToLayers(
   const std::vector<std::array<double, 5>>& rows, std::vector<cdm::PointLayers>& layers);
