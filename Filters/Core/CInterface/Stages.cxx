@@ -273,16 +273,6 @@ void Write(OutputWriter& writer, const MeshCertificate& certificate)
   writer.Write("region_volumes", std::move(volumes));
 }
 
-std::vector<char> ToFaults(const std::vector<SteinerFault>& faults)
-{
-  std::vector<char> numbers;
-  for (const SteinerFault fault : faults)
-  {
-    numbers.push_back(static_cast<char>(fault));
-  }
-  return numbers;
-}
-
 //--------------------------------------------------------------------------------------------------
 Status MeshPolygonsStage(InputReader& reader, const SizingField& function,
   const ExecutionContext& context, OutputWriter& writer)
@@ -313,7 +303,7 @@ Status MeshPolygonsStage(InputReader& reader, const SizingField& function,
     Write(writer, output.Boundary);
     writer.Write("facets", std::move(output.Facets));
     writer.Write("unresolved_triangles", std::move(output.UnresolvedTriangles));
-    writer.Write("faults", ToFaults(output.Faults));
+    writer.Write("faults", std::move(output.Faults));
     writer.Write("is_free", std::move(output.IsFree));
     Write(writer, output.Certificate);
   }
@@ -502,7 +492,7 @@ Status RefineMeshStage(InputReader& reader, const SizingField& function,
     Write(writer, output.Mesh);
     Write(writer, output.Boundary);
     writer.Write("is_free", std::move(output.IsFree));
-    writer.Write("faults", ToFaults(output.Faults));
+    writer.Write("faults", std::move(output.Faults));
     writer.Write("point_sources", std::move(output.PointSources));
   }
   return status;
