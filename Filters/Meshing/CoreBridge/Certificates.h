@@ -13,7 +13,7 @@ class vtkFieldData;
 namespace vtkCoreBridge
 {
 /**
- * The string array Certificate (three lines: verdict, reasons, numbers), IsClean, one count for each
+ * The string array Certificate (MeshCertificate::GetText()), IsClean, one count for each
  * kind of fault, and the numbers of what was looked at.
  */
 void AddCertificate(const cdm::MeshCertificate& certificate, vtkFieldData* data);
