@@ -4,6 +4,7 @@
 #include "CoreBridge/Execution.h"
 #include "CoreBridge/Inputs.h"
 #include "CoreBridge/Reports.h"
+#include "CoreBridge/Texts.h"
 #include "vtkConformingDelaunayCompatibility.h"
 
 #include "Core/Basics/SortedIds.h"
@@ -16,7 +17,6 @@
 #include <vtkInformation.h>
 #include <vtkObjectFactory.h>
 #include <vtkPolyData.h>
-#include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <vtksys/FStream.hxx>
@@ -80,15 +80,13 @@ std::string MakeWord(const std::string& text)
   return word.empty() || !std::isalpha(static_cast<unsigned char>(word[0])) ? "n" + word : word;
 }
 
-/** The name of an item in a field array of strings, or <prefix><id>. */
+/** The name of an item in a field array of texts, or <prefix><id>. */
 std::string GetName(vtkDataObject* data, const char* arrayName, const char* prefix, cdm::Id id)
 {
-  auto names = vtkStringArray::SafeDownCast(data->GetFieldData()->GetAbstractArray(arrayName));
-  if (names && id < names->GetNumberOfValues() && !names->GetValue(id).empty())
-  {
-    return MakeWord(names->GetValue(id));
-  }
-  return prefix + std::to_string(id);
+  const std::vector<std::string> names = vtkCoreBridge::GetTexts(arrayName, data->GetFieldData());
+  const auto index = static_cast<std::size_t>(id);
+  return index < names.size() && !names[index].empty() ? MakeWord(names[index])
+                                                       : prefix + std::to_string(id);
 }
 
 /** Collects the elements of the file from the mesh. */

@@ -15,7 +15,8 @@
  *
  * Inputs:
  *  - port 0: vtkUnstructuredGrid of VTK_TETRA only. Cell array RegionId (whole numbers from 0 on);
- *    without it all is region 0. Field array RegionNames (strings, by region id) is optional:
+ *    without it all is region 0. Field array RegionNames (texts, by region id: of
+ *    the sample devices, or a vtkStringArray) is optional:
  *    without it regions are called region_0, region_1, ...
  *  - port 1 (optional): vtkPolyData, the contacts: triangles that are facets of the mesh's outer
  *    boundary or interfaces (the mesher's second output has them), with the cell array ContactId

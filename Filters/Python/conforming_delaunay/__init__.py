@@ -43,6 +43,7 @@ from .meshing import (
     tetrahedralize,
     triangulate_boundary,
 )
+from .texts import get_texts
 
 try:
     from .cdmMeshing import *  # type: ignore # noqa: F401,F403

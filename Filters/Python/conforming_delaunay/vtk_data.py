@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import TYPE_CHECKING, Any, Tuple
+from typing import TYPE_CHECKING, Any, List, Tuple
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
+from vtkmodules.vtkCommonCore import vtkIntArray, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkUnstructuredGrid
+
+from .texts import encode
 
 if TYPE_CHECKING:
     from .data import Mesh, Surface
@@ -121,6 +123,18 @@ def add_array(attributes: Any, name: str, values: Any) -> None:
     attributes.AddArray(array)
 
 
+def add_texts(data: Any, name: str, lines: List[str]) -> None:
+    """Adds texts to the field data, see texts.py."""
+    array = vtkIntArray()
+    array.SetName(name)
+    array.SetNumberOfComponents(len(lines))
+    array.SetNumberOfTuples(1)
+    for i, line in enumerate(lines):
+        array.SetValue(i, i)
+        array.SetComponentName(i, encode(line))
+    data.GetFieldData().AddArray(array)
+
+
 def from_surface(surface: "Surface") -> "vtkPolyData":
     """See Surface.to_vtk()."""
     data = vtkPolyData()
@@ -145,10 +159,7 @@ def from_mesh(mesh: "Mesh") -> "vtkUnstructuredGrid":
     if len(mesh.is_free):
         add_array(grid.GetPointData(), "FreePoint", mesh.is_free)
     if mesh.certificate:
-        certificate = vtkStringArray()
-        certificate.SetName("Certificate")
-        certificate.InsertNextValue(mesh.certificate.text)
-        grid.GetFieldData().AddArray(certificate)
+        add_texts(grid, "Certificate", mesh.certificate.text.splitlines())
     return grid
 
 
