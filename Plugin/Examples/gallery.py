@@ -70,6 +70,7 @@ def MakeMesh(device, length=0.0, sizing=None, points=None):
     asks for; mesh points, however close to the boundary, stay where they are.
     """
     mesher = vtkConformingDelaunayMesher()
+    mesher.SetMeshForToFewestPoints()
     mesher.SetInputConnection(device.GetOutputPort())
     mesher.SetInputData(1, points)
     mesher.SetInputData(2, sizing)

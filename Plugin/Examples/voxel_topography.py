@@ -72,6 +72,7 @@ def MakeMesh(image):
     interfaces.SetInputData(image)
     interfaces.SetMaximumDeviation(DEVIATION)
     mesher = vtkConformingDelaunayMesher()
+    mesher.SetMeshForToFewestPoints()
     mesher.SetInputConnection(interfaces.GetOutputPort())
     mesher.SetCriterionToSmallestSphere()
     mesher.SetMaximumEdgeLength(EDGE)

@@ -56,12 +56,14 @@ TetMesh RunStages(const PolygonSoup& soup, const ConformingMesherOptions& option
   DelaunaySurfaceRefinerInput refinerInput;
   refinerInput.Surface = &clean.Surface;
   DelaunaySurfaceRefinerOutput refined;
-  EXPECT_TRUE(RefineDelaunaySurface(refinerInput, options.Surface, {}, refined).IsOk());
+  DelaunaySurfaceRefinerOptions refinerOptions = options.Surface;
+  refinerOptions.Criterion = options.Choices.Criterion.value();
+  EXPECT_TRUE(RefineDelaunaySurface(refinerInput, refinerOptions, {}, refined).IsOk());
   AdvancingFrontTetrahedralizerInput input;
   input.Surface = &refined.Surface;
   AdvancingFrontTetrahedralizerOutput made;
   EXPECT_TRUE(TetrahedralizeByAdvancingFront(input, {}, {}, made).IsOk());
-  if (!options.AddsSteinerPoints)
+  if (!options.Choices.AddsSteinerPoints.value())
   {
     return made.Mesh;
   }
@@ -71,7 +73,7 @@ TetMesh RunStages(const PolygonSoup& soup, const ConformingMesherOptions& option
   steinerInput.IsFree.assign(made.Mesh.Points.size(), 1);
   std::fill_n(steinerInput.IsFree.begin(), clean.Surface.Points.size(), 0);
   SteinerPointRefinerOptions steinerOptions;
-  steinerOptions.Criterion = options.Surface.Criterion;
+  steinerOptions.Criterion = options.Choices.Criterion.value();
   const std::vector<Id> facets =
     NumberFacets(SortEdgeUses(refined.Surface.Triangles, refined.Surface.Points.size()),
       refined.StructuralEdges);
@@ -98,11 +100,14 @@ TEST(ConformingMesher, EqualsItsStages)
         continue;
       }
       ConformingMesherOptions options;
-      options.RemovesSlivers = false;
+      options.Choices.MaximumEdgeLength = 0.0;
+      options.Choices.Criterion = SurfaceCriterion::Delaunay;
+      options.Choices.AddsSteinerPoints = false;
+      options.Choices.RemovesSlivers = false;
       EXPECT_EQ(Mesh(soup, options).Mesh.Tetrahedra, RunStages(soup, options).Tetrahedra);
-      options.RemovesSlivers = true;
-      options.AddsSteinerPoints = true;
-      options.Surface.Criterion = SurfaceCriterion::SmallestSphere;
+      options.Choices.RemovesSlivers = true;
+      options.Choices.AddsSteinerPoints = true;
+      options.Choices.Criterion = SurfaceCriterion::SmallestSphere;
       const ConformingMesherOutput output = Mesh(soup, options);
       EXPECT_TRUE(output.Certificate.IsDelaunay(1e-6)) << output.Certificate.GetText();
       const TetMesh expected = RunStages(soup, options);
@@ -147,7 +152,8 @@ TEST(ConformingMesher, LimitsAreSaid)
 {
   const PolygonSoup cube = MakeCube();
   ConformingMesherOptions options;
-  options.Surface.MaximumEdgeLength = 0.1;
+  options.MeshFor = MeshPurpose::FewestPoints;
+  options.Choices.MaximumEdgeLength = 0.1;
   EXPECT_TRUE(Mesh(cube, options).Warnings.empty());
   options.Surface.MaximumNewPoints = 20;
   ConformingMesherOutput output = Mesh(cube, options);
@@ -167,9 +173,9 @@ TEST(ConformingMesher, AbortsAtAnyTimeAndNamesItsStages)
   ConformingMesherInput input;
   input.Polygons = &cube;
   ConformingMesherOptions options;
-  options.Surface.MaximumEdgeLength = 0.2;
+  options.Choices.MaximumEdgeLength = 0.2;
   options.GeneratesMeshPoints = true;
-  options.AddsSteinerPoints = true;
+  options.Choices.AddsSteinerPoints = true;
   double last = 0.0;
   double end = 2.0;
   std::string text;
@@ -204,8 +210,8 @@ TEST(ConformingMesher, PointsHaveAHistory)
 {
   const PolygonSoup cube = MakeCube();
   ConformingMesherOptions options;
-  options.Surface.MaximumEdgeLength = 0.3;
-  options.AddsSteinerPoints = true;
+  options.Choices.MaximumEdgeLength = 0.3;
+  options.Choices.AddsSteinerPoints = true;
   const ConformingMesherOutput output = Mesh(cube, options);
   const PointHistory& history = output.Points;
   ASSERT_TRUE(history.HasBefore);

@@ -40,6 +40,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeTransistor()
   vtkNew<vtkTechnologyStructureSource> device;
   device->SetStructureToMosTransistor();
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputConnection(device->GetOutputPort());
   mesher->SetCriterionToSmallestSphereAndEdges();
   mesher->Update();
@@ -223,6 +224,7 @@ TEST(DelaunayMeshCriteriaFilter, VolumesAreComparedWithTheBoundary)
 {
   const auto boxes = MakeTwoBoxes(true);
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputData(boxes);
   vtkNew<vtkDelaunayMeshCriteria> criteria;
   criteria->SetInputConnection(mesher->GetOutputPort());

@@ -208,6 +208,7 @@ TEST(GmshMeshWriter, DeviceWithNames)
     MakeNames("RegionNames", { "Bulk", "gate oxide", "Gate", "1st spacer", "1st spacer" }));
   named->SetFieldData(names);
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputData(named);
   mesher->SetMaximumEdgeLength(0.2);
   vtkNew<vtkGmshMeshWriter> writer;
@@ -289,6 +290,7 @@ TEST(GmshMeshWriter, Contacts)
   }
   boxes->GetCellData()->AddArray(contacts);
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputData(boxes);
   mesher->SetMaximumEdgeLength(0.5);
   mesher->Update();
@@ -347,6 +349,7 @@ TEST(GmshMeshWriter, GmshAcceptsIt)
   vtkNew<vtkTechnologyStructureSource> device;
   device->SetStructureToViaPlug();
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputConnection(device->GetOutputPort());
   vtkNew<vtkGmshMeshWriter> writer;
   writer->SetInputConnection(mesher->GetOutputPort());
@@ -363,6 +366,7 @@ TEST(GmshMeshWriter, GmshAcceptsIt)
 TEST(GmshMeshWriter, BadInputAndFiles)
 {
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputData(MakeCube());
   vtkNew<vtkGmshMeshWriter> writer;
   vtkNew<EventRecorder> recorder;

@@ -101,6 +101,7 @@ void CheckStructure(vtkLayoutExtruder* extruder, const std::map<int, double>& ex
   EXPECT_EQ(vtkPolyData::SafeDownCast(triangulator->GetOutputDataObject(1))->GetNumberOfCells(), 0)
     << "problems are found";
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputConnection(extruder->GetOutputPort());
   mesher->Update();
   for (const auto& [region, volume] : expected)

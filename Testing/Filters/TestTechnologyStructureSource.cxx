@@ -218,6 +218,7 @@ TEST(TechnologyStructureSource, ContactsReachTheBoundaryOfTheMesh)
           contactOfFacet.emplace(facets->GetComponent(i, 0), contact).first->second, contact);
       }
       vtkNew<vtkConformingDelaunayMesher> mesher;
+      mesher->SetMeshForToFewestPoints();
       mesher->SetInputConnection(source->GetOutputPort());
       mesher->Update();
       auto* boundary = vtkPolyData::SafeDownCast(mesher->GetOutputDataObject(1));

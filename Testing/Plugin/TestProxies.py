@@ -93,7 +93,7 @@ with tempfile.TemporaryDirectory() as folder:
     assert text.startswith("$MeshFormat\n2.2 0 8\n") and text.endswith("$EndElements\n")
     assert '"region_0_zmax"' in text
 
-mesher = ConformingDelaunayMesher(Input=cube, MaximumEdgeLength=1.0)
+mesher = ConformingDelaunayMesher(Input=cube, MeshFor="Fewest points", MaximumEdgeLength=1.0)
 mesher.UpdatePipeline()
 assert abs(Volume(mesher) - 6.0) < 6e-12, "volume %.17g" % Volume(mesher)
 assert GetScalars(mesher) == "RegionId"
@@ -173,7 +173,7 @@ def Abort(algorithm, event):
 
 
 texts = []
-aborted = ConformingDelaunayMesher(Input=cube, MaximumEdgeLength=0.1)
+aborted = ConformingDelaunayMesher(Input=cube, MeshFor="Fewest points", MaximumEdgeLength=0.1)
 algorithm = aborted.GetClientSideObject()
 observer = algorithm.AddObserver("ProgressEvent", Abort)
 aborted.UpdatePipeline()

@@ -10,6 +10,7 @@ from conforming_delaunay import get_texts, vtkConformingDelaunayMesher
 def Mesh(device, length, meshPoints=None):
     """The tetrahedra of a device; they have passed the filter's own check and this one."""
     mesher = vtkConformingDelaunayMesher()
+    mesher.SetMeshForToFewestPoints()
     mesher.SetInputConnection(device.GetOutputPort())
     mesher.SetInputData(1, meshPoints)
     mesher.SetMaximumEdgeLength(length)

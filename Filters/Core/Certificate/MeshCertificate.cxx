@@ -216,7 +216,8 @@ std::string MeshCertificate::GetReasons() const
 
 std::string MeshCertificate::GetText() const
 {
-  return std::string(this->GetVerdictName()) + "\n" + this->GetReasons() + "\n" + GetNumbers(*this);
+  return std::string(this->GetVerdictName()) + "\n" + this->GetReasons() + "\n" +
+    GetNumbers(*this) + (this->Settings.empty() ? "" : "\n" + this->Settings);
 }
 
 Status CertifyMesh(const TetMesh& mesh, const TriangleMesh* boundary,

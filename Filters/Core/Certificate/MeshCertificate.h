@@ -230,6 +230,8 @@ struct MeshCertificate
   std::vector<TetrahedronQuality> Qualities;
   /** Ascending by fault, then by tetrahedron or by points. */
   std::vector<MeshViolation> Violations;
+  /** A line that says how the mesh was made; empty if that is not known. It is not judged. */
+  std::string Settings;
 
   Id GetCount(MeshFault fault) const { return this->Faults[static_cast<int>(fault)]; }
   Id& GetCount(MeshFault fault) { return this->Faults[static_cast<int>(fault)]; }
@@ -247,7 +249,7 @@ struct MeshCertificate
   const char* GetVerdictName() const;
   /** A line: why the verdict is not better, or what it means. */
   std::string GetReasons() const;
-  /** Three lines: verdict, reasons, numbers. */
+  /** Three lines: verdict, reasons, numbers; and a fourth if Settings are known. */
   std::string GetText() const;
 };
 

@@ -13,7 +13,7 @@ class vtkFieldData;
 namespace vtkCoreBridge
 {
 /**
- * The texts Certificate (a line each: verdict, reasons, numbers; see Texts.h), IsClean, one count for
+ * The texts Certificate (the lines of MeshCertificate::GetText(), see Texts.h), IsClean, one count for
  * each kind of fault, and the numbers of what was looked at.
  */
 void AddCertificate(const cdm::MeshCertificate& certificate, vtkFieldData* data);
