@@ -74,6 +74,8 @@ void AddCertificate(const cdm::MeshCertificate& certificate, vtkFieldData* data)
     data, "RegionVolumes", regions.size(), [&](std::size_t i) { return regions[i].Volume; });
   AddArray<vtkDoubleArray>(data, "RegionVolumeErrors", regions.size(),
     [&](std::size_t i) { return regions[i].GetRelativeError(); });
+  AddArray<vtkDoubleArray>(data, "RegionUnsignedBoxRatios", regions.size(),
+    [&](std::size_t i) { return regions[i].UnsignedBoxRatio; });
 }
 
 //--------------------------------------------------------------------------------------------------
