@@ -15,6 +15,7 @@
 
 #include <QPointer>
 #include <QTimer>
+#include <QUrl>
 
 #include <algorithm>
 #include <cstring>
@@ -76,6 +77,20 @@ vtkSMProxy* GetColors(pqDataRepresentation* representation)
     : nullptr;
 }
 
+/** Those of a list of texts: names of components in outputs of the filters, or strings. */
+int GetNumberOfTexts(vtkPVArrayInformation* texts)
+{
+  return texts->GetDataType() == VTK_STRING ? texts->GetNumberOfStringValues()
+                                            : texts->GetNumberOfComponents();
+}
+
+QString GetText(vtkPVArrayInformation* texts, int index)
+{
+  return texts->GetDataType() == VTK_STRING
+    ? QString::fromUtf8(texts->GetStringValue(index))
+    : QUrl::fromPercentEncoding(texts->GetComponentName(index));
+}
+
 /** Names of the regions of what is shown; false if there are too many. */
 bool AddTexts(pqDataRepresentation* representation, QMap<int, QString>& texts)
 {
@@ -90,12 +105,12 @@ bool AddTexts(pqDataRepresentation* representation, QMap<int, QString>& texts)
   }
   vtkPVArrayInformation* names =
     information->GetArrayInformation("RegionNames", vtkDataObject::FIELD);
-  const int numberOfNames = names ? names->GetNumberOfStringValues() : 0;
+  const int numberOfNames = names ? GetNumberOfTexts(names) : 0;
   const double last = std::max(regions->GetComponentRange(0)[1], numberOfNames - 1.0);
   for (int region = 0; region <= last && region <= MaximumNumberOfRegions; ++region)
   {
-    texts[region] = region < numberOfNames ? QString::fromUtf8(names->GetStringValue(region))
-                                           : QString("Region %1").arg(region);
+    texts[region] =
+      region < numberOfNames ? GetText(names, region) : QString("Region %1").arg(region);
   }
   return last < MaximumNumberOfRegions;
 }

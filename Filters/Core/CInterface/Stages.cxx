@@ -297,13 +297,16 @@ void Write(OutputWriter& writer, const MeshCertificate& certificate)
   writer.Write("flat_tetrahedra", std::move(flat));
   std::vector<Id> regions;
   std::vector<double> volumes;
+  std::vector<double> ratios;
   for (const RegionVolume& region : certificate.Regions)
   {
     regions.push_back(region.Region);
     volumes.push_back(region.Volume);
+    ratios.push_back(region.UnsignedBoxRatio);
   }
   writer.Write("region_ids", std::move(regions));
   writer.Write("region_volumes", std::move(volumes));
+  writer.Write("region_unsigned_box_ratios", std::move(ratios));
 }
 
 //--------------------------------------------------------------------------------------------------

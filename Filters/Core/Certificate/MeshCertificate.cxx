@@ -105,6 +105,21 @@ std::string ListFilledSpheres(const MeshCertificate& c)
     " boundary triangles have a point in their smallest sphere" + places + ".";
 }
 
+/** What solvers have to know that add up boxes without signs; empty if it makes no difference. */
+std::string DescribeUnsignedBoxes(const MeshCertificate& c)
+{
+  const auto worst = std::max_element(c.Regions.begin(), c.Regions.end(),
+    [](const RegionVolume& a, const RegionVolume& b)
+    { return a.UnsignedBoxRatio < b.UnsignedBoxRatio; });
+  if (worst == c.Regions.end() || worst->UnsignedBoxRatio < 1.005)
+  {
+    return {};
+  }
+  return " A solver that computes boxes by itself, without the signs of their parts, makes them " +
+    Format("%.2f", worst->UnsignedBoxRatio) + " times as large in region " +
+    std::to_string(worst->Region) + ": give it the signed couplings and boxes.";
+}
+
 std::string GetNumbers(const MeshCertificate& c)
 {
   std::string text = Count(c.Tetrahedra, "tetrahedron, ", "tetrahedra, ") +
@@ -197,7 +212,8 @@ std::string MeshCertificate::GetReasons() const
       break;
   }
   const std::string spheres = ListFilledSpheres(*this);
-  const std::string rest = spheres.empty() ? spheres : " " + spheres;
+  const std::string rest =
+    (spheres.empty() ? spheres : " " + spheres) + DescribeUnsignedBoxes(*this);
   if (this->Tetrahedra == 0)
   {
     return "The mesh is empty.";

@@ -22,7 +22,10 @@
  *     holds its fourth vertex;
  *  6. all edges: Crit. 3.3, and for each region the coupling of the box method, the signed area of
  *     the Voronoi facet within the region. If all tetrahedra around an edge inside of a region are
- *     Delaunay that facet is a convex polygon, and nothing is computed.
+ *     Delaunay that facet is a convex polygon, and nothing is computed;
+ *  7. for each region the volume of its boxes if their pieces are added up without signs, as some
+ *     solvers do: where circumcenters lie outside of tetrahedra or facets it is too large, also in
+ *     a mesh that is clean.
  *
  * Criteria about spheres are decided by exact predicates, against all points of the mesh. Crit. 3.3
  * and the couplings are sums of quotients, judged with a tolerance of 1e-12 of the lengths
@@ -118,6 +121,8 @@ struct TetrahedronQuality
   double RadiusEdgeRatio = 0.0;
   /** R / r, 1 / Q3: 3 for a regular tetrahedron. */
   double AspectRatio = 0.0;
+  /** Volume of its parts of boxes without signs to its volume: 1 or more; infinite if flat. */
+  double UnsignedBoxRatio = 1.0;
 };
 
 TetrahedronQuality GetTetrahedronQuality(
@@ -133,6 +138,11 @@ struct RegionVolume
    * those that bound the region's tetrahedra.
    */
   double EnclosedVolume = 0.0;
+  /**
+   * Volume of the boxes without signs (VoronoiMeasures.h) to Volume: 1 if all circumcenters lie
+   * inside, else more. Inverted and flat tetrahedra are left out. 0 at the basic level.
+   */
+  double UnsignedBoxRatio = 0.0;
 
   /** |Volume - EnclosedVolume| / |EnclosedVolume|; infinite if only the latter is zero. */
   double GetRelativeError() const;
@@ -176,7 +186,7 @@ struct CertificateOptions
 {
   CertificateLevel Level = CertificateLevel::Basic;
   BoundaryUse Boundary = BoundaryUse::Facets;
-  /** At the full level: whether to fill Qualities and Violations. */
+  /** At the full level: whether to fill what there is for each tetrahedron, and Violations. */
   bool KeepsDetails = false;
 };
 
@@ -228,6 +238,11 @@ struct MeshCertificate
   std::vector<Id> Examples;
   /** One for each tetrahedron. */
   std::vector<TetrahedronQuality> Qualities;
+  /**
+   * One for each tetrahedron: whether it is one of those, as few as can be, which together make nine
+   * tenths of what the unsigned boxes of their region have too much.
+   */
+  std::vector<char> MakesUnsignedBoxesLarge;
   /** Ascending by fault, then by tetrahedron or by points. */
   std::vector<MeshViolation> Violations;
   /** A line that says how the mesh was made; empty if that is not known. It is not judged. */

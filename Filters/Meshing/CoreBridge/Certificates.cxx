@@ -2,14 +2,15 @@
 #include "CoreBridge/Certificates.h"
 
 #include "CoreBridge/Outputs.h"
+#include "CoreBridge/Texts.h"
 
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkIdTypeArray.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
-#include <vtkStringArray.h>
 
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,10 +52,13 @@ namespace vtkCoreBridge
 //--------------------------------------------------------------------------------------------------
 void AddCertificate(const cdm::MeshCertificate& certificate, vtkFieldData* data)
 {
-  vtkNew<vtkStringArray> text;
-  text->SetName("Certificate");
-  text->InsertNextValue(certificate.GetText());
-  data->AddArray(text);
+  std::vector<std::string> lines;
+  std::istringstream text(certificate.GetText());
+  for (std::string line; std::getline(text, line);)
+  {
+    lines.push_back(line);
+  }
+  SetTexts("Certificate", lines, data);
   for (const auto& count : GetCounts(certificate))
   {
     AddArray<vtkIdTypeArray>(data, count.first, 1, [&count](std::size_t) { return count.second; });
@@ -70,6 +74,8 @@ void AddCertificate(const cdm::MeshCertificate& certificate, vtkFieldData* data)
     data, "RegionVolumes", regions.size(), [&](std::size_t i) { return regions[i].Volume; });
   AddArray<vtkDoubleArray>(data, "RegionVolumeErrors", regions.size(),
     [&](std::size_t i) { return regions[i].GetRelativeError(); });
+  AddArray<vtkDoubleArray>(data, "RegionUnsignedBoxRatios", regions.size(),
+    [&](std::size_t i) { return regions[i].UnsignedBoxRatio; });
 }
 
 //--------------------------------------------------------------------------------------------------
