@@ -100,7 +100,8 @@ public:
   ///@{
   /**
    * Point and cell arrays to be written as node and element data, in their own units; two
-   * components become three, more than three nine. Default: none. DEVSIM refuses files that have
+   * components become three, more than three nine; triangles have the values of the tetrahedron that
+   * they look out of. Default: none. DEVSIM refuses files that have
    * any.
    */
   void AddPointArray(const char* name);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <string>
 
 namespace vtkGmsh
@@ -55,22 +56,30 @@ private:
     }
     return text;
   }
-  const PhysicalGroup& GetRegion(std::size_t tetrahedron) const
+  std::size_t GetRegionIndex(std::size_t tetrahedron) const
   {
-    // Few groups, regions first and ascending.
+    // Regions come first, ascending.
     const auto found = std::lower_bound(this->Groups.begin(), this->Groups.end(),
       this->Mesh.Regions[tetrahedron] + 1,
       [](const PhysicalGroup& group, int number) { return group.Number < number; });
-    return *found;
+    return found - this->Groups.begin();
   }
+  /** Points and tetrahedra in the order of the file, by the group that has them in 4.1. */
+  std::vector<std::vector<std::size_t>> GetPointBlocks() const;
+  std::vector<std::vector<std::size_t>> GetTetrahedronBlocks() const;
   void WriteNames();
   void WriteNodes2();
   void WriteElements2();
   void WriteEntities4();
   void WriteNodes4();
   void WriteElements4();
-  void WriteData(const char* section, vtkDataArray* array, std::size_t count, std::size_t first,
-    const std::vector<std::size_t>* numbers);
+  /** A node or element, and the point or cell that it has the data of. */
+  struct Item
+  {
+    std::size_t Number;
+    std::size_t Tuple;
+  };
+  void WriteData(const char* section, vtkDataArray* array, const std::vector<Item>& items);
 
   const std::vector<PhysicalGroup>& Groups;
   const cdm::TetMesh& Mesh;
@@ -97,15 +106,70 @@ void Writer::Run()
     this->WriteNodes2();
     this->WriteElements2();
   }
+  // In the order of the file: some readers do not look at the numbers.
+  std::vector<Item> nodes;
+  for (const std::vector<std::size_t>& block : this->GetPointBlocks())
+  {
+    for (const std::size_t point : block)
+    {
+      nodes.push_back({ this->Nodes[point], point });
+    }
+  }
   for (vtkDataArray* array : this->Options.PointArrays)
   {
-    this->WriteData("NodeData", array, this->NumberOfNodes, 0, &this->Nodes);
+    this->WriteData("NodeData", array, nodes);
+  }
+  std::vector<Item> elements;
+  for (const PhysicalGroup& group : this->Groups)
+  {
+    for (const GroupFacet& facet : group.Facets)
+    {
+      elements.push_back({ elements.size() + 1, static_cast<std::size_t>(facet.Tetrahedron) });
+    }
+  }
+  for (const std::vector<std::size_t>& block : this->GetTetrahedronBlocks())
+  {
+    for (const std::size_t tetrahedron : block)
+    {
+      elements.push_back({ this->NumberOfFacets + 1 + tetrahedron, tetrahedron });
+    }
   }
   for (vtkDataArray* array : this->Options.CellArrays)
   {
-    this->WriteData(
-      "ElementData", array, this->Mesh.Tetrahedra.size(), this->NumberOfFacets + 1, nullptr);
+    this->WriteData("ElementData", array, elements);
   }
+}
+
+std::vector<std::vector<std::size_t>> Writer::GetPointBlocks() const
+{
+  std::vector<std::size_t> owners(this->Nodes.size(), this->Groups.size());
+  for (std::size_t i = 0; i < this->Mesh.Tetrahedra.size(); ++i)
+  {
+    const std::size_t region = this->Options.IsVersion4 ? this->GetRegionIndex(i) : 0;
+    for (const cdm::Id point : this->Mesh.Tetrahedra[i])
+    {
+      owners[point] = std::min(owners[point], region);
+    }
+  }
+  std::vector<std::vector<std::size_t>> blocks(this->Groups.size());
+  for (std::size_t i = 0; i < owners.size(); ++i)
+  {
+    if (owners[i] < blocks.size())
+    {
+      blocks[owners[i]].push_back(i);
+    }
+  }
+  return blocks;
+}
+
+std::vector<std::vector<std::size_t>> Writer::GetTetrahedronBlocks() const
+{
+  std::vector<std::vector<std::size_t>> blocks(this->Groups.size());
+  for (std::size_t i = 0; i < this->Mesh.Tetrahedra.size(); ++i)
+  {
+    blocks[this->Options.IsVersion4 ? this->GetRegionIndex(i) : 0].push_back(i);
+  }
+  return blocks;
 }
 
 void Writer::WriteNames()
@@ -139,14 +203,14 @@ void Writer::WriteElements2()
   { this->File << ++element << " " << type << " 2 " << number << " " << number << nodes << "\n"; };
   for (const PhysicalGroup& group : this->Groups)
   {
-    for (const cdm::TriangleIds& points : group.Facets)
+    for (const GroupFacet& facet : group.Facets)
     {
-      write(TriangleType, group.Number, this->GetNodes(points));
+      write(TriangleType, group.Number, this->GetNodes(facet.Points));
     }
   }
   for (std::size_t i = 0; i < this->Mesh.Tetrahedra.size(); ++i)
   {
-    write(TetrahedronType, this->GetRegion(i).Number, this->GetNodes(this->Mesh.Tetrahedra[i]));
+    write(TetrahedronType, this->Mesh.Regions[i] + 1, this->GetNodes(this->Mesh.Tetrahedra[i]));
   }
   this->File << "$EndElements\n";
 }
@@ -156,9 +220,9 @@ void Writer::WriteEntities4()
   std::vector<cdm::Box> boxes(this->Groups.size());
   for (std::size_t i = 0; i < this->Groups.size(); ++i)
   {
-    for (const cdm::TriangleIds& points : this->Groups[i].Facets)
+    for (const GroupFacet& facet : this->Groups[i].Facets)
     {
-      for (const cdm::Id point : points)
+      for (const cdm::Id point : facet.Points)
       {
         boxes[i].Add(this->Mesh.Points[point]);
       }
@@ -168,7 +232,7 @@ void Writer::WriteEntities4()
   {
     for (const cdm::Id point : this->Mesh.Tetrahedra[i])
     {
-      boxes[&this->GetRegion(i) - this->Groups.data()].Add(this->Mesh.Points[point]);
+      boxes[this->GetRegionIndex(i)].Add(this->Mesh.Points[point]);
     }
   }
   const std::size_t surfaces = std::count_if(this->Groups.begin(), this->Groups.end(),
@@ -199,24 +263,7 @@ void Writer::WriteEntities4()
 
 void Writer::WriteNodes4()
 {
-  std::vector<const PhysicalGroup*> owners(this->Nodes.size(), nullptr);
-  for (std::size_t i = 0; i < this->Mesh.Tetrahedra.size(); ++i)
-  {
-    const PhysicalGroup& region = this->GetRegion(i);
-    for (const cdm::Id point : this->Mesh.Tetrahedra[i])
-    {
-      const PhysicalGroup*& owner = owners[point];
-      owner = owner && owner->Number < region.Number ? owner : &region;
-    }
-  }
-  std::vector<std::vector<std::size_t>> points(this->Groups.size());
-  for (std::size_t i = 0; i < owners.size(); ++i)
-  {
-    if (owners[i])
-    {
-      points[owners[i] - this->Groups.data()].push_back(i);
-    }
-  }
+  const std::vector<std::vector<std::size_t>> points = this->GetPointBlocks();
   const std::size_t blocks =
     std::count_if(points.begin(), points.end(), [](const auto& block) { return !block.empty(); });
   this->File << "$Nodes\n"
@@ -244,34 +291,39 @@ void Writer::WriteElements4()
 {
   const std::size_t count = this->NumberOfFacets + this->Mesh.Tetrahedra.size();
   this->File << "$Elements\n" << this->Groups.size() << " " << count << " 1 " << count << "\n";
-  std::vector<std::vector<std::size_t>> tetrahedra(this->Groups.size());
-  for (std::size_t i = 0; i < this->Mesh.Tetrahedra.size(); ++i)
-  {
-    tetrahedra[&this->GetRegion(i) - this->Groups.data()].push_back(i);
-  }
+  const std::vector<std::vector<std::size_t>> tetrahedra = this->GetTetrahedronBlocks();
   std::size_t element = 0;
+  const auto writeHead = [this](const PhysicalGroup& group, int type, std::size_t size)
+  {
+    this->File << group.GetDimension() << " " << group.Number << " " << type << " " << size << "\n";
+  };
+  for (const PhysicalGroup& group : this->Groups)
+  {
+    if (group.GetDimension() == 2)
+    {
+      writeHead(group, TriangleType, group.Facets.size());
+    }
+    for (const GroupFacet& facet : group.Facets)
+    {
+      this->File << ++element << this->GetNodes(facet.Points) << "\n";
+    }
+  }
   for (std::size_t i = 0; i < this->Groups.size(); ++i)
   {
-    const PhysicalGroup& group = this->Groups[i];
-    const bool isRegion = group.GetDimension() == 3;
-    this->File << group.GetDimension() << " " << group.Number << " "
-               << (isRegion ? TetrahedronType : TriangleType) << " "
-               << (isRegion ? tetrahedra[i].size() : group.Facets.size()) << "\n";
+    if (this->Groups[i].GetDimension() == 3)
+    {
+      writeHead(this->Groups[i], TetrahedronType, tetrahedra[i].size());
+    }
     for (const std::size_t tetrahedron : tetrahedra[i])
     {
       this->File << this->NumberOfFacets + 1 + tetrahedron
                  << this->GetNodes(this->Mesh.Tetrahedra[tetrahedron]) << "\n";
     }
-    for (const cdm::TriangleIds& points : group.Facets)
-    {
-      this->File << ++element << this->GetNodes(points) << "\n";
-    }
   }
   this->File << "$EndElements\n";
 }
 
-void Writer::WriteData(const char* section, vtkDataArray* array, std::size_t count,
-  std::size_t first, const std::vector<std::size_t>* numbers)
+void Writer::WriteData(const char* section, vtkDataArray* array, const std::vector<Item>& items)
 {
   const int components = array->GetNumberOfComponents();
   // A scalar, a vector or a tensor, with zeros at the end.
@@ -280,18 +332,14 @@ void Writer::WriteData(const char* section, vtkDataArray* array, std::size_t cou
   std::replace(name.begin(), name.end(), '"', '_');
   this->File << "$" << section << "\n1\n\"" << name << "\"\n1\n0\n3\n0\n"
              << width << "\n"
-             << count << "\n";
-  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+             << items.size() << "\n";
+  for (const Item& item : items)
   {
-    const std::size_t number = numbers ? (*numbers)[i] : first + i;
-    if (number == 0)
-    {
-      continue;
-    }
-    this->File << number;
+    this->File << item.Number;
     for (int j = 0; j < width; ++j)
     {
-      this->File << " " << (j < components ? ToText(array->GetComponent(i, j)) : "0");
+      const auto tuple = static_cast<vtkIdType>(item.Tuple);
+      this->File << " " << (j < components ? ToText(array->GetComponent(tuple, j)) : "0");
     }
     this->File << "\n";
   }

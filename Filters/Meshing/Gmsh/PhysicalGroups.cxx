@@ -56,6 +56,8 @@ private:
     cdm::Id Low;
     /** The higher region, or OutsideRegion. */
     cdm::Id High;
+    cdm::Id LowTetrahedron;
+    cdm::Id HighTetrahedron;
   };
   using Key = std::tuple<int, cdm::Id, cdm::Id>;
 
@@ -77,7 +79,7 @@ private:
   std::map<cdm::TriangleIds, cdm::Id> ContactOfFacet;
   /** The regions that have all facets of a contact; none: a group for each region. */
   std::map<cdm::Id, std::set<cdm::Id>> RegionsOfContact;
-  std::map<Key, std::vector<cdm::TriangleIds>> Facets;
+  std::map<Key, std::vector<GroupFacet>> Facets;
 };
 
 cdm::Status Collector::Run(vtkDataSet*& faulty)
@@ -120,7 +122,8 @@ void Collector::CollectBorders()
       // An interface facet is there once.
       if (other == cdm::OutsideRegion || other > region)
       {
-        this->Borders.push_back({ cdm::GetFacet(this->Mesh.Tetrahedra[i], facet), region, other });
+        this->Borders.push_back({ cdm::GetFacet(this->Mesh.Tetrahedra[i], facet), region, other,
+          static_cast<cdm::Id>(i), neighbor == cdm::NoId ? cdm::NoId : neighbor / 4 });
       }
     }
   }
@@ -212,12 +215,12 @@ void Collector::CollectGroups()
     }
     const bool isOuter = border.High == cdm::OutsideRegion;
     // A side that contacts take completely is here without facets: it keeps its number.
-    std::vector<cdm::TriangleIds>& facets =
+    std::vector<GroupFacet>& facets =
       this->Facets[isOuter ? Key{ PhysicalGroup::Side, border.Low, this->FindSide(border.Points) }
                            : Key{ PhysicalGroup::Interface, border.Low, border.High }];
     if (!isOuter || !isContact)
     {
-      facets.push_back(border.Points);
+      facets.push_back({ border.Points, border.LowTetrahedron });
     }
   }
   this->AddContacts(contacts);
@@ -227,12 +230,13 @@ void Collector::AddContacts(const std::map<cdm::Id, std::vector<Border>>& contac
 {
   const auto add = [this](cdm::Id contact, cdm::Id region, const Border& border)
   {
-    cdm::TriangleIds points = border.Points;
+    GroupFacet facet{ border.Points, border.LowTetrahedron };
     if (region == border.High)
     {
-      std::swap(points[1], points[2]);
+      std::swap(facet.Points[1], facet.Points[2]);
+      facet.Tetrahedron = border.HighTetrahedron;
     }
-    this->Facets[{ PhysicalGroup::Contact, contact, region }].push_back(points);
+    this->Facets[{ PhysicalGroup::Contact, contact, region }].push_back(facet);
   };
   for (const auto& [contact, borders] : contacts)
   {

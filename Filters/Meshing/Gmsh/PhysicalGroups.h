@@ -20,6 +20,13 @@ class vtkUnstructuredGrid;
 
 namespace vtkGmsh
 {
+/** A triangle of a surface, and the tetrahedron that it looks out of. */
+struct GroupFacet
+{
+  cdm::TriangleIds Points;
+  cdm::Id Tetrahedron;
+};
+
 struct PhysicalGroup
 {
   /** In the order of the numbers. */
@@ -39,8 +46,8 @@ struct PhysicalGroup
   /** Those that have all facets of it, ascending: one, or two. */
   std::vector<cdm::Id> Regions;
   std::string Name;
-  /** Of a surface; the normals point out of the region, or of the lower one. */
-  std::vector<cdm::TriangleIds> Facets;
+  /** Of a surface; they look out of the first region. */
+  std::vector<GroupFacet> Facets;
 
   int GetDimension() const { return this->Kind == Region ? 3 : 2; }
 };
