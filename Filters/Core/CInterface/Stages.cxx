@@ -288,11 +288,12 @@ void Write(OutputWriter& writer, const MeshCertificate& certificate)
   writer.Write("volume_error", certificate.LargestVolumeError);
   writer.Write(
     "fault_counts", std::vector<Id>(certificate.Faults.begin(), certificate.Faults.end()));
-  std::vector<EdgeIds> flat;
+  writer.Write("smallest_volume_ratio", certificate.SmallestVolumeRatio);
+  std::vector<TriangleIds> flat;
   for (const FlatterTetrahedra& under :
     { certificate.Under5Degrees, certificate.Under10Degrees, certificate.Under15Degrees })
   {
-    flat.push_back({ under.Count, under.BetweenBoundaries });
+    flat.push_back({ under.Count, under.AtSharpAngles, under.AcrossLayers });
   }
   writer.Write("flat_tetrahedra", std::move(flat));
   std::vector<Id> regions;
