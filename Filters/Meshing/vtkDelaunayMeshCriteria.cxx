@@ -83,6 +83,11 @@ void AddQualities(const cdm::MeshCertificate& report, vtkCellData* data)
     [](const cdm::TetrahedronQuality& quality) { return quality.SmallestDihedralAngle; });
   add("LargestDihedralAngle",
     [](const cdm::TetrahedronQuality& quality) { return quality.LargestDihedralAngle; });
+  add("UnsignedBoxRatio",
+    [](const cdm::TetrahedronQuality& quality) { return quality.UnsignedBoxRatio; });
+  AddArray<vtkUnsignedCharArray>(data, "MakesUnsignedBoxesLarge",
+    report.MakesUnsignedBoxesLarge.size(),
+    [&](std::size_t i) { return report.MakesUnsignedBoxesLarge[i]; });
 
   std::vector<unsigned char> isDelaunay(qualities.size(), 1);
   std::vector<unsigned char> isOpen(qualities.size(), 0);

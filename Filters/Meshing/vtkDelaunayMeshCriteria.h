@@ -12,7 +12,12 @@
  *     lengths there (3.3; negative: an entry of the finite element matrix has the wrong sign), and
  *     for each edge and region the coupling of the box method, the signed area of the Voronoi
  *     facet;
- *  5. the volume of each region.
+ *  5. the volume of each region;
+ *  6. for each region the volume of its boxes if their pieces are added up without signs, over the
+ *     true one. It is 1 where all circumcenters lie inside of tetrahedra and facets, and more
+ *     elsewhere, also in a mesh that is clean. Solvers that take the signed couplings and boxes of
+ *     vtkVoronoiControlVolumes need not care; those that compute boxes by themselves, without
+ *     signs, as DEVSIM does, compute with too large ones.
  * Spheres are decided exactly; 3.3 and the couplings with a tolerance of 1e-12 of the lengths
  * involved, couplings also of what rounding the coordinates changes.
  *
@@ -26,7 +31,10 @@
  * Outputs:
  *  - port 0: the tetrahedra with their data and the cell arrays Q1, Q2, Q3, Q4, Q5, AspectRatio
  *    (R/r, 1/Q3), RadiusEdgeRatio (1/Q1), SmallestDihedralAngle, LargestDihedralAngle (double,
- *    degrees), IsDelaunay (unsigned char, Crit. 5.3) and IsOpen (unsigned char: an open control
+ *    degrees), UnsignedBoxRatio (double: the volume of the tetrahedron's parts of boxes without
+ *    signs to its volume), MakesUnsignedBoxesLarge (unsigned char: whether it is one of those, as
+ *    few as can be, which make nine tenths of what the unsigned boxes of their region have too
+ *    much), IsDelaunay (unsigned char, Crit. 5.3) and IsOpen (unsigned char: an open control
  *    volume).
  *    Field data: Certificate (three lines: verdict, reasons, numbers), IsClean (0 or 1), one count for each kind of
  *    fault (InvertedTetrahedra, FlatTetrahedra, OverfullFacets, NonDelaunayTetrahedra,
@@ -34,7 +42,7 @@
  *    NegativeCouplings, NegativeCotangentSums), what they are counted among (Facets, BorderFacets,
  *    StructuralEdges, Edges, Couplings), CoincidentPoints, TetrahedraUnder5Degrees,
  *    TetrahedraUnder10Degrees, TetrahedraUnder15Degrees, MeshSmallestDihedralAngle, MeshLargestDihedralAngle, and for each
- *    region RegionIds, RegionVolumes and RegionVolumeErrors (relative).
+ *    region RegionIds, RegionVolumes, RegionVolumeErrors (relative) and RegionUnsignedBoxRatios.
  *  - port 1: vtkUnstructuredGrid, a copy of everything at fault: VTK_LINE, VTK_TRIANGLE
  *    and VTK_TETRA with the cell arrays Fault (int, in the order of the counts above, from 0),
  *    RegionId (-1: of no region) and CellId (a cell of the input that it belongs to, or -1).

@@ -8,8 +8,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cfenv>
 #include <string>
 #include <vector>
+
+#if defined(__GLIBC__) && defined(__x86_64__)
+#include <fpu_control.h>
+#include <xmmintrin.h>
+#endif
 
 using namespace cdm;
 
@@ -241,4 +247,47 @@ TEST(ConformingMesher, PointsHaveAHistory)
   EXPECT_EQ(output.Facets.size(), output.Boundary.Triangles.size());
   EXPECT_TRUE(std::all_of(output.Boundary.SourceCells.begin(), output.Boundary.SourceCells.end(),
     [](Id cell) { return cell >= 0 && cell < 6; }));
+}
+
+// Other libraries of a program change the arithmetic of the thread that loads them.
+TEST(ConformingMesher, ArithmeticOfTheCallerDoesNotMatter)
+{
+  const PolygonSoup soup = MakeCube();
+  ConformingMesherOptions options;
+  options.Choices.MaximumEdgeLength = 0.3;
+  options.Choices.AddsSteinerPoints = true;
+  const ConformingMesherOutput expected = Mesh(soup, options);
+  const auto check = [&](const char* what)
+  {
+    const ConformingMesherOutput output = Mesh(soup, options);
+    EXPECT_TRUE(output.Certificate.IsDelaunay()) << what;
+    EXPECT_EQ(output.Mesh.Points, expected.Mesh.Points) << what;
+    EXPECT_TRUE(std::equal(output.Mesh.Tetrahedra.begin(), output.Mesh.Tetrahedra.end(),
+      expected.Mesh.Tetrahedra.begin(), expected.Mesh.Tetrahedra.end()))
+      << what;
+  };
+  for (const int mode : { FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO })
+  {
+    std::fesetround(mode);
+    check("rounding");
+    EXPECT_EQ(mode, std::fegetround()) << "the caller's is back";
+    std::fesetround(FE_TONEAREST);
+  }
+#if defined(__GLIBC__) && defined(__x86_64__)
+  // As after loading the Python module of DEVSIM 2.11.2, and code built with -ffast-math.
+  fpu_control_t before = 0;
+  _FPU_GETCW(before);
+  fpu_control_t doubles = static_cast<fpu_control_t>((before & ~_FPU_EXTENDED) | _FPU_DOUBLE);
+  _FPU_SETCW(doubles);
+  check("long doubles of 53 bits");
+  fpu_control_t after = 0;
+  _FPU_GETCW(after);
+  EXPECT_EQ(doubles, after);
+  _FPU_SETCW(before);
+  const unsigned int flags = _mm_getcsr();
+  _mm_setcsr(flags | 0x8040U);
+  check("denormal numbers are zero");
+  EXPECT_EQ(0x8040U, _mm_getcsr() & 0x8040U) << "the caller's is back";
+  _mm_setcsr(flags);
+#endif
 }

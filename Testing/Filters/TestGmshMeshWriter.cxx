@@ -8,6 +8,8 @@
 #include <vtkErrorCode.h>
 #include <vtkFieldData.h>
 #include <vtkStringArray.h>
+#include <vtkXMLUnstructuredGridReader.h>
+#include <vtkXMLUnstructuredGridWriter.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -235,37 +237,138 @@ TEST(GmshMeshWriter, DeviceWithNames)
   }
   EXPECT_NEAR(
     1.0, file.GetArea(file.GetNumber("Bulk_gate_oxide")) / GetArea(boundary, 0, 1), 1e-12);
+  for (const auto& [number, name] : file.Names)
+  {
+    EXPECT_EQ(number <= 5, file.Dimensions.at(number) == 3) << "regions by their ids: " << name;
+  }
+  EXPECT_EQ(1, file.GetNumber("Bulk"));
+  EXPECT_EQ(5, file.GetNumber("n1st_spacer_2"));
+  EXPECT_EQ(6, file.GetNumber("Bulk_gate_oxide")) << "the first interface";
   // 0.8 x 0.3 micrometres.
   EXPECT_NEAR(0.24, file.GetArea(file.GetNumber("Bulk_zmin")), 1e-12);
 }
 
-TEST(GmshMeshWriter, Contacts)
+TEST(GmshMeshWriter, NamesOutliveTheWritersOfVtk)
+{
+  // What XML and the encoding stand on, and an umlaut; a name may be empty.
+  const std::vector<std::string> odd = { "Si & \"Ge\" <30%>", "", "100%25", "\xc3\xbc\n'" };
+  vtkNew<vtkTechnologyStructureSource> device;
+  device->Update();
+  device->GetOutput()->GetFieldData()->AddArray(MakeNames("RegionNames", odd));
+  vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
+  mesher->SetInputData(device->GetOutput());
+  vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  writer->SetInputConnection(mesher->GetOutputPort());
+  writer->WriteToOutputStringOn();
+  writer->Write();
+  EXPECT_FALSE(Contains(writer->GetOutputString(), "\"String\"")) << "other readers refuse it";
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->ReadFromInputStringOn();
+  reader->SetInputString(writer->GetOutputString());
+  vtkNew<vtkGmshMeshWriter> gmsh;
+  gmsh->SetInputConnection(reader->GetOutputPort());
+  gmsh->SetFileName(FileName.c_str());
+  ASSERT_EQ(1, gmsh->Write());
+  const GmshFile file = Read(FileName);
+  for (const char* name : { "Si____Ge___30__", "region_1", "n100_25", "n____" })
+  {
+    EXPECT_EQ(3, file.Dimensions.at(file.GetNumber(name))) << name;
+  }
+  EXPECT_EQ(GetTexts(reader->GetOutput(), "Certificate").at(0), "DELAUNAY");
+  std::vector<std::string> read = GetTexts(reader->GetOutput(), "RegionNames");
+  EXPECT_EQ(read, odd);
+}
+
+namespace
+{
+/** Two boxes, of 1 and 2 cubes, with a contact for each polygon by its bounds; -1: none. */
+vtkSmartPointer<vtkPolyData> MakeBoxesWithContacts(int (*getContact)(const double*))
 {
   const auto boxes = MakeTwoBoxes(true);
   vtkNew<vtkIntArray> contacts;
   contacts->SetName("ContactId");
-  for (vtkIdType i = 0; i < boxes->GetNumberOfCells(); ++i)
-  {
-    contacts->InsertNextValue(-1);
-  }
-  // The ends of the long box, and its bottom, which belongs to both regions.
   double bounds[6];
   for (vtkIdType i = 0; i < boxes->GetNumberOfCells(); ++i)
   {
     boxes->GetCellBounds(i, bounds);
-    contacts->SetValue(i, bounds[1] == 0.0 ? 0 : bounds[0] == 3.0 ? 2 : bounds[5] == 0.0 ? 1 : -1);
+    contacts->InsertNextValue(getContact(bounds));
   }
   boxes->GetCellData()->AddArray(contacts);
+  return boxes;
+}
+
+/** The boundary of a mesher with names of contacts. */
+vtkSmartPointer<vtkPolyData> NameContacts(
+  vtkConformingDelaunayMesher* mesher, const std::vector<std::string>& names)
+{
+  mesher->Update();
+  auto boundary = vtkSmartPointer<vtkPolyData>::New();
+  boundary->ShallowCopy(mesher->GetOutputDataObject(1));
+  vtkNew<vtkFieldData> fields;
+  fields->AddArray(MakeNames("ContactNames", names));
+  boundary->SetFieldData(fields);
+  return boundary;
+}
+} // namespace
+
+// Two regions have all of a contact between them: it keeps its name. Others change neither numbers
+// nor names.
+TEST(GmshMeshWriter, ContactsKeepTheirNamesAndChangeNoOthers)
+{
+  const auto boxes = MakeBoxesWithContacts(
+    [](const double* bounds) {
+      return bounds[0] == bounds[1] && bounds[0] == 1.0 ? 1 : bounds[0] == 3.0 ? 0 : -1;
+    });
   vtkNew<vtkConformingDelaunayMesher> mesher;
   mesher->SetMeshForToFewestPoints();
   mesher->SetInputData(boxes);
   mesher->SetMaximumEdgeLength(0.5);
-  mesher->Update();
-  vtkNew<vtkPolyData> boundary;
-  boundary->ShallowCopy(mesher->GetOutputDataObject(1));
-  vtkNew<vtkFieldData> names;
-  names->AddArray(MakeNames("ContactNames", { "source", "bottom", "drain" }));
-  boundary->SetFieldData(names);
+  const auto boundary = NameContacts(mesher, { "region_3_region_7", "source-contact" });
+  vtkNew<vtkGmshMeshWriter> writer;
+  writer->SetInputConnection(mesher->GetOutputPort());
+  writer->SetFileName(FileName.c_str());
+  ASSERT_EQ(1, writer->Write());
+  const GmshFile before = Read(FileName);
+  writer->SetInputData(1, boundary);
+  ASSERT_EQ(1, writer->Write());
+  const GmshFile after = Read(FileName);
+
+  EXPECT_NEAR(1.0, after.GetArea(after.GetNumber("source_contact")), 1e-12);
+  EXPECT_NEAR(1.0, after.GetArea(after.GetNumber("region_3_region_7")), 1e-12) << "the contact";
+  EXPECT_NEAR(1.0, after.GetArea(after.GetNumber("region_3_region_7_2")), 1e-12);
+  EXPECT_EQ(4, before.GetNumber("region_3"));
+  EXPECT_EQ(8, before.GetNumber("region_7"));
+  EXPECT_EQ(9, before.GetNumber("region_3_region_7"));
+  EXPECT_EQ(9, after.GetNumber("region_3_region_7_2"));
+  int missing = 0;
+  for (const auto& [number, name] : before.Names)
+  {
+    if (after.Names.count(number) == 0)
+    {
+      EXPECT_EQ("region_7_xmax", name) << "the contact took all of it";
+      ++missing;
+    }
+    else if (number != 9)
+    {
+      EXPECT_EQ(name, after.Names.at(number));
+    }
+  }
+  EXPECT_EQ(1, missing);
+  EXPECT_EQ(before.Names.size() + 1, after.Names.size());
+}
+
+TEST(GmshMeshWriter, ContactsOfSeveralRegions)
+{
+  // The ends of the long box, and its bottom, which belongs to both regions.
+  const auto boxes = MakeBoxesWithContacts(
+    [](const double* bounds) {
+      return bounds[1] == 0.0 ? 0 : bounds[0] == 3.0 ? 2 : bounds[5] == 0.0 ? 1 : -1;
+    });
+  vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetInputData(boxes);
+  mesher->SetMaximumEdgeLength(0.5);
+  const auto boundary = NameContacts(mesher, { "source", "bottom", "drain" });
   vtkNew<vtkGmshMeshWriter> writer;
   writer->SetInputConnection(mesher->GetOutputPort());
   writer->SetInputData(1, boundary);

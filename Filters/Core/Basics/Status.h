@@ -10,6 +10,7 @@
 #ifndef cdmStatus_h
 #define cdmStatus_h
 
+#include "Core/Basics/FloatingPointEnvironment.h"
 #include "Core/Basics/Types.h"
 
 #include <new>
@@ -84,10 +85,14 @@ struct [[nodiscard]] Status
   }
 };
 
-/** Runs a stage; no exception leaves it: running out of memory becomes a Status. */
+/**
+ * Runs a stage; no exception leaves it: running out of memory becomes a Status. Arithmetic in it is
+ * that of FloatingPointEnvironment.h.
+ */
 template <typename Function>
 Status RunGuarded(const Function& function)
 {
+  const FloatingPointEnvironment environment;
   try
   {
     return function();

@@ -289,32 +289,26 @@ void Write(OutputWriter& writer, const MeshCertificate& certificate)
   writer.Write("volume_error", certificate.LargestVolumeError);
   writer.Write(
     "fault_counts", std::vector<Id>(certificate.Faults.begin(), certificate.Faults.end()));
-  std::vector<EdgeIds> flat;
+  writer.Write("smallest_volume_ratio", certificate.SmallestVolumeRatio);
+  std::vector<TriangleIds> flat;
   for (const FlatterTetrahedra& under :
     { certificate.Under5Degrees, certificate.Under10Degrees, certificate.Under15Degrees })
   {
-    flat.push_back({ under.Count, under.BetweenBoundaries });
+    flat.push_back({ under.Count, under.AtSharpAngles, under.AcrossLayers });
   }
   writer.Write("flat_tetrahedra", std::move(flat));
   std::vector<Id> regions;
   std::vector<double> volumes;
+  std::vector<double> ratios;
   for (const RegionVolume& region : certificate.Regions)
   {
     regions.push_back(region.Region);
     volumes.push_back(region.Volume);
+    ratios.push_back(region.UnsignedBoxRatio);
   }
   writer.Write("region_ids", std::move(regions));
   writer.Write("region_volumes", std::move(volumes));
-}
-
-std::vector<char> ToFaults(const std::vector<SteinerFault>& faults)
-{
-  std::vector<char> numbers;
-  for (const SteinerFault fault : faults)
-  {
-    numbers.push_back(static_cast<char>(fault));
-  }
-  return numbers;
+  writer.Write("region_unsigned_box_ratios", std::move(ratios));
 }
 
 //--------------------------------------------------------------------------------------------------
@@ -350,7 +344,7 @@ Status MeshPolygonsStage(InputReader& reader, const SizingField& function,
     Write(writer, output.Boundary);
     writer.Write("facets", std::move(output.Facets));
     writer.Write("unresolved_triangles", std::move(output.UnresolvedTriangles));
-    writer.Write("faults", ToFaults(output.Faults));
+    writer.Write("faults", std::move(output.Faults));
     writer.Write("is_free", std::move(output.IsFree));
     Write(writer, output.Settings);
     Write(writer, output.Certificate);
@@ -540,7 +534,7 @@ Status RefineMeshStage(InputReader& reader, const SizingField& function,
     Write(writer, output.Mesh);
     Write(writer, output.Boundary);
     writer.Write("is_free", std::move(output.IsFree));
-    writer.Write("faults", ToFaults(output.Faults));
+    writer.Write("faults", std::move(output.Faults));
     writer.Write("point_sources", std::move(output.PointSources));
   }
   return status;

@@ -59,6 +59,7 @@ private:
   bool EvaluateEdges(const ExecutionContext& context);
   std::vector<Id> FindRegions() const;
   void CompareVolumes();
+  void CompareUnsignedBoxes(bool keepsDetails);
   bool Finish(const ExecutionContext& context);
 
   using Records = std::vector<SimplexIncidence::Record>;
@@ -113,6 +114,7 @@ Status Evaluator::Run(const SphereCriteria& criteria, const CertificateOptions& 
   {
     this->CompareVolumes();
   }
+  this->CompareUnsignedBoxes(options.KeepsDetails);
   if (!this->Finish(context.Part(0.97, 1.0)))
   {
     return Status::Aborted();
@@ -509,6 +511,59 @@ void Evaluator::CompareVolumes()
   }
 }
 
+void Evaluator::CompareUnsignedBoxes(bool keepsDetails)
+{
+  const std::size_t count = this->Mesh.Tetrahedra.size();
+  // What each tetrahedron has too much, and its volume.
+  RawVector<double> excesses(count);
+  RawVector<double> volumes(count);
+  const auto compute = [&](std::size_t begin, std::size_t end, std::size_t)
+  {
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const auto [a, b, c, d] = this->GetCorners(static_cast<Id>(i));
+      const bool isPositive = this->Findings.Orientations[i] > 0;
+      volumes[i] = isPositive ? GetSignedVolume(a, b, c, d) : 0.0;
+      excesses[i] = isPositive ? std::max(0.0, GetUnsignedBoxVolume(a, b, c, d) - volumes[i]) : 0.0;
+    }
+  };
+  ParallelLoop(count, this->LoopOptions, {}, "", compute);
+  std::vector<CompensatedSum> excessSums(this->Report.Regions.size());
+  std::vector<CompensatedSum> volumeSums(this->Report.Regions.size());
+  std::vector<std::vector<Id>> tetrahedra(this->Report.Regions.size());
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const auto region = std::lower_bound(this->Report.Regions.begin(), this->Report.Regions.end(),
+      this->Mesh.Regions[i], [](const RegionVolume& item, Id id) { return item.Region < id; });
+    const std::size_t index = region - this->Report.Regions.begin();
+    excessSums[index].Add(excesses[i]);
+    volumeSums[index].Add(volumes[i]);
+    if (keepsDetails && excesses[i] > SumTolerance * volumes[i])
+    {
+      tetrahedra[index].push_back(static_cast<Id>(i));
+    }
+  }
+  this->Report.MakesUnsignedBoxesLarge.assign(keepsDetails ? count : 0, 0);
+  for (std::size_t region = 0; region < this->Report.Regions.size(); ++region)
+  {
+    const double volume = volumeSums[region].Get();
+    this->Report.Regions[region].UnsignedBoxRatio =
+      volume == 0.0 ? 1.0 : 1.0 + excessSums[region].Get() / volume;
+    std::stable_sort(tetrahedra[region].begin(), tetrahedra[region].end(),
+      [&](Id a, Id b) { return excesses[a] > excesses[b]; });
+    double rest = 0.9 * excessSums[region].Get();
+    for (const Id tetrahedron : tetrahedra[region])
+    {
+      if (rest <= 0.0)
+      {
+        break;
+      }
+      this->Report.MakesUnsignedBoxesLarge[tetrahedron] = 1;
+      rest -= excesses[tetrahedron];
+    }
+  }
+}
+
 bool Evaluator::Finish(const ExecutionContext& context)
 {
   std::vector<MeshViolation>& violations = this->Report.Violations;
@@ -574,6 +629,8 @@ TetrahedronQuality GetTetrahedronQuality(const Vec3& a, const Vec3& b, const Vec
   quality.Q = { shortest / circumradius, isPoint ? 0.0 : inradius / longest,
     inradius / circumradius, isPoint ? 0.0 : shortest / longest,
     isPoint ? 0.0 : volume / (longest * longest * longest) };
+  quality.UnsignedBoxRatio = volume == 0.0 ? std::numeric_limits<double>::infinity()
+                                           : GetUnsignedBoxVolume(a, b, c, d) / std::abs(volume);
   quality.RadiusEdgeRatio = divide(circumradius, shortest);
   quality.AspectRatio = divide(circumradius, inradius);
   return quality;

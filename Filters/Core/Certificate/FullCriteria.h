@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FullCriteria.h
- * @brief Steps 5 and 6 of the certificate, see MeshCertificate.h.
+ * @brief Steps 5 to 7 of the certificate, see MeshCertificate.h.
  */
 #ifndef cdmFullCriteria_h
 #define cdmFullCriteria_h

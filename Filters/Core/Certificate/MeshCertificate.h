@@ -22,7 +22,10 @@
  *     holds its fourth vertex;
  *  6. all edges: Crit. 3.3, and for each region the coupling of the box method, the signed area of
  *     the Voronoi facet within the region. If all tetrahedra around an edge inside of a region are
- *     Delaunay that facet is a convex polygon, and nothing is computed.
+ *     Delaunay that facet is a convex polygon, and nothing is computed;
+ *  7. for each region the volume of its boxes if their pieces are added up without signs, as some
+ *     solvers do: where circumcenters lie outside of tetrahedra or facets it is too large, also in
+ *     a mesh that is clean.
  *
  * Criteria about spheres are decided by exact predicates, against all points of the mesh. Crit. 3.3
  * and the couplings are sums of quotients, judged with a tolerance of 1e-12 of the lengths
@@ -118,6 +121,8 @@ struct TetrahedronQuality
   double RadiusEdgeRatio = 0.0;
   /** R / r, 1 / Q3: 3 for a regular tetrahedron. */
   double AspectRatio = 0.0;
+  /** Volume of its parts of boxes without signs to its volume: 1 or more; infinite if flat. */
+  double UnsignedBoxRatio = 1.0;
 };
 
 TetrahedronQuality GetTetrahedronQuality(
@@ -133,6 +138,11 @@ struct RegionVolume
    * those that bound the region's tetrahedra.
    */
   double EnclosedVolume = 0.0;
+  /**
+   * Volume of the boxes without signs (VoronoiMeasures.h) to Volume: 1 if all circumcenters lie
+   * inside, else more. Inverted and flat tetrahedra are left out. 0 at the basic level.
+   */
+  double UnsignedBoxRatio = 0.0;
 
   /** |Volume - EnclosedVolume| / |EnclosedVolume|; infinite if only the latter is zero. */
   double GetRelativeError() const;
@@ -148,14 +158,16 @@ struct InterfaceSpheres
   Id Violations = 0;
 };
 
-/** Tetrahedra with a dihedral angle below a bound. */
+/** Tetrahedra with a dihedral angle below a bound, and why (FlatTetrahedra.h). */
 struct FlatterTetrahedra
 {
   Id Count = 0;
-  /**
-   * Tetrahedra with all points on outer and interface facets: the shape of the input causes them.
-   */
-  Id BetweenBoundaries = 0;
+  /** At sharp angles of the input. */
+  Id AtSharpAngles = 0;
+  /** Others with all points on outer and interface facets. */
+  Id AcrossLayers = 0;
+
+  Id GetOthers() const { return this->Count - this->AtSharpAngles - this->AcrossLayers; }
 };
 
 enum class CertificateLevel
@@ -176,7 +188,7 @@ struct CertificateOptions
 {
   CertificateLevel Level = CertificateLevel::Basic;
   BoundaryUse Boundary = BoundaryUse::Facets;
-  /** At the full level: whether to fill Qualities and Violations. */
+  /** At the full level: whether to fill what there is for each tetrahedron, and Violations. */
   bool KeepsDetails = false;
 };
 
@@ -185,6 +197,8 @@ constexpr CertificateOptions FullCertificate{ CertificateLevel::Full, BoundaryUs
 
 struct MeshCertificate
 {
+  /** Solvers lose digits where a volume is smaller than this ratio of the median. */
+  static constexpr double TinyVolumeRatio = 1e-10;
   /** The volumes may differ by this ratio. */
   static constexpr double VolumeTolerance = 1e-12;
 
@@ -218,6 +232,8 @@ struct MeshCertificate
   FlatterTetrahedra Under5Degrees;
   FlatterTetrahedra Under10Degrees;
   FlatterTetrahedra Under15Degrees;
+  /** The smallest volume of a tetrahedron as a ratio of their median; 1 if there are none. */
+  double SmallestVolumeRatio = 1.0;
   /** Ascending by region. */
   std::vector<RegionVolume> Regions;
   /** Largest |Volume - EnclosedVolume| / EnclosedVolume over the regions. */
@@ -228,6 +244,11 @@ struct MeshCertificate
   std::vector<Id> Examples;
   /** One for each tetrahedron. */
   std::vector<TetrahedronQuality> Qualities;
+  /**
+   * One for each tetrahedron: whether it is one of those, as few as can be, which together make nine
+   * tenths of what the unsigned boxes of their region have too much.
+   */
+  std::vector<char> MakesUnsignedBoxesLarge;
   /** Ascending by fault, then by tetrahedron or by points. */
   std::vector<MeshViolation> Violations;
   /** A line that says how the mesh was made; empty if that is not known. It is not judged. */
@@ -247,9 +268,16 @@ struct MeshCertificate
 
   /** The verdict as it begins the text: "INVALID", "NOT DELAUNAY", "DELAUNAY", "CLEAN FOR ...". */
   const char* GetVerdictName() const;
+  /**
+   * A sentence: how many tetrahedra are flatter than 5 and 15 degrees, and why; empty if none is.
+   */
+  std::string DescribeFlatTetrahedra() const;
   /** A line: why the verdict is not better, or what it means. */
   std::string GetReasons() const;
-  /** Three lines: verdict, reasons, numbers; and a fourth if Settings are known. */
+  /**
+   * Three lines: verdict, reasons, numbers; and a fourth if Settings are known. At the full level
+   * the first one says so if the smallest volume is tiny.
+   */
   std::string GetText() const;
 };
 

@@ -102,9 +102,10 @@ double GetRounding(const std::array<Vec3, 4>& corners, int edge)
   }
   return 0.25 * turn * change;
 }
-} // namespace
 
-std::array<DoubleDouble, 6> GetCouplings(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+/** The two parts of the coupling of each edge, one on the side of each of its facets. */
+std::array<std::array<DoubleDouble, 2>, 6> GetCouplingParts(
+  const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
   const Frame frame(a, b, c, d);
   const DoubleDouble3 center = frame.GetScaledCircumcenter();
@@ -126,12 +127,37 @@ std::array<DoubleDouble, 6> GetCouplings(const Vec3& a, const Vec3& b, const Vec
   const DoubleDouble3 wv = w - v;
   // Each edge has two facets, and sees in each the third vertex with the angle whose cosine is
   // this product.
-  return { Dot(v, vu) * facetD + Dot(w, wu) * facetC, // ab: abc, abd
-    -(Dot(u, vu)) * facetD + Dot(w, wv) * facetB,     // ac: abc, acd
-    -(Dot(u, wu)) * facetC - Dot(v, wv) * facetB,     // ad: abd, acd
-    Dot(u, v) * facetD + Dot(wu, wv) * facetA,        // bc: abc, bcd
-    Dot(u, w) * facetC - Dot(vu, wv) * facetA,        // bd: abd, bcd
-    Dot(v, w) * facetB + Dot(vu, wu) * facetA };      // cd: acd, bcd
+  return { { { Dot(v, vu) * facetD, Dot(w, wu) * facetC }, // ab: abc, abd
+    { -(Dot(u, vu)) * facetD, Dot(w, wv) * facetB },       // ac: abc, acd
+    { -(Dot(u, wu)) * facetC, -(Dot(v, wv) * facetB) },    // ad: abd, acd
+    { Dot(u, v) * facetD, Dot(wu, wv) * facetA },          // bc: abc, bcd
+    { Dot(u, w) * facetC, -(Dot(vu, wv) * facetA) },       // bd: abd, bcd
+    { Dot(v, w) * facetB, Dot(vu, wu) * facetA } } };      // cd: acd, bcd
+}
+} // namespace
+
+std::array<DoubleDouble, 6> GetCouplings(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  const auto parts = GetCouplingParts(a, b, c, d);
+  std::array<DoubleDouble, 6> couplings;
+  for (int edge = 0; edge < 6; ++edge)
+  {
+    couplings[edge] = parts[edge][0] + parts[edge][1];
+  }
+  return couplings;
+}
+
+double GetUnsignedBoxVolume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  const auto parts = GetCouplingParts(a, b, c, d);
+  const std::array<double, 6> squares{ SquaredNorm(b - a), SquaredNorm(c - a), SquaredNorm(d - a),
+    SquaredNorm(c - b), SquaredNorm(d - b), SquaredNorm(d - c) };
+  double volume = 0.0;
+  for (int edge = 0; edge < 6; ++edge)
+  {
+    volume += squares[edge] * (std::abs(parts[edge][0].High) + std::abs(parts[edge][1].High)) / 3.0;
+  }
+  return volume;
 }
 
 Vec3 GetAccurateCircumcenter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)

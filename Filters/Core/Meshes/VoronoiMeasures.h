@@ -80,6 +80,14 @@ bool HasNegativeCoupling(const TetMesh& mesh, const EdgeIds& edge,
   std::vector<SimplexIncidence::Record>::const_iterator begin,
   std::vector<SimplexIncidence::Record>::const_iterator end, Id region);
 
+/**
+ * Volume of the parts of a tetrahedron in the boxes of its vertices, each of the 24 pieces between an
+ * edge, a facet and the circumcenters counted without its sign: what solvers add up that do not know
+ * the signs. It is the volume of the tetrahedron where no circumcenter, of it or of a facet, lies
+ * outside, and larger otherwise. The tetrahedron must not be flat.
+ */
+double GetUnsignedBoxVolume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
 /** Circumcenter, its coordinates rounded once; the tetrahedron must not be flat. */
 Vec3 GetAccurateCircumcenter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 

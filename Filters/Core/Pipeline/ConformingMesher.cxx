@@ -74,6 +74,7 @@ private:
   Status Tetrahedralize();
   Status AddSteinerPoints();
   Status RemoveFlatTetrahedra();
+  void WarnOfFlatTetrahedra();
   Status Check();
   Status CheckPeeled(const CertificateOptions& options, const ExecutionContext& context);
 
@@ -406,6 +407,27 @@ Status ConformingMesher::CheckPeeled(
   return status;
 }
 
+/** With what could be done about them. */
+void ConformingMesher::WarnOfFlatTetrahedra()
+{
+  std::string text = this->Output.Certificate.DescribeFlatTetrahedra();
+  if (text.empty())
+  {
+    return;
+  }
+  const FlatterTetrahedra& flat = this->Output.Certificate.Under15Degrees;
+  if (!this->Settings.AddsSteinerPoints)
+  {
+    text += " Steiner points, which a mesh for finite volumes or finite elements has, make better "
+            "ones where the input allows it.";
+  }
+  else if (flat.AcrossLayers > 0)
+  {
+    text += " A maximum edge length below the thickness of the layers makes better ones there.";
+  }
+  this->Output.Warnings.push_back({ std::move(text) });
+}
+
 Status ConformingMesher::Check()
 {
   const ExecutionContext context = this->Context.Part(0.95, 1.0);
@@ -421,6 +443,7 @@ Status ConformingMesher::Check()
     this->Output.Warnings.push_back(
       { "The check finds fault with the mesh: " + this->Output.Certificate.GetReasons() });
   }
+  this->WarnOfFlatTetrahedra();
   this->Output.Certificate.Settings =
     DescribeSettings(this->Options.MeshFor, this->Options.Choices, this->Settings);
   this->Output.Facets = std::move(this->Facets);

@@ -35,7 +35,10 @@ cdm::Status ToPolygonSoup(
 /** All polygons must be triangles. */
 cdm::Status ToTriangleMesh(vtkPolyData* input, cdm::TriangleMesh& surface);
 
-/** Structural facet of each triangle, from the cell array; empty without the array. */
+/**
+ * Structural facet of each triangle, from the cell arrays StructuralFacetId and ContactId: contacts
+ * end at structural edges, also within a plane. Empty without both.
+ */
 cdm::Status ToFacets(vtkPolyData* input, std::vector<cdm::Id>& facets);
 
 /** The same for polygons, by their cells. */
