@@ -7,48 +7,24 @@ The Python package conforming_delaunay has to be in PYTHONPATH. Writes FOLDER/mo
 (inline binary) and FOLDER/mos_transistor.png: the mesh cut open, coloured by region.
 """
 
-import itertools
 import os
 import sys
 
-import numpy
 from conforming_delaunay import get_texts, vtkConformingDelaunayMesher, vtkTechnologyStructureSource
 from paraview.simple import *
 from paraview.simple import _DisableFirstRenderCameraReset
 from vtkmodules.numpy_interface import dataset_adapter
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
 
-SPACING = 0.05  # micrometres: of points inside, and the longest edge on the boundaries
 COLOURS = [0.36, 0.54, 0.75,  0.93, 0.80, 0.27,  0.80, 0.33, 0.28,
            0.55, 0.74, 0.47,  0.55, 0.74, 0.47]
 
 
-def MakeLattice(device):
-    """Body-centred cubic lattices of points inside of the bulk and the gate."""
-    length, width = 0.5 * device.GetBulkLength(), device.GetDeviceWidth()
-    gate, oxide = 0.5 * device.GetGateLength(), device.GetGateOxideThickness()
-    points = vtkPoints()
-    for low, high in (((-length, 0.0, -device.GetBulkDepth()), (length, width, 0.0)),
-                      ((-gate, 0.0, oxide), (gate, width, oxide + device.GetGateHeight()))):
-        for shift in (0.5, 1.0):
-            steps = [numpy.arange(a + shift * SPACING, b - 0.49 * SPACING, SPACING)
-                     for a, b in zip(low, high)]
-            for point in itertools.product(*steps):
-                points.InsertNextPoint(point)
-    lattice = vtkPolyData()
-    lattice.SetPoints(points)
-    return lattice
-
-
 def MakeMesh():
-    """The tetrahedra, and the names of the regions."""
+    """The tetrahedra, with nothing asked for but the device, and the names of the regions."""
     device = vtkTechnologyStructureSource()
     mesher = vtkConformingDelaunayMesher()
     mesher.SetInputConnection(device.GetOutputPort())
-    mesher.SetInputData(1, MakeLattice(device))
-    mesher.SetMaximumEdgeLength(SPACING)
     mesher.Update()
     names = get_texts(device.GetOutput(), "RegionNames")
     print("%d polygons in" % device.GetOutput().GetNumberOfCells())
@@ -67,7 +43,7 @@ def Report(mesh, names):
         print("%-14s %12d %20.12g" % (name, inside.sum(), data["Volume"][inside].sum()))
     certificate = get_texts(mesh, "Certificate")
     print("verdict:", "\n".join(certificate))
-    return certificate[0] in ("DELAUNAY", "CLEAN FOR FINITE VOLUMES")
+    return certificate[0] == "CLEAN FOR FINITE VOLUMES"
 
 
 def WriteAndDraw(mesh, names, folder):

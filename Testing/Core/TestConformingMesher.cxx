@@ -8,8 +8,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cfenv>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #if defined(__GLIBC__) && defined(__x86_64__)
@@ -151,6 +153,45 @@ TEST(ConformingMesher, ErrorsNamePolygonsAndPointsOfTheInput)
   options.GeneratesMeshPoints = true;
   options.MeshPoints.Layers = { { 0, 5, 1, 0.1, 1.0 } };
   EXPECT_EQ(MeshPolygons(input, options, {}, output).Code, StatusCode::InvalidOption);
+}
+
+/** Walls and bottom 3 thick: points of the octree lie in the middle of them, but are not needed. */
+TEST(ConformingMesher, MeshPointsAndSteinerPointsDoNotMultiply)
+{
+  // An open tray: corners of the outer box, then of the cavity, by z, y, x.
+  PolygonSoup tray;
+  for (const auto& [side, low, high] : { std::tuple(0.0, 0.0, 20.0), std::tuple(3.0, 3.0, 20.0) })
+  {
+    for (int i = 0; i < 8; ++i)
+    {
+      tray.Points.push_back({ (i & 1) != 0 ? 100.0 - side : side, (i & 2) != 0 ? 80.0 - side : side,
+        (i & 4) != 0 ? high : low });
+    }
+  }
+  for (const std::array<Id, 4>& face :
+    std::vector<std::array<Id, 4>>{ { 0, 2, 3, 1 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 4, 6, 2 },
+      { 1, 3, 7, 5 }, { 8, 9, 11, 10 }, { 8, 12, 13, 9 }, { 10, 11, 15, 14 }, { 8, 10, 14, 12 },
+      { 9, 13, 15, 11 }, { 4, 5, 13, 12 }, { 7, 6, 14, 15 }, { 6, 4, 12, 14 }, { 5, 7, 15, 13 } })
+  {
+    tray.Connectivity.insert(tray.Connectivity.end(), face.begin(), face.end());
+    tray.Offsets.push_back(static_cast<Id>(tray.Connectivity.size()));
+  }
+  for (const double length : { 25.0, 8.0 })
+  {
+    ConformingMesherOptions options;
+    options.Choices.MaximumEdgeLength = length;
+    const std::size_t alone = Mesh(tray, options).Mesh.Tetrahedra.size();
+    options.GeneratesMeshPoints = true;
+    for (const PointPlacement placement :
+      { PointPlacement::Octree, PointPlacement::OrthoProduct, PointPlacement::Random })
+    {
+      options.MeshPoints.Placement = placement;
+      const ConformingMesherOutput both = Mesh(tray, options);
+      EXPECT_LE(both.Mesh.Tetrahedra.size(), 1.1 * alone)
+        << "length " << length << ", placement " << static_cast<int>(placement);
+      EXPECT_TRUE(both.Certificate.IsClean()) << both.Certificate.GetText();
+    }
+  }
 }
 
 /** What has ended a stage before the sizes are reached is said. */

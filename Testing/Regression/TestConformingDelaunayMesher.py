@@ -7,18 +7,27 @@ import Scene
 from conforming_delaunay import get_texts, vtkConformingDelaunayMesher
 
 
-def Mesh(device, length, meshPoints=None):
-    """The tetrahedra of a device; they have passed the filter's own check and this one."""
+def MakeMesher(device):
     mesher = vtkConformingDelaunayMesher()
-    mesher.SetMeshForToFewestPoints()
     mesher.SetInputConnection(device.GetOutputPort())
+    return mesher
+
+
+def MakeSparseMesher(device, length, meshPoints=None):
+    mesher = MakeMesher(device)
+    mesher.SetMeshForToFewestPoints()
     mesher.SetInputData(1, meshPoints)
     mesher.SetMaximumEdgeLength(length)
+    return mesher
+
+
+def Mesh(device, mesher, verdict="DELAUNAY"):
+    """The tetrahedra of a device; they have passed the filter's own check and this one."""
     mesher.Update()
     mesh = mesher.GetOutputDataObject(0)
     certificate = get_texts(mesh, "Certificate")
     print("\n".join(certificate))
-    assert certificate[0] == "DELAUNAY", certificate
+    assert certificate[0] == verdict, certificate
 
     volumes = Scene.GetVolumes(mesh)
     assert (volumes > 0.0).all(), "%d tetrahedra are inverted or flat" % (volumes <= 0.0).sum()
@@ -37,21 +46,23 @@ def Mesh(device, length, meshPoints=None):
 
 
 # As coarse as it can be.
-Mesh(Scene.MakeMosTransistor(), 0.0)
-Mesh(Scene.MakeViaPlug(), 0.0)
+for coarse in (Scene.MakeMosTransistor(), Scene.MakeViaPlug()):
+    Mesh(coarse, MakeSparseMesher(coarse, 0.0))
 
 # Some of these mesh points lie on the metal: they are dropped, with a warning.
 box = ((-0.5, -0.5, -0.3), (0.5, 0.5, 0.9))
-via = Mesh(Scene.MakeViaPlug(), 0.1, Scene.MakeMeshPoints((box,), 0.1))
+plug = Scene.MakeViaPlug()
+via = Mesh(plug, MakeSparseMesher(plug, 0.1, Scene.MakeMeshPoints((box,), 0.1)))
 metal = Scene.GetCellArray(via, "RegionId") > 0
 scene = Scene.Scene((0.0, 0.0, 0.3), (0.55, -1.0, 0.45), 1.75)
 scene.AddTetrahedra(via, Scene.ColourByRegion(via, Scene.VIA_COLOURS),
                     keep=metal | (Scene.GetCentroids(via)[:, 1] > 0.0))
 scene.Save("ConformingDelaunayMesherVia.png")
 
-# The picture of the README: polygons, and tetrahedra of which a corner is left out.
+# The picture of the README: polygons, and tetrahedra of which a corner is left out; nothing is asked
+# for but the device.
 device = Scene.MakeMosTransistor()
-mos = Mesh(device, 0.06, Scene.MakeMeshPoints())
+mos = Mesh(device, MakeMesher(device), "CLEAN FOR FINITE VOLUMES")
 polygons = Scene.Scene((0.0, 0.15, -0.12), (0.45, -1.0, 0.5), 1.1)
 for region, (colour, shift) in enumerate(zip(Scene.MOS_COLOURS, Scene.MOS_SHIFTS)):
     part = Scene.GetRegionSurface(device.GetOutput(), region, shift)

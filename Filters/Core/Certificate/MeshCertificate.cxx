@@ -194,27 +194,28 @@ const char* MeshCertificate::GetVerdictName() const
 
 std::string MeshCertificate::DescribeFlatTetrahedra() const
 {
-  const FlatterTetrahedra& first = this->Under5Degrees;
-  const FlatterTetrahedra& second = this->Under15Degrees;
-  if (second.Count == 0)
+  const FlatterTetrahedra& all = this->Under15Degrees;
+  const FlatterTetrahedra& flattest = this->Under5Degrees;
+  if (all.Count == 0)
   {
     return {};
   }
   List reasons;
-  const auto add = [&](Id count, Id all, const char* reason)
+  const auto add = [&](Id count, Id flattestCount, const char* reason)
   {
-    if (all != 0)
+    if (count != 0)
     {
-      reasons.Add(std::to_string(count) + " and " + std::to_string(all) + " " + reason);
+      reasons.Add(std::to_string(count) +
+        (flattestCount != 0 ? " (" + std::to_string(flattestCount) + " below 5) " : " ") + reason);
     }
   };
-  add(first.AtSharpAngles, second.AtSharpAngles, "at sharp angles of the input");
-  add(first.AcrossLayers, second.AcrossLayers,
-    "across layers that are one tetrahedron thick, with all points on boundaries");
-  add(first.GetOthers(), second.GetOthers(), "elsewhere");
-  return Count(first.Count, "tetrahedron has", "tetrahedra have") +
-    " a dihedral angle below 5 degrees, and " + std::to_string(second.Count) +
-    " below 15 degrees: " + reasons.Text + ".";
+  add(all.AtSharpAngles, flattest.AtSharpAngles, "at sharp angles of the input");
+  add(all.AcrossLayers, flattest.AcrossLayers,
+    "across layers one tetrahedron thick, with all points on boundaries");
+  add(all.GetOthers(), flattest.GetOthers(), "elsewhere");
+  return Count(all.Count, "tetrahedron has", "tetrahedra have") +
+    " a dihedral angle below 15 degrees, " + std::to_string(flattest.Count) +
+    " below 5 degrees: " + reasons.Text + ".";
 }
 
 std::string MeshCertificate::GetReasons() const

@@ -269,7 +269,7 @@ struct MeshCertificate
   /** The verdict as it begins the text: "INVALID", "NOT DELAUNAY", "DELAUNAY", "CLEAN FOR ...". */
   const char* GetVerdictName() const;
   /**
-   * A sentence: how many tetrahedra are flatter than 5 and 15 degrees, and why; empty if none is.
+   * A sentence: how many tetrahedra are flatter than 15 and 5 degrees, and why; empty if none is.
    */
   std::string DescribeFlatTetrahedra() const;
   /** A line: why the verdict is not better, or what it means. */

@@ -98,6 +98,11 @@ struct MeshPointGeneratorOptions
   std::vector<PointLayers> Layers;
   /** Distance from the boundary in spacings of the point. >= 0. */
   double BoundaryClearance = 0.5;
+  /**
+   * Whether that holds in spacings of the sizing, too: layers thinner than these then get no points
+   * but those of Layers.
+   */
+  bool IsClearanceSized = false;
   Id MaximumNumberOfPoints = 10000000;
 };
 

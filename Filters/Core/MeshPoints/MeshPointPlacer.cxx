@@ -44,7 +44,10 @@ Status MeshPointPlacer::BuildOctree(
 Id MeshPointPlacer::FindRegion(const Vec3& position, const LocalSpacing& spacing, Id known) const
 {
   if (known == OutsideRegion ||
-    !this->Locator.IsClear(position, spacing, this->Options.BoundaryClearance))
+    !this->Locator.IsClear(position, spacing, this->Options.BoundaryClearance) ||
+    (this->Options.IsClearanceSized &&
+      !this->Locator.IsClear(
+        position, this->Input.Sizing(position), this->Options.BoundaryClearance)))
   {
     return OutsideRegion;
   }

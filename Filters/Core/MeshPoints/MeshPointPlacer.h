@@ -5,8 +5,8 @@
  *   points.
  *
  * Method:
- *  1. a position has to be clear of the boundary, by BoundaryClearance of its spacing
- *     (RegionLocator.h);
+ *  1. a position has to be clear of the boundary, by BoundaryClearance of its spacing, and if
+ *     asked for of that of the sizing (RegionLocator.h);
  *  2. it has to lie strictly inside of a region, which the octree may know already;
  *  3. and beyond the layers of that region, by BoundaryClearance of its smallest spacing.
  *

@@ -3,11 +3,13 @@
 
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
+#include "Core/Improvement/BoundarySpheres.h"
 #include "Core/Improvement/SliverRemover.h"
 #include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/MeshBoundary.h"
 #include "Core/Pipeline/SurfaceCoarsener.h"
 #include "Core/Sizing/DefaultSize.h"
+#include "Core/Surface/MeshPointClearance.h"
 #include "Core/Surface/StructuralEdges.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 
@@ -71,6 +73,7 @@ private:
   Status Coarsen();
   Status PlaceMeshPoints();
   Status RefineSurface();
+  void AddUnencroachingPoints(Id firstNumber, const std::vector<StructuralEdge>& edges);
   Status Tetrahedralize();
   Status AddSteinerPoints();
   Status RemoveFlatTetrahedra();
@@ -101,6 +104,8 @@ private:
   /** Given mesh points, then generated ones, as far as they are still there, and their numbers. */
   std::vector<Vec3> MeshPoints;
   std::vector<Id> MeshPointSources;
+  /** Generated mesh points, with numbers after these, for which the surface is not refined. */
+  std::vector<Vec3> OptionalPoints;
   /** Structural facet of each triangle; marks of those that miss the criterion. */
   std::vector<Id> Facets;
   std::vector<char> IsUnresolved;
@@ -193,6 +198,7 @@ Status ConformingMesher::PlaceMeshPoints()
     options.Spacing[axis] =
       options.Spacing[axis] == 0.0 ? this->Settings.MaximumEdgeLength : options.Spacing[axis];
   }
+  options.IsClearanceSized = this->Settings.AddsSteinerPoints;
   MeshPointGeneratorOutput generated;
   Status status = GenerateMeshPoints({ &this->Surface, this->Input.Sizing }, options,
     this->GetPart("Mesh points", 0.1, 0.2), generated);
@@ -201,7 +207,13 @@ Status ConformingMesher::PlaceMeshPoints()
     return this->Name(std::move(status), this->Surface.SourceCells);
   }
   this->TakeWarnings(std::move(generated.Warnings), this->Surface.SourceCells);
-  this->MeshPoints.insert(this->MeshPoints.end(), generated.Points.begin(), generated.Points.end());
+  // With Steiner points the surface is not refined for what may be left out as well: see
+  // AddUnencroachingPoints(). Layers, which come first, are asked for.
+  const auto firstOptional = this->Settings.AddsSteinerPoints ? generated.Points.begin() +
+      (std::find(generated.Layers.begin(), generated.Layers.end(), 0) - generated.Layers.begin())
+                                                              : generated.Points.end();
+  this->MeshPoints.insert(this->MeshPoints.end(), generated.Points.begin(), firstOptional);
+  this->OptionalPoints.assign(firstOptional, generated.Points.end());
   return status;
 }
 
@@ -243,9 +255,47 @@ Status ConformingMesher::RefineSurface()
   {
     kept.push_back(this->MeshPoints[point]);
   }
+  const Id firstOptional = static_cast<Id>(this->MeshPoints.size());
   this->MeshPoints = std::move(kept);
   this->MeshPointSources = std::move(refined.KeptMeshPoints);
+  this->AddUnencroachingPoints(firstOptional, refined.StructuralEdges);
   return status;
+}
+
+/**
+ * Adds the optional points under numbers from firstNumber on, by the rule for Steiner points: none
+ * in a smallest sphere of the boundary. In layers thinner than the size the surface would be refined
+ * down to the thickness for each of them. Nor are they closer to it than others may be.
+ */
+void ConformingMesher::AddUnencroachingPoints(
+  Id firstNumber, const std::vector<StructuralEdge>& edges)
+{
+  if (this->OptionalPoints.empty())
+  {
+    return;
+  }
+  const std::size_t numberOfKept = this->MeshPoints.size();
+  std::vector<Vec3> points = this->MeshPoints;
+  points.insert(points.end(), this->OptionalPoints.begin(), this->OptionalPoints.end());
+  const double clearance =
+    this->Options.Surface.MeshPointClearanceRatio * GetBoundingBoxDiagonal(this->Surface.Points);
+  BoundarySpheres spheres(this->Surface, edges);
+  BoundarySpheres::Encroached encroached;
+  for (const Id i :
+    FindClearMeshPoints(this->Surface, points, clearance, this->Context.GetNumberOfThreads()))
+  {
+    const std::size_t number = static_cast<std::size_t>(i);
+    if (number < numberOfKept)
+    {
+      continue;
+    }
+    spheres.Find(points[number], encroached);
+    if (encroached.IsEmpty())
+    {
+      this->MeshPoints.push_back(points[number]);
+      this->MeshPointSources.push_back(firstNumber + static_cast<Id>(number - numberOfKept));
+    }
+  }
 }
 
 void ConformingMesher::FollowBoundary(const std::vector<Id>& sources)
