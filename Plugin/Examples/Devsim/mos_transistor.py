@@ -88,7 +88,7 @@ def make_plane(finest):
     """The cross-section as right triangles on a grid of lines, which have no negative couplings."""
     x = get_lines((0.0, 0.008), (SOURCE[1], 0.004), (GATE[0], finest), (0.2, 0.004),
                   (GATE[1], finest), (DRAIN[0], 0.004), (LENGTH, 0.008))
-    z = get_lines((-DEPTH, 0.015), (-0.03, 0.002), (0.0, 0.2 * finest), (THICKNESS, finest))
+    z = get_lines((-DEPTH, 0.02), (-0.03, 1.5 * finest), (0.0, 0.2 * finest), (THICKNESS, finest))
     surface = int(np.argmin(np.abs(z)))
     number = np.arange(len(x) * len(z)).reshape(len(x), len(z))
     is_gate = (x >= GATE[0] - 1e-9) & (x <= GATE[1] + 1e-9)
@@ -124,7 +124,7 @@ def make_plane(finest):
         devsim.create_device(mesh="plane", device="plane")
 
 
-def get_reference(points, finest=1e-3):
+def get_reference(points, finest=2e-3):
     """Two dimensions: drain currents, and the number of points."""
     make_plane(finest)
     where = {"device": "plane", "region": sim.SILICON}
