@@ -2,16 +2,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # bash Utilities/test_in.sh bookworm|trixie [demo|test|packages] [ARGUMENT...]
 # As root: makes a bare Debian 12 or 13 (debootstrap), copies the sources there, and runs demo.sh in
-# it, or test.sh with the arguments; or makes the Debian packages of what is built there, and installs,
-# uses and removes them in another bare system, RELEASE-packages. The system is the folder $CDM_SYSTEMS_DIR/bookworm or
-# $CDM_SYSTEMS_DIR/trixie, in build/systems if that is not set. It is kept, so a second run installs
-# nothing and builds only what has changed; delete the folder to start from a bare system again.
+# it, or test.sh with the arguments; or makes the Debian packages of what is built there, and
+# installs, uses and removes them in another bare system, RELEASE-packages. The system is the folder
+# $CDM_SYSTEMS_DIR/bookworm or $CDM_SYSTEMS_DIR/trixie, in build/systems if that is not set. It is
+# kept, so a second run installs nothing and builds only what has changed; delete the folder to
+# start from a bare system again.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 release="${1:-}"
 script="${2:-demo}"
 if [[ ! "$release" =~ ^(bookworm|trixie)$ || ! "$script" =~ ^(demo|test|packages)$ ]]; then
-  sed -n '3,8s/^# //p' "$0"
+  sed -n '3,9s/^# //p' "$0"
   exit 2
 fi
 mirror="${CDM_DEBIAN_MIRROR:-http://deb.debian.org/debian}"

@@ -21,8 +21,11 @@
 #include <vtkDataObjectTypes.h>
 #include <vtkDataSet.h>
 #include <vtkDemandDrivenPipeline.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
+#include <vtkIntArray.h>
 #include <vtkMultiProcessController.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
@@ -32,6 +35,7 @@
 #include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 vtkStandardNewMacro(vtkConformingDelaunayMesher);
@@ -62,6 +66,33 @@ void MakeOutputs(const cdm::ConformingMesherOutput& result, vtkPolyData* input,
   {
     vtkCoreBridge::FromUnresolved(result.UnresolvedTriangles, boundary);
   }
+}
+
+/** A number in its range, or nothing for vtkConformingDelaunayMesher::AUTOMATIC. */
+cdm::Status ToChoice(const char* name, double value, double largest, std::optional<double>& choice)
+{
+  if (value == vtkConformingDelaunayMesher::AUTOMATIC)
+  {
+    return {};
+  }
+  if (!(value >= 0.0 && value <= largest))
+  {
+    return cdm::Status::Failure(cdm::StatusCode::InvalidOption,
+      std::string(name) + " is " + std::to_string(value) + ": give a number from 0 " +
+        (largest < VTK_DOUBLE_MAX ? "to " + std::to_string(static_cast<int>(largest)) : "on") +
+        ", or -1 for what the purpose of the mesh asks for.");
+  }
+  choice = value;
+  return {};
+}
+
+/** What the mesh is for, and the longest edge that was asked for. */
+void AddSettings(int purpose, const cdm::MeshSettings& settings, vtkFieldData* data)
+{
+  data->AddArray(vtkCoreBridge::MakeArray<vtkIntArray>(
+    "MeshFor", 1, [purpose](std::size_t) { return purpose; }));
+  data->AddArray(vtkCoreBridge::MakeArray<vtkDoubleArray>(
+    "MaximumEdgeLength", 1, [&settings](std::size_t) { return settings.MaximumEdgeLength; }));
 }
 
 /** Names the point arrays of the input that the mesh does not have: mesh points may lack them. */
@@ -266,29 +297,56 @@ int vtkConformingDelaunayMesher::MeshBlocks(
 }
 
 //--------------------------------------------------------------------------------------------------
+cdm::Status vtkConformingDelaunayMesher::MakeChoices(cdm::MeshOptionChoices& choices) const
+{
+  if (this->Criterion != AUTOMATIC)
+  {
+    choices.Criterion = static_cast<cdm::SurfaceCriterion>(this->Criterion);
+  }
+  if (this->AddSteinerPoints != AUTOMATIC)
+  {
+    choices.AddsSteinerPoints = this->AddSteinerPoints != 0;
+  }
+  if (this->RemoveSlivers != AUTOMATIC)
+  {
+    choices.RemovesSlivers = this->RemoveSlivers != 0;
+  }
+  return ToChoice(
+    "DihedralAngleTarget", this->DihedralAngleTarget, 70.0, choices.DihedralAngleTarget)
+    .Then(
+      [&]
+      {
+        return ToChoice(
+          "RadiusEdgeRatio", this->RadiusEdgeRatio, VTK_DOUBLE_MAX, choices.RadiusEdgeRatio);
+      })
+    .Then(
+      [&]
+      {
+        return ToChoice(
+          "MaximumEdgeLength", this->MaximumEdgeLength, VTK_DOUBLE_MAX, choices.MaximumEdgeLength);
+      });
+}
+
+//--------------------------------------------------------------------------------------------------
 cdm::Status vtkConformingDelaunayMesher::MakeOptions(cdm::ConformingMesherOptions& options) const
 {
+  options.MeshFor = static_cast<cdm::MeshPurpose>(this->MeshFor);
   options.Boundary.MergeTolerance = this->MergeTolerance;
   options.Boundary.MaximumGapEdges = this->MaximumGapEdges;
   options.Boundary.ResolveSelfIntersections = this->ResolveSelfIntersections;
   options.Boundary.Pieces =
     this->KeepInternalPieces ? cdm::ResolvedPieces::All : cdm::ResolvedPieces::OutsideOnly;
-  options.Surface.Criterion = static_cast<cdm::SurfaceCriterion>(this->Criterion);
   options.Surface.StructuralEdges.AccuracyAngle = this->AccuracyAngle;
   options.Surface.MinimumAngle = this->MinimumAngle;
   options.Surface.MaximumArea = this->MaximumArea;
-  options.Surface.MaximumEdgeLength = this->MaximumEdgeLength;
   options.Surface.MeshPointClearanceRatio = this->MeshPointClearanceRatio;
   options.GeneratesMeshPoints = this->GenerateMeshPoints;
   options.MeshPoints.Placement = static_cast<cdm::PointPlacement>(this->Placement);
   options.MeshPoints.Spacing = { this->Spacing[0], this->Spacing[1], this->Spacing[2] };
   options.CloseOpenBoundary = this->CloseOpenBoundary;
-  options.RemovesSlivers = this->RemoveSlivers;
-  options.DihedralAngleTarget = this->DihedralAngleTarget;
-  options.AddsSteinerPoints = this->AddSteinerPoints;
-  options.RadiusEdgeRatio = this->RadiusEdgeRatio;
   options.MaximumVolume = this->MaximumVolume;
-  return vtkCoreBridge::ToLayers(this->Layers, options.MeshPoints.Layers);
+  return this->MakeChoices(options.Choices)
+    .Then([&] { return vtkCoreBridge::ToLayers(this->Layers, options.MeshPoints.Layers); });
 }
 
 //--------------------------------------------------------------------------------------------------
@@ -349,6 +407,7 @@ cdm::Status vtkConformingDelaunayMesher::MeshPolygons(const std::string& prefix,
     {
       MakeOutputs(result, input, cells, givenPoints, mesh, boundary);
       vtkCoreBridge::AddCertificate(result.Certificate, mesh->GetFieldData());
+      AddSettings(this->MeshFor, result.Settings, mesh->GetFieldData());
       WarnOfLostArrays(this, prefix, input, mesh);
       return {};
     });
@@ -358,6 +417,7 @@ cdm::Status vtkConformingDelaunayMesher::MeshPolygons(const std::string& prefix,
 void vtkConformingDelaunayMesher::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "MeshFor: " << this->MeshFor << "\n";
   os << indent << "MergeTolerance: " << this->MergeTolerance << "\n";
   os << indent << "MaximumGapEdges: " << this->MaximumGapEdges << "\n";
   os << indent << "ResolveSelfIntersections: " << this->ResolveSelfIntersections << "\n";

@@ -15,6 +15,12 @@
  *     generated points are free, those of port 1 are not;
  *  6. a check of the result, from the output alone.
  *
+ * MeshFor says what the mesh is for. It decides Criterion, MaximumEdgeLength, AddSteinerPoints,
+ * RemoveSlivers, DihedralAngleTarget and RadiusEdgeRatio (Core/Pipeline/MeshPurpose.h), each as long
+ * as it is AUTOMATIC (-1), its default; what is set counts. The field arrays of the mesh MeshFor
+ * (int) and MaximumEdgeLength (double, model units) have what was used, and the last line of the
+ * certificate has all of it.
+ *
  * Inputs: port 0: vtkPolyData, any list of polygons, optionally with the two-component cell array
  * BoundaryLabels (region ids on the front and back side, -1 outside). Port 1, optional:
  * vtkPointSet, mesh points, beside those that are generated. Port 2, optional: vtkDataSet with the
@@ -69,6 +75,7 @@ class vtkUnstructuredGrid;
 namespace cdm
 {
 struct ConformingMesherOptions;
+struct MeshOptionChoices;
 struct Status;
 } // namespace cdm
 
@@ -78,6 +85,33 @@ public:
   static vtkConformingDelaunayMesher* New();
   vtkTypeMacro(vtkConformingDelaunayMesher, vtkUnstructuredGridAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Purposes
+  {
+    FINITE_VOLUMES = 0,
+    FINITE_ELEMENTS = 1,
+    FEWEST_POINTS = 2
+  };
+
+  /** The value of a property that is as MeshFor asks. */
+  enum
+  {
+    AUTOMATIC = -1
+  };
+
+  ///@{
+  /**
+   * What the mesh is for, one of Purposes. FINITE_VOLUMES: smallest spheres, Steiner points, no
+   * slivers, no negative coupling of the box method. FINITE_ELEMENTS: shapes count, with the
+   * criterion Delaunay. FEWEST_POINTS: the criterion Delaunay, no size, no Steiner points. Default
+   * FINITE_VOLUMES.
+   */
+  vtkSetClampMacro(MeshFor, int, FINITE_VOLUMES, FEWEST_POINTS);
+  vtkGetMacro(MeshFor, int);
+  void SetMeshForToFiniteVolumes() { this->SetMeshFor(FINITE_VOLUMES); }
+  void SetMeshForToFiniteElements() { this->SetMeshFor(FINITE_ELEMENTS); }
+  void SetMeshForToFewestPoints() { this->SetMeshFor(FEWEST_POINTS); }
+  ///@}
 
   /** See vtkDelaunaySurfaceRefiner::Criteria. */
   enum Criteria
@@ -124,8 +158,11 @@ public:
   ///@}
 
   ///@{
-  /** What every boundary triangle has to fulfil, one of Criteria. Default Delaunay. */
-  vtkSetClampMacro(Criterion, int, Delaunay, SmallestSphereAndEdges);
+  /**
+   * What every boundary triangle has to fulfil, one of Criteria or AUTOMATIC: SmallestSphere for
+   * finite volumes, Delaunay otherwise. Default AUTOMATIC.
+   */
+  vtkSetClampMacro(Criterion, int, AUTOMATIC, SmallestSphereAndEdges);
   vtkGetMacro(Criterion, int);
   void SetCriterionToDelaunay() { this->SetCriterion(Delaunay); }
   void SetCriterionToSmallestSphere() { this->SetCriterion(SmallestSphere); }
@@ -162,8 +199,13 @@ public:
   ///@}
 
   ///@{
-  /** Longer boundary edges are split. Model units; default 0: off; range 0 and above. */
-  vtkSetClampMacro(MaximumEdgeLength, double, 0.0, VTK_DOUBLE_MAX);
+  /**
+   * Longer boundary edges are split; with Steiner points those inside, too. Model units; 0: off;
+   * default AUTOMATIC: off for the fewest points and with a sizing input, otherwise a size by the
+   * bounding box and the thinnest region (Core/Sizing/DefaultSize.h); range 0 and above, or
+   * AUTOMATIC.
+   */
+  vtkSetMacro(MaximumEdgeLength, double);
   vtkGetMacro(MaximumEdgeLength, double);
   ///@}
 
@@ -221,34 +263,35 @@ public:
 
   ///@{
   /**
-   * Whether tetrahedra with a dihedral angle below DihedralAngleTarget are to be removed: by
-   * vtkSteinerPointRefiner if AddSteinerPoints is on, otherwise by vtkSliverRemover. Default on.
+   * Whether tetrahedra with a dihedral angle below DihedralAngleTarget are to be removed (0 or 1):
+   * by vtkSteinerPointRefiner if Steiner points are added, otherwise by vtkSliverRemover. Default
+   * AUTOMATIC: yes.
    */
-  vtkSetMacro(RemoveSlivers, bool);
-  vtkGetMacro(RemoveSlivers, bool);
-  vtkBooleanMacro(RemoveSlivers, bool);
+  vtkSetClampMacro(RemoveSlivers, int, AUTOMATIC, 1);
+  vtkGetMacro(RemoveSlivers, int);
+  vtkBooleanMacro(RemoveSlivers, int);
   ///@}
 
   ///@{
   /**
-   * Whether to run vtkSteinerPointRefiner: new points on the boundary and inside until no
+   * Whether to run vtkSteinerPointRefiner (0 or 1): new points on the boundary and inside until no
    * tetrahedron has an edge longer than MaximumEdgeLength or the sizing, is larger than
    * MaximumVolume, has a larger radius-edge ratio or, with RemoveSlivers, a smaller dihedral angle
    * than asked for, but for those at sharp input angles and across thin layers, and until no
    * coupling of the box method is negative. Criterion Delaunay counts as SmallestSphere. Default
-   * off.
+   * AUTOMATIC: not for the fewest points.
    */
-  vtkSetMacro(AddSteinerPoints, bool);
-  vtkGetMacro(AddSteinerPoints, bool);
-  vtkBooleanMacro(AddSteinerPoints, bool);
+  vtkSetClampMacro(AddSteinerPoints, int, AUTOMATIC, 1);
+  vtkGetMacro(AddSteinerPoints, int);
+  vtkBooleanMacro(AddSteinerPoints, int);
   ///@}
 
   ///@{
   /**
-   * Largest ratio of a tetrahedron's circumradius to its shortest edge, with AddSteinerPoints.
-   * Default 1.4; 0: off; range >= 0.
+   * Largest ratio of a tetrahedron's circumradius to its shortest edge, with Steiner points. 0:
+   * off; default AUTOMATIC: 1.4; range 0 and above, or AUTOMATIC.
    */
-  vtkSetClampMacro(RadiusEdgeRatio, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetMacro(RadiusEdgeRatio, double);
   vtkGetMacro(RadiusEdgeRatio, double);
   ///@}
 
@@ -263,10 +306,11 @@ public:
 
   ///@{
   /**
-   * Tetrahedra with a smaller dihedral angle are slivers; with AddSteinerPoints, more than 40 count
-   * as 40. Degrees; default 15; range 0 to 70.
+   * Tetrahedra with a smaller dihedral angle are slivers; with Steiner points, more than 40 count
+   * as 40. Degrees; default AUTOMATIC: 20 for finite elements, otherwise 15; range 0 to 70, or
+   * AUTOMATIC.
    */
-  vtkSetClampMacro(DihedralAngleTarget, double, 0.0, 70.0);
+  vtkSetMacro(DihedralAngleTarget, double);
   vtkGetMacro(DihedralAngleTarget, double);
   ///@}
 
@@ -281,30 +325,32 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  int MeshFor = FINITE_VOLUMES;
   double MergeTolerance = 0.0;
   int MaximumGapEdges = 0;
   bool ResolveSelfIntersections = false;
   bool KeepInternalPieces = false;
-  int Criterion = Delaunay;
+  int Criterion = AUTOMATIC;
   double AccuracyAngle = 0.0;
   double MinimumAngle = 0.0;
   double MaximumArea = 0.0;
-  double MaximumEdgeLength = 0.0;
+  double MaximumEdgeLength = AUTOMATIC;
   bool GenerateMeshPoints = false;
   int Placement = vtkMeshPointGenerator::OCTREE;
   double Spacing[3] = { 0.0, 0.0, 0.0 };
   std::vector<std::array<double, 5>> Layers;
   double MeshPointClearanceRatio = 1e-3;
   bool CloseOpenBoundary = false;
-  bool RemoveSlivers = true;
-  double DihedralAngleTarget = 15.0;
-  bool AddSteinerPoints = false;
-  double RadiusEdgeRatio = 1.4;
+  int RemoveSlivers = AUTOMATIC;
+  double DihedralAngleTarget = AUTOMATIC;
+  int AddSteinerPoints = AUTOMATIC;
+  double RadiusEdgeRatio = AUTOMATIC;
   double MaximumVolume = 0.0;
 
 private:
   int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   int MeshBlocks(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
+  cdm::Status MakeChoices(cdm::MeshOptionChoices& choices) const;
   cdm::Status MakeOptions(cdm::ConformingMesherOptions& options) const;
   /** All stages; prefix comes before the text of warnings. */
   cdm::Status MeshPolygons(const std::string& prefix, vtkPolyData* input, vtkPointSet* givenPoints,

@@ -27,12 +27,13 @@
  *
  * Inputs:
  *  - port 0: vtkUnstructuredGrid of VTK_TETRA only. Cell array RegionId (whole numbers from 0 on);
- *    without it all is region 0. Field array RegionNames (strings, by region id) is optional:
- *    without it regions are called region_0, region_1, ...
+ *    without it all is region 0. Field array RegionNames (texts as the sample
+ *    devices have them, or a vtkStringArray, by region id) is optional: without it regions are
+ *    called region_0, region_1, ...
  *  - port 1 (optional): vtkPolyData, the contacts: triangles that are facets of the mesh's outer
  *    boundary or interfaces (the mesher's second output has them), with the cell array ContactId
  *    (whole numbers; cells with a negative one are passed over). Its field array ContactNames
- *    (strings, by contact id) is optional: without it contacts are called contact_0, contact_1, ...
+ *    (texts, by contact id) is optional: without it contacts are called contact_0, contact_1, ...
  *
  * Guarantees: deterministic; what the file says is what DEVSIM's reader asks for (format 2.2, no
  * data sections): positive numbers, points, triangles and tetrahedra only, a physical group for each

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLayoutExtruder.h"
 
+#include "CoreBridge/ArrayNames.h"
 #include "CoreBridge/Execution.h"
 #include "CoreBridge/Inputs.h"
 #include "CoreBridge/Reports.h"
+#include "CoreBridge/Texts.h"
 #include "Devices/LayeredStructure.h"
 #include "Devices/LayoutOverlay.h"
 #include "Devices/vtkStructureOutput.h"
@@ -377,14 +379,13 @@ int vtkLayoutExtruder::RequestData(
   }
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
   vtkStructureOutput::SetPolygons(boundary, facetIds, output);
-  if (!this->RegionNames.empty())
-  {
-    vtkStructureOutput::AddNames("RegionNames", this->RegionNames, output);
-  }
+  vtkCoreBridge::SetTexts(
+    vtkCoreBridge::RegionNamesName, this->RegionNames, output->GetFieldData());
   if (!this->Contacts.empty())
   {
     vtkStructureOutput::AddIds("ContactId", contactIds, output);
-    vtkStructureOutput::AddNames("ContactNames", this->ContactNames, output);
+    vtkCoreBridge::SetTexts(
+      vtkCoreBridge::ContactNamesName, this->ContactNames, output->GetFieldData());
   }
   return 1;
 }

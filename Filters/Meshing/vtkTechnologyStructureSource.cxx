@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkTechnologyStructureSource.h"
 
+#include "CoreBridge/ArrayNames.h"
+#include "CoreBridge/Texts.h"
 #include "Devices/Device.h"
 #include "Devices/vtkStructureOutput.h"
 
@@ -66,13 +68,14 @@ int vtkTechnologyStructureSource::RequestData(
   }
   vtkStructureOutput::SetPolygons(device.Boundary, device.FacetIds, output);
   vtkStructureOutput::AddIds("ContactId", contactIds, output);
-  vtkStructureOutput::AddNames("RegionNames", device.RegionNames, output);
+  using vtkCoreBridge::SetTexts;
+  SetTexts(vtkCoreBridge::RegionNamesName, device.RegionNames, output->GetFieldData());
   std::vector<std::string> contactNames;
   for (const cdm::Contact& contact : device.Contacts)
   {
     contactNames.push_back(contact.Name);
   }
-  vtkStructureOutput::AddNames("ContactNames", contactNames, output);
+  SetTexts(vtkCoreBridge::ContactNamesName, contactNames, output->GetFieldData());
   return 1;
 }
 

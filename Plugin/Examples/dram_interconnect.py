@@ -23,7 +23,7 @@ def Run(folder):
     wrong = gallery.Report("DRAM interconnect", mesh, THESIS)
     gallery.Save(mesh, os.path.join(folder, "dram_interconnect.vtu"))
     colours = [gallery.OXIDE] + [LINE if name.startswith("WordLine") else BIT_LINE
-                                 for name in gallery.GetRegions(mesh)[1:]]
+                                 for name in gallery.get_texts(mesh, "RegionNames")[1:]]
     conductors = gallery.GetCells(mesh, "RegionId") > 0
     gallery.Draw(os.path.join(folder, "dram_interconnect.png"),
                  ((gallery.Extract(mesh, conductors), colours, True),), DIRECTION, 2.3)

@@ -16,6 +16,7 @@ import sys
 
 import numpy
 from conforming_delaunay import (
+    get_texts,
     vtkConformingDelaunayMesher, vtkDelaunayMeshCriteria, vtkTechnologyStructureSource)
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkIdList
@@ -69,6 +70,7 @@ def MakeMesh(device, length=0.0, sizing=None, points=None):
     asks for; mesh points, however close to the boundary, stay where they are.
     """
     mesher = vtkConformingDelaunayMesher()
+    mesher.SetMeshForToFewestPoints()
     mesher.SetInputConnection(device.GetOutputPort())
     mesher.SetInputData(1, points)
     mesher.SetInputData(2, sizing)
@@ -96,12 +98,6 @@ def GetCells(mesh, name):
     return vtk_to_numpy(mesh.GetCellData().GetArray(name))
 
 
-def GetRegions(mesh):
-    """The names of the regions, by id."""
-    names = mesh.GetFieldData().GetAbstractArray("RegionNames")
-    return [names.GetValue(i) for i in range(names.GetNumberOfValues())]
-
-
 def GetCentroids(mesh):
     """Three columns."""
     points = vtk_to_numpy(mesh.GetPoints().GetData())
@@ -115,7 +111,7 @@ def Report(title, mesh, thesis):
     thesis: pairs of region names (those that begin with a word of a tuple, or None: all) and a
     count (None: none given).
     """
-    names = GetRegions(mesh)
+    names = get_texts(mesh, "RegionNames")
     counts = numpy.bincount(GetCells(mesh, "RegionId"), minlength=len(names))
     wrong = []
     print("%-44s %12s %12s" % (title, "tetrahedra", "thesis"))
@@ -140,7 +136,7 @@ def Report(title, mesh, thesis):
           "tetrahedra)" % (angles[~inevitable].min(), angles.min(), inevitable.sum()))
     if angles[~inevitable].min() < TARGET:
         wrong.append("%d slivers" % (angles[~inevitable] < TARGET).sum())
-    print("  certificate:", summary.GetAbstractArray("Certificate").GetValue(0).replace("\n", "\n    "))
+    print("  certificate:", "\n    ".join(get_texts(mesh, "Certificate")))
     if wrong:
         print("  wrong:", "; ".join(wrong))
     return wrong
@@ -152,7 +148,7 @@ def Compare(title, mesh, faults, limit=None):
     summary = mesh.GetFieldData()
     print("%-44s %12s %12s" % (title, "tetrahedra", "thesis"))
     print("  %-42s %12d %12s" % ("all", number, "-" if limit is None else limit))
-    print("  certificate:", summary.GetAbstractArray("Certificate").GetValue(0).replace("\n", "\n    "))
+    print("  certificate:", "\n    ".join(get_texts(mesh, "Certificate")))
     wrong = ["%d %s" % (summary.GetArray(name).GetValue(0), name) for name in faults
              if summary.GetArray(name).GetValue(0)]
     if limit is not None and number > limit:

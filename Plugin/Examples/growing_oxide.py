@@ -72,6 +72,7 @@ def MakeMesh():
     points.AddLayers(OXIDE, SILICON, 3, 0.25 * PAD, 1.0)
     points.AddLayers(SILICON, OXIDE, 4, 0.25 * SPACING, 1.5)
     mesher = vtkConformingDelaunayMesher()
+    mesher.SetMeshForToFewestPoints()
     mesher.SetInputData(wafer)
     mesher.SetInputConnection(1, points.GetOutputPort())
     mesher.SetCriterionToSmallestSphereAndEdges()

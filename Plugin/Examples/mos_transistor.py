@@ -12,7 +12,7 @@ import os
 import sys
 
 import numpy
-from conforming_delaunay import vtkConformingDelaunayMesher, vtkTechnologyStructureSource
+from conforming_delaunay import get_texts, vtkConformingDelaunayMesher, vtkTechnologyStructureSource
 from paraview.simple import *
 from paraview.simple import _DisableFirstRenderCameraReset
 from vtkmodules.numpy_interface import dataset_adapter
@@ -50,8 +50,7 @@ def MakeMesh():
     mesher.SetInputData(1, MakeLattice(device))
     mesher.SetMaximumEdgeLength(SPACING)
     mesher.Update()
-    array = device.GetOutput().GetFieldData().GetAbstractArray("RegionNames")
-    names = [array.GetValue(i) for i in range(array.GetNumberOfValues())]
+    names = get_texts(device.GetOutput(), "RegionNames")
     print("%d polygons in" % device.GetOutput().GetNumberOfCells())
     return mesher.GetOutputDataObject(0), names
 
@@ -66,9 +65,9 @@ def Report(mesh, names):
     for region, name in enumerate(names):
         inside = data["RegionId"] == region
         print("%-14s %12d %20.12g" % (name, inside.sum(), data["Volume"][inside].sum()))
-    certificate = mesh.GetFieldData().GetAbstractArray("Certificate").GetValue(0)
-    print("verdict:", certificate)
-    return certificate.startswith(("DELAUNAY\n", "CLEAN FOR FINITE VOLUMES\n"))
+    certificate = get_texts(mesh, "Certificate")
+    print("verdict:", "\n".join(certificate))
+    return certificate[0] in ("DELAUNAY", "CLEAN FOR FINITE VOLUMES")
 
 
 def WriteAndDraw(mesh, names, folder):

@@ -16,7 +16,7 @@ import os
 import sys
 
 import numpy
-from conforming_delaunay import vtkConformingDelaunayMesher, vtkMaterialInterfaceExtractor
+from conforming_delaunay import get_texts, vtkConformingDelaunayMesher, vtkMaterialInterfaceExtractor
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_INT
 from vtkmodules.vtkCommonDataModel import vtkImageData
@@ -72,6 +72,7 @@ def MakeMesh(image):
     interfaces.SetInputData(image)
     interfaces.SetMaximumDeviation(DEVIATION)
     mesher = vtkConformingDelaunayMesher()
+    mesher.SetMeshForToFewestPoints()
     mesher.SetInputConnection(interfaces.GetOutputPort())
     mesher.SetCriterionToSmallestSphere()
     mesher.SetMaximumEdgeLength(EDGE)
@@ -146,15 +147,15 @@ def Main(folder):
         print("%-8s %6d voxels %9.3g um^3, %6d tetrahedra %9.3g um^3" % (
             NAMES[region], (materials == region).sum(), (materials == region).sum() * VOXEL**3,
             (regions == region).sum(), volume))
-    certificate = mesh.GetFieldData().GetAbstractArray("Certificate").GetValue(0)
-    print(certificate)
+    certificate = get_texts(mesh, "Certificate")
+    print("\n".join(certificate))
     Draw(image, "Material", os.path.join(folder, "voxel_topography_voxels.png"))
     Draw(mesh, "RegionId", os.path.join(folder, "voxel_topography.png"))
     producer = TrivialProducer()
     producer.GetClientSideObject().SetOutput(mesh)
     # Not appended, ParaView's default: Debian's ParaView 5.11 cannot read its own appended files.
     SaveData(os.path.join(folder, "voxel_topography.vtu"), proxy=producer, DataMode="Binary")
-    return certificate.startswith(("DELAUNAY\n", "CLEAN FOR FINITE VOLUMES\n"))
+    return certificate[0] in ("DELAUNAY", "CLEAN FOR FINITE VOLUMES")
 
 
 if __name__ == "__main__":

@@ -5,6 +5,8 @@ In ParaView, where the plugin has it in the menu Macros: select a mesh, choose C
 filter Delaunay Mesh Criteria, whose output Faults shows what is wrong with the mesh, if anything
 is.
 """
+from urllib.parse import unquote
+
 from paraview.simple import *
 
 
@@ -17,11 +19,13 @@ def Certify(source, view):
     # No cell passes, but the field data do.
     nothing = Threshold(Input=criteria, Scalars=["CELLS", "IsDelaunay"],
                         ThresholdMethod="Below Lower Threshold", LowerThreshold=-1)
-    certificate = servermanager.Fetch(nothing).GetFieldData().GetAbstractArray("Certificate")
+    certificate = servermanager.Fetch(nothing).GetFieldData().GetArray("Certificate")
     Delete(nothing)
     if certificate is None:
         raise RuntimeError("Select tetrahedra: the messages above say what is wrong with this.")
-    text = Text(Text=certificate.GetValue(0).replace("; ", "\n"))
+    lines = [unquote(certificate.GetComponentName(i))
+             for i in range(certificate.GetNumberOfComponents())]
+    text = Text(Text="\n".join(lines).replace("; ", "\n"))
     display = Show(text, view)
     display.WindowLocation = "Upper Left Corner"
     display.Justification = "Left"

@@ -6,6 +6,8 @@ choose Region cut. The half of the mesh in front of a plane across the shortest 
 box goes, in whole tetrahedra, and the camera looks at the cut. The plane can be moved in the
 properties of the clip that the macro makes; there, Show Plane shows it.
 """
+from urllib.parse import unquote
+
 from paraview.simple import *
 
 # By region, and from the start again where there are more regions.
@@ -22,8 +24,13 @@ def GetRegionNames(source, count):
     fields = servermanager.Fetch(nothing).GetFieldData()
     Delete(nothing)
     names = fields.GetAbstractArray("RegionNames")
-    known = names.GetNumberOfValues() if names else 0
-    return [names.GetValue(i) if i < known else "Region %d" % i for i in range(count)]
+    if names is None:
+        texts = []
+    elif names.IsA("vtkStringArray"):
+        texts = [names.GetValue(i) for i in range(names.GetNumberOfValues())]
+    else:
+        texts = [unquote(names.GetComponentName(i)) for i in range(names.GetNumberOfComponents())]
+    return [texts[i] if i < len(texts) else "Region %d" % i for i in range(count)]
 
 
 def ColorByRegion(display, names):

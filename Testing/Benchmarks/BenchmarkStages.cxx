@@ -217,6 +217,7 @@ std::vector<Stage> MakeStages()
       [](const Inputs& inputs)
       {
         auto mesher = vtkSmartPointer<vtkConformingDelaunayMesher>::New();
+        mesher->SetMeshForToFewestPoints();
         mesher->SetInputData(0, inputs.Surface);
         mesher->SetInputData(1, inputs.Points);
         mesher->SetInputData(2, inputs.Sizing);

@@ -32,6 +32,7 @@
 int main(int argc, char* argv[])
 {
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   std::map<std::string, double> options{ { "--criterion", 0.0 }, { "--maximum-volume", 0.0 },
     { "--radius-edge-ratio", mesher->GetRadiusEdgeRatio() },
     { "--dihedral-angle", mesher->GetDihedralAngleTarget() }, { "--remove-slivers", 1.0 } };

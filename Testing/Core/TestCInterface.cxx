@@ -36,6 +36,7 @@ Arrays MakeInput()
     std::vector<double>{ 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 });
   Set(input, "polygon_connectivity", std::vector<int64_t>{ 0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3 });
   Set(input, "polygon_offsets", std::vector<int64_t>{ 0, 3, 6, 9, 12 });
+  Set(input, "mesh_for", std::vector<int64_t>{ 2 });
   return input;
 }
 
@@ -78,7 +79,7 @@ TEST(CInterface, MeshesPolygons)
   EXPECT_EQ(cdmGetValues(output.get(), "nothing", &type, &count, &components), nullptr);
   const int64_t number = cdmGetNumberOfArrays(output.get());
   EXPECT_GT(number, 10);
-  EXPECT_STREQ(cdmGetName(output.get(), 0), "certificate");
+  EXPECT_STREQ(cdmGetName(output.get(), 0), "add_steiner_points");
   EXPECT_EQ(cdmGetName(output.get(), number), nullptr);
 }
 
@@ -113,6 +114,36 @@ TEST(CInterface, RefusesWhatItDoesNotKnow)
   input = MakeInput();
   Set(input, "labels", std::vector<int64_t>{ -1, 0, 1 });
   expect("mesh_polygons", input, "rows of 2");
+}
+
+/** Without any option: what finite volumes ask for; and what was used comes back. */
+TEST(CInterface, OptionsThatAreNotGivenAreAsThePurposeAsks)
+{
+  const auto getReal = [](const Arrays& output, const char* name)
+  {
+    int type = -1;
+    int64_t count = 0;
+    int components = 0;
+    const void* values = cdmGetValues(output.get(), name, &type, &count, &components);
+    return values && type == cdmReal64 && count == 1 ? *static_cast<const double*>(values) : -1.0;
+  };
+  const Arrays input = MakeInput();
+  Set(input, "mesh_for", std::vector<int64_t>{ 0 });
+  Arrays output = MakeArrays();
+  ASSERT_EQ(RunStage("mesh_polygons", input, output), 0) << GetText(output, "error");
+  EXPECT_EQ(GetText(output, "verdict"), "CLEAN FOR FINITE VOLUMES");
+  EXPECT_NE(GetText(output, "settings").find("Mesh for finite volumes: ["), std::string::npos);
+  const double size = getReal(output, "maximum_edge_length");
+  EXPECT_GT(size, 0.0);
+  EXPECT_LT(size, 0.1);
+  Set(input, "maximum_edge_length", std::vector<double>{ 0.5 });
+  output = MakeArrays();
+  ASSERT_EQ(RunStage("mesh_polygons", input, output), 0) << GetText(output, "error");
+  EXPECT_EQ(getReal(output, "maximum_edge_length"), 0.5);
+  Set(input, "mesh_for", std::vector<int64_t>{ 3 });
+  output = MakeArrays();
+  EXPECT_NE(RunStage("mesh_polygons", input, output), 0);
+  EXPECT_NE(GetText(output, "error").find("mesh_for is 3"), std::string::npos);
 }
 
 TEST(CInterface, AbortsAndAsksForSizes)

@@ -62,12 +62,14 @@ TetMesh RunStages(const PolygonSoup& soup, const ConformingMesherOptions& option
   DelaunaySurfaceRefinerInput refinerInput;
   refinerInput.Surface = &clean.Surface;
   DelaunaySurfaceRefinerOutput refined;
-  EXPECT_TRUE(RefineDelaunaySurface(refinerInput, options.Surface, {}, refined).IsOk());
+  DelaunaySurfaceRefinerOptions refinerOptions = options.Surface;
+  refinerOptions.Criterion = options.Choices.Criterion.value();
+  EXPECT_TRUE(RefineDelaunaySurface(refinerInput, refinerOptions, {}, refined).IsOk());
   AdvancingFrontTetrahedralizerInput input;
   input.Surface = &refined.Surface;
   AdvancingFrontTetrahedralizerOutput made;
   EXPECT_TRUE(TetrahedralizeByAdvancingFront(input, {}, {}, made).IsOk());
-  if (!options.AddsSteinerPoints)
+  if (!options.Choices.AddsSteinerPoints.value())
   {
     return made.Mesh;
   }
@@ -77,7 +79,7 @@ TetMesh RunStages(const PolygonSoup& soup, const ConformingMesherOptions& option
   steinerInput.IsFree.assign(made.Mesh.Points.size(), 1);
   std::fill_n(steinerInput.IsFree.begin(), clean.Surface.Points.size(), 0);
   SteinerPointRefinerOptions steinerOptions;
-  steinerOptions.Criterion = options.Surface.Criterion;
+  steinerOptions.Criterion = options.Choices.Criterion.value();
   const std::vector<Id> facets =
     NumberFacets(SortEdgeUses(refined.Surface.Triangles, refined.Surface.Points.size()),
       refined.StructuralEdges);
@@ -104,11 +106,14 @@ TEST(ConformingMesher, EqualsItsStages)
         continue;
       }
       ConformingMesherOptions options;
-      options.RemovesSlivers = false;
+      options.Choices.MaximumEdgeLength = 0.0;
+      options.Choices.Criterion = SurfaceCriterion::Delaunay;
+      options.Choices.AddsSteinerPoints = false;
+      options.Choices.RemovesSlivers = false;
       EXPECT_EQ(Mesh(soup, options).Mesh.Tetrahedra, RunStages(soup, options).Tetrahedra);
-      options.RemovesSlivers = true;
-      options.AddsSteinerPoints = true;
-      options.Surface.Criterion = SurfaceCriterion::SmallestSphere;
+      options.Choices.RemovesSlivers = true;
+      options.Choices.AddsSteinerPoints = true;
+      options.Choices.Criterion = SurfaceCriterion::SmallestSphere;
       const ConformingMesherOutput output = Mesh(soup, options);
       EXPECT_TRUE(output.Certificate.IsDelaunay(1e-6)) << output.Certificate.GetText();
       const TetMesh expected = RunStages(soup, options);
@@ -153,7 +158,8 @@ TEST(ConformingMesher, LimitsAreSaid)
 {
   const PolygonSoup cube = MakeCube();
   ConformingMesherOptions options;
-  options.Surface.MaximumEdgeLength = 0.1;
+  options.MeshFor = MeshPurpose::FewestPoints;
+  options.Choices.MaximumEdgeLength = 0.1;
   EXPECT_TRUE(Mesh(cube, options).Warnings.empty());
   options.Surface.MaximumNewPoints = 20;
   ConformingMesherOutput output = Mesh(cube, options);
@@ -173,9 +179,9 @@ TEST(ConformingMesher, AbortsAtAnyTimeAndNamesItsStages)
   ConformingMesherInput input;
   input.Polygons = &cube;
   ConformingMesherOptions options;
-  options.Surface.MaximumEdgeLength = 0.2;
+  options.Choices.MaximumEdgeLength = 0.2;
   options.GeneratesMeshPoints = true;
-  options.AddsSteinerPoints = true;
+  options.Choices.AddsSteinerPoints = true;
   double last = 0.0;
   double end = 2.0;
   std::string text;
@@ -210,8 +216,8 @@ TEST(ConformingMesher, PointsHaveAHistory)
 {
   const PolygonSoup cube = MakeCube();
   ConformingMesherOptions options;
-  options.Surface.MaximumEdgeLength = 0.3;
-  options.AddsSteinerPoints = true;
+  options.Choices.MaximumEdgeLength = 0.3;
+  options.Choices.AddsSteinerPoints = true;
   const ConformingMesherOutput output = Mesh(cube, options);
   const PointHistory& history = output.Points;
   ASSERT_TRUE(history.HasBefore);
@@ -248,8 +254,8 @@ TEST(ConformingMesher, ArithmeticOfTheCallerDoesNotMatter)
 {
   const PolygonSoup soup = MakeCube();
   ConformingMesherOptions options;
-  options.Surface.MaximumEdgeLength = 0.3;
-  options.AddsSteinerPoints = true;
+  options.Choices.MaximumEdgeLength = 0.3;
+  options.Choices.AddsSteinerPoints = true;
   const ConformingMesherOutput expected = Mesh(soup, options);
   const auto check = [&](const char* what)
   {

@@ -7,16 +7,15 @@
 #ifndef DeviceBoundary_h
 #define DeviceBoundary_h
 
+#include "FilterTesting.h"
 #include "vtkTechnologyStructureSource.h"
 
 #include <vtkCellData.h>
-#include <vtkFieldData.h>
 #include <vtkIdList.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
-#include <vtkStringArray.h>
 
 #include <gtest/gtest.h>
 
@@ -62,9 +61,8 @@ inline Boundary GetBoundary(vtkTechnologyStructureSource* source)
   Boundary boundary;
   auto* labels = vtkIntArray::SafeDownCast(output->GetCellData()->GetArray("BoundaryLabels"));
   auto* facets = vtkIntArray::SafeDownCast(output->GetCellData()->GetArray("FacetId"));
-  auto* names =
-    vtkStringArray::SafeDownCast(output->GetFieldData()->GetAbstractArray("RegionNames"));
-  if (!labels || !facets || !names)
+  boundary.RegionNames = testing_filters::GetTexts(output, "RegionNames");
+  if (!labels || !facets || boundary.RegionNames.empty())
   {
     ADD_FAILURE() << "arrays are missing";
     return boundary;
@@ -90,10 +88,6 @@ inline Boundary GetBoundary(vtkTechnologyStructureSource* source)
     boundary.Polygons.emplace_back(first, first + ids->GetNumberOfIds());
     boundary.Labels.push_back({ labels->GetTypedComponent(i, 0), labels->GetTypedComponent(i, 1) });
     boundary.FacetIds.push_back(facets->GetValue(i));
-  }
-  for (vtkIdType i = 0; i < names->GetNumberOfValues(); ++i)
-  {
-    boundary.RegionNames.push_back(names->GetValue(i));
   }
   return boundary;
 }

@@ -16,6 +16,7 @@
 #include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkExecutive.h>
+#include <vtkFieldData.h>
 #include <vtkIdTypeArray.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
@@ -315,6 +316,23 @@ inline void ExpectLinear(vtkPointSet* output, double tolerance = 1e-12)
 }
 
 /** Sum of the signed volumes of the tetrahedra of a region (-1: of all). */
+/** Those of a field array: the names of its components, percent-encoded. */
+inline std::vector<std::string> GetTexts(vtkDataObject* data, const char* name)
+{
+  std::vector<std::string> texts;
+  vtkDataArray* array = data->GetFieldData()->GetArray(name);
+  for (int i = 0; array && i < array->GetNumberOfComponents(); ++i)
+  {
+    std::string text = array->GetComponentName(i) ? array->GetComponentName(i) : "";
+    for (std::size_t at = text.find('%'); at != std::string::npos; at = text.find('%', at + 1))
+    {
+      text.replace(at, 3, 1, static_cast<char>(std::stoi(text.substr(at + 1, 2), nullptr, 16)));
+    }
+    texts.push_back(text);
+  }
+  return texts;
+}
+
 inline double GetVolume(vtkUnstructuredGrid* grid, int region = -1)
 {
   vtkDataArray* regions = grid->GetCellData()->GetArray("RegionId");

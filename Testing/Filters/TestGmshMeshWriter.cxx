@@ -8,6 +8,8 @@
 #include <vtkErrorCode.h>
 #include <vtkFieldData.h>
 #include <vtkStringArray.h>
+#include <vtkXMLUnstructuredGridReader.h>
+#include <vtkXMLUnstructuredGridWriter.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -206,6 +208,7 @@ TEST(GmshMeshWriter, DeviceWithNames)
     MakeNames("RegionNames", { "Bulk", "gate oxide", "Gate", "1st spacer", "1st spacer" }));
   named->SetFieldData(names);
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputData(named);
   mesher->SetMaximumEdgeLength(0.2);
   vtkNew<vtkGmshMeshWriter> writer;
@@ -243,6 +246,38 @@ TEST(GmshMeshWriter, DeviceWithNames)
   EXPECT_EQ(6, file.GetNumber("Bulk_gate_oxide")) << "the first interface";
   // 0.8 x 0.3 micrometres.
   EXPECT_NEAR(0.24, file.GetArea(file.GetNumber("Bulk_zmin")), 1e-12);
+}
+
+TEST(GmshMeshWriter, NamesOutliveTheWritersOfVtk)
+{
+  // What XML and the encoding stand on, and an umlaut; a name may be empty.
+  const std::vector<std::string> odd = { "Si & \"Ge\" <30%>", "", "100%25", "\xc3\xbc\n'" };
+  vtkNew<vtkTechnologyStructureSource> device;
+  device->Update();
+  device->GetOutput()->GetFieldData()->AddArray(MakeNames("RegionNames", odd));
+  vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
+  mesher->SetInputData(device->GetOutput());
+  vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  writer->SetInputConnection(mesher->GetOutputPort());
+  writer->WriteToOutputStringOn();
+  writer->Write();
+  EXPECT_FALSE(Contains(writer->GetOutputString(), "\"String\"")) << "other readers refuse it";
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->ReadFromInputStringOn();
+  reader->SetInputString(writer->GetOutputString());
+  vtkNew<vtkGmshMeshWriter> gmsh;
+  gmsh->SetInputConnection(reader->GetOutputPort());
+  gmsh->SetFileName(FileName.c_str());
+  ASSERT_EQ(1, gmsh->Write());
+  const GmshFile file = Read(FileName);
+  for (const char* name : { "Si____Ge___30__", "region_1", "n100_25", "n____" })
+  {
+    EXPECT_EQ(3, file.Dimensions.at(file.GetNumber(name))) << name;
+  }
+  EXPECT_EQ(GetTexts(reader->GetOutput(), "Certificate").at(0), "DELAUNAY");
+  std::vector<std::string> read = GetTexts(reader->GetOutput(), "RegionNames");
+  EXPECT_EQ(read, odd);
 }
 
 namespace
@@ -286,6 +321,7 @@ TEST(GmshMeshWriter, ContactsKeepTheirNamesAndChangeNoOthers)
       return bounds[0] == bounds[1] && bounds[0] == 1.0 ? 1 : bounds[0] == 3.0 ? 0 : -1;
     });
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputData(boxes);
   mesher->SetMaximumEdgeLength(0.5);
   const auto boundary = NameContacts(mesher, { "region_3_region_7", "source-contact" });
@@ -383,6 +419,7 @@ TEST(GmshMeshWriter, GmshAcceptsIt)
   vtkNew<vtkTechnologyStructureSource> device;
   device->SetStructureToViaPlug();
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputConnection(device->GetOutputPort());
   vtkNew<vtkGmshMeshWriter> writer;
   writer->SetInputConnection(mesher->GetOutputPort());
@@ -399,6 +436,7 @@ TEST(GmshMeshWriter, GmshAcceptsIt)
 TEST(GmshMeshWriter, BadInputAndFiles)
 {
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputData(MakeCube());
   vtkNew<vtkGmshMeshWriter> writer;
   vtkNew<EventRecorder> recorder;

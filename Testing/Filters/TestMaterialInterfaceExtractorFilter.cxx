@@ -98,6 +98,7 @@ void ExpectNear(const Volumes& volumes, const Volumes& expected, double toleranc
 void ExpectMesh(vtkMaterialInterfaceExtractor* extractor, const Volumes& expected)
 {
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   vtkNew<EventRecorder> recorder;
   recorder->Watch(mesher);
   mesher->SetInputConnection(extractor->GetOutputPort());

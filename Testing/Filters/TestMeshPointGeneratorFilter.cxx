@@ -159,6 +159,7 @@ TEST(MeshPointGeneratorFilter, MakesVerticesWithRegions)
   }
   // Its points are good for the mesher: it drops none.
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputData(MakeTwoBoxes(true));
   mesher->SetInputConnection(1, run.Generator->GetOutputPort());
   vtkNew<EventRecorder> recorder;
@@ -198,6 +199,7 @@ TEST(MeshPointGeneratorFilter, EdgesFollowASizingOfOneToThousand)
     run.Generator->SetTemplate(kind);
     run.Run();
     vtkNew<vtkConformingDelaunayMesher> mesher;
+    mesher->SetMeshForToFewestPoints();
     mesher->SetInputData(MakeCube());
     mesher->SetInputConnection(1, run.Generator->GetOutputPort());
     mesher->SetInputData(2, grid);

@@ -21,6 +21,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(
 {
   auto boxes = MakeTwoBoxes(true);
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputData(boxes);
   mesher->SetMaximumEdgeLength(spacing);
   mesher->Update();

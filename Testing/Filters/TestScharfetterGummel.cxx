@@ -116,6 +116,7 @@ Bulk MakeBulk(double spacing)
     }
   }
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputConnection(device->GetOutputPort());
   mesher->SetInputData(1, MakePoints(lattice));
   mesher->SetMaximumEdgeLength(spacing);

@@ -96,6 +96,7 @@ TEST(SliverRemoverFilter, TakesTheCertificateAway)
   vtkNew<vtkTechnologyStructureSource> device;
   device->SetStructureToMosTransistor();
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputConnection(device->GetOutputPort());
   vtkNew<vtkSliverRemover> remover;
   remover->SetInputConnection(mesher->GetOutputPort());
@@ -223,6 +224,7 @@ TEST(SliverRemoverFilter, MovesBoundaryPointsInTheirFacets)
   SurfaceBuilder builder;
   builder.AddBox({ 0, 0, 0 }, { 1, 1, 0.2 });
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputData(builder.Build());
   mesher->SetCriterionToSmallestSphereAndEdges();
   mesher->SetMaximumEdgeLength(0.22);

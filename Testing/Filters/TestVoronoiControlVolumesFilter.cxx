@@ -17,6 +17,7 @@ namespace
 vtkSmartPointer<vtkConformingDelaunayMesher> RunMesher(vtkPolyData* surface, double edgeLength)
 {
   auto mesher = vtkSmartPointer<vtkConformingDelaunayMesher>::New();
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputData(surface);
   mesher->SetMaximumEdgeLength(edgeLength);
   mesher->SetCriterionToSmallestSphereAndEdges();

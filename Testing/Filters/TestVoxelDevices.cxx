@@ -100,6 +100,7 @@ void ExpectAllThatWasAskedFor(const VoxelDevice& device, double angle)
          vtkConformingDelaunayMesher::SmallestSphereAndEdges })
   {
     vtkNew<vtkConformingDelaunayMesher> mesher;
+    mesher->SetMeshForToFewestPoints();
     mesher->SetInputConnection(turned->GetOutputPort());
     mesher->SetCriterion(criterion);
     mesher->AddSteinerPointsOn();

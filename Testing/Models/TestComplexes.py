@@ -46,6 +46,7 @@ def mesh(path, criterion, has_steiner_points):
     reader = vtkXMLPolyDataReader()
     reader.SetFileName(path)
     mesher = vtkConformingDelaunayMesher()
+    mesher.SetMeshForToFewestPoints()
     mesher.SetInputConnection(reader.GetOutputPort())
     mesher.SetCriterion(criterion)
     mesher.SetAddSteinerPoints(has_steiner_points)

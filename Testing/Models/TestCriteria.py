@@ -51,6 +51,7 @@ def ReadSurface(path):
 
 def MakeMesh(surface, **options):
     mesher = vtkConformingDelaunayMesher()
+    mesher.SetMeshForToFewestPoints()
     mesher.SetInputData(surface)
     mesher.SetCriterionToSmallestSphereAndEdges()
     for name, value in options.items():

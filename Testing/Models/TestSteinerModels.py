@@ -48,6 +48,7 @@ def mesh(path, are_edges_empty):
     reader = vtkXMLPolyDataReader()
     reader.SetFileName(path)
     mesher = vtkConformingDelaunayMesher()
+    mesher.SetMeshForToFewestPoints()
     mesher.SetInputConnection(reader.GetOutputPort())
     if are_edges_empty:
         mesher.SetCriterionToSmallestSphereAndEdges()

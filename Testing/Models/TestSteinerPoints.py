@@ -41,6 +41,7 @@ EDGES = ("EdgeSphereViolations", "OpenControlVolumes")
 
 def mesh(surface, volume, criterion):
     mesher = vtkConformingDelaunayMesher()
+    mesher.SetMeshForToFewestPoints()
     mesher.SetInputData(surface)
     mesher.SetCriterion(criterion)
     mesher.AddSteinerPointsOn()

@@ -107,6 +107,7 @@ std::vector<vtkDataSet*> GetLeaves(vtkDataObject* output, std::size_t count)
 std::vector<CellKey<4>> MeshAlone(vtkPolyData* polygons, vtkPolyData* meshPoints, double edge)
 {
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputData(polygons);
   mesher->SetInputData(1, meshPoints);
   mesher->SetMaximumEdgeLength(edge);
@@ -147,6 +148,7 @@ TEST(ConformingDelaunayBlocks, AreMeshedOnAllProcesses)
     for (bool isSpread : { true, false })
     {
       vtkNew<vtkConformingDelaunayMesher> mesher;
+      mesher->SetMeshForToFewestPoints();
       mesher->SetInputDataObject(MakeInput(models, isCollection, isSpread));
       mesher->SetMaximumEdgeLength(0.5);
       vtkNew<EventRecorder> recorder;
@@ -185,6 +187,7 @@ TEST(ConformingDelaunayBlocks, GetMeshPointsOfAnyProcess)
   const auto models = MakeModels();
   const auto points = MakePoints({ { 0.5, 0.4, 0.6 }, { 20.9, 1.1, 1.2 }, { 10.5, 0.5, 0.4 } });
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputDataObject(MakeInput(models, true));
   mesher->SetMaximumEdgeLength(0.5);
   vtkNew<vtkPolyData> nothing;
@@ -215,6 +218,7 @@ TEST(ConformingDelaunayBlocks, PiecesOfABlockAreOneSurface)
     }
   }
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   mesher->SetInputDataObject(input);
   mesher->UpdatePiece(GetRank(), GetSize(), 0);
   const auto leaves = GetLeaves(mesher->GetOutputDataObject(0), 1);
@@ -232,6 +236,7 @@ TEST(ConformingDelaunayBlocks, AnErrorNamesTheBlockAndEndsAll)
     auto models = MakeModels();
     models[3] = MakeCubeWithNaN();
     vtkNew<vtkConformingDelaunayMesher> mesher;
+    mesher->SetMeshForToFewestPoints();
     mesher->SetInputDataObject(MakeInput(models, isCollection));
     vtkNew<EventRecorder> recorder;
     recorder->Watch(mesher);
@@ -252,6 +257,7 @@ TEST(ConformingDelaunayBlocks, AnErrorNamesTheBlockAndEndsAll)
 TEST(ConformingDelaunayBlocks, OtherDataAreRefused)
 {
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   vtkNew<vtkPartitionedDataSetCollection> grids;
   vtkNew<vtkUnstructuredGrid> grid;
   grids->SetPartition(0, 0, grid);
@@ -281,6 +287,7 @@ TEST(ConformingDelaunayBlocks, OtherDataAreRefused)
 TEST(ConformingDelaunayBlocks, ASimpleInputStillHasASimpleOutput)
 {
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   EXPECT_NE(mesher->GetOutput(), nullptr);
   mesher->SetInputDataObject(MakeInput(MakeModels(), true));
   mesher->UpdatePiece(GetRank(), GetSize(), 0);
@@ -294,6 +301,7 @@ TEST(ConformingDelaunayBlocks, ASimpleInputStillHasASimpleOutput)
 TEST(ConformingDelaunayBlocks, AbortOfOneProcessEndsAll)
 {
   vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
   vtkNew<EventRecorder> recorder;
   recorder->Watch(mesher);
   recorder->AbortAt = GetRank() == 0 ? 0.05 : 2.0;

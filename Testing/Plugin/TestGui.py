@@ -61,7 +61,7 @@ with tempfile.TemporaryDirectory() as folder:
         os.path.join(folder, "State.png"),
         ImageComparison.GetBaseline("RegionCut.png"))
     assert difference is None, difference
-    for name, expected in (("undone", [0.0, 0.0]), ("redone", [1.0, 0.0005])):
+    for name, expected in (("undone", [-1.0, 0.0]), ("redone", [1.0, 0.0005])):
         found = GetOptions(os.path.join(folder, name + ".pvsm"))
         assert found == expected, (name, found)
     if "CDM_HAS_CLIENT_PART" in os.environ:

@@ -138,7 +138,8 @@ def CheckExample():
     AssignViewToLayout(view=view, layout=CreateLayout(name="Layout"))
     device = TechnologyStructureSource(registrationName="Device")
     mesher = ConformingDelaunayMesher(registrationName="Mesher", Input=device,
-                                      MaximumEdgeLength=0.06, GenerateMeshPoints=1)
+                                      MeshFor="Fewest points", MaximumEdgeLength=0.06,
+                                      GenerateMeshPoints=1)
     SetActiveSource(mesher)
     runpy.run_path(os.path.join(MACROS, "region_cut.py"), run_name="__vtkconsole__")
     if os.environ.get("CDM_UPDATE_BASELINES") == "1":

@@ -4,20 +4,21 @@
 import numpy
 
 import Scene
-from conforming_delaunay import vtkConformingDelaunayMesher
+from conforming_delaunay import get_texts, vtkConformingDelaunayMesher
 
 
 def Mesh(device, length, meshPoints=None):
     """The tetrahedra of a device; they have passed the filter's own check and this one."""
     mesher = vtkConformingDelaunayMesher()
+    mesher.SetMeshForToFewestPoints()
     mesher.SetInputConnection(device.GetOutputPort())
     mesher.SetInputData(1, meshPoints)
     mesher.SetMaximumEdgeLength(length)
     mesher.Update()
     mesh = mesher.GetOutputDataObject(0)
-    certificate = mesh.GetFieldData().GetAbstractArray("Certificate").GetValue(0)
-    print(certificate)
-    assert certificate.startswith("DELAUNAY\n"), certificate
+    certificate = get_texts(mesh, "Certificate")
+    print("\n".join(certificate))
+    assert certificate[0] == "DELAUNAY", certificate
 
     volumes = Scene.GetVolumes(mesh)
     assert (volumes > 0.0).all(), "%d tetrahedra are inverted or flat" % (volumes <= 0.0).sum()

@@ -2,7 +2,7 @@
 """The table in Data/README.md is that of the files in Data: names, sizes, checksums.
 
 With CDM_UPDATE_BASELINES=1 in the environment the sizes and checksums of the table become those of
-the files; origins and units of new files other than baselines are to be filled in by hand.
+the files; origins and units of new files in Input are to be filled in by hand.
 """
 
 import hashlib
@@ -31,7 +31,11 @@ def GetFiles():
 
 
 def GetOrigin(name):
-    """The test that draws a baseline."""
+    """The test that draws a baseline or makes a reference; None: the table says it."""
+    if name.startswith("References/"):
+        return "made by `Testing/References/TestStages.py`"
+    if not name.startswith("Baselines/"):
+        return None
     # The manual's pictures are named in its pages, not in the test.
     if re.match(r"Baselines/(VTK\d\.\d/)?(Page|Tutorial)\w+\.png$", name):
         return "drawn by `Testing/Plugin/TestDocumentation.py`"
@@ -48,6 +52,13 @@ def GetOrigin(name):
     sys.exit("no test draws Data/%s" % name)
 
 
+def GetUnits(name):
+    """Of coordinates; None: the table says it."""
+    if name.startswith("References/"):
+        return "of the input"
+    return "pixels" if name.startswith("Baselines/") else None
+
+
 with open(README, encoding="utf-8") as readme:
     text = readme.read()
 rows = {name: (origin, units, int(size), checksum)
@@ -57,10 +68,9 @@ files = GetFiles()
 if os.environ.get("CDM_UPDATE_BASELINES") == "1":
     table = ""
     for name, (size, checksum) in sorted(files.items()):
-        isBaseline = name.startswith("Baselines/")
         origin, units = rows.get(name, (None, None))[:2]
-        origin = GetOrigin(name) if isBaseline else origin or "unknown"
-        units = "pixels" if isBaseline else units or "unknown"
+        origin = GetOrigin(name) or origin or "unknown"
+        units = GetUnits(name) or units or "unknown"
         table += "| `%s` | %s | %s | %d | `%s` |\n" % (name, origin, units, size, checksum)
     begin = text.index(HEAD) + len(HEAD)
     end = text.find("\n\n", begin - 1)
@@ -76,7 +86,7 @@ for name in files.keys() & rows.keys():
         faults.append("%s: %s in the table, but %s" % (name, rows[name][2:], files[name]))
     if "unknown" in rows[name][:2]:
         faults.append("%s: of unknown origin or units" % name)
-    if name.startswith("Baselines/") and rows[name][0] != GetOrigin(name):
+    if GetOrigin(name) not in (None, rows[name][0]):
         faults.append("%s: has another origin" % name)
 print("\n".join(sorted(faults)) or "%d files are as in Data/README.md" % len(files))
 sys.exit(1 if faults or not files else 0)

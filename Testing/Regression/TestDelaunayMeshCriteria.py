@@ -13,6 +13,7 @@ RED = (0.75, 0.08, 0.12)
 
 device = Scene.MakeViaPlug()
 mesher = vtkConformingDelaunayMesher()
+mesher.SetMeshForToFewestPoints()
 mesher.SetInputConnection(device.GetOutputPort())
 mesher.SetMaximumEdgeLength(0.3)
 criteria = vtkDelaunayMeshCriteria()

@@ -9,6 +9,7 @@ from vtkmodules.vtkCommonDataModel import VTK_POLYHEDRON
 
 device = Scene.MakeMosTransistor()
 mesher = vtkConformingDelaunayMesher()
+mesher.SetMeshForToFewestPoints()
 mesher.SetInputConnection(device.GetOutputPort())
 mesher.SetInputData(1, Scene.MakeMeshPoints(spacing=0.1))
 mesher.SetMaximumEdgeLength(0.1)

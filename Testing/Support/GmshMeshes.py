@@ -25,6 +25,7 @@ def MeshBoundary(surface):
         ids.InsertNextValue(i)
     named.GetCellData().AddArray(ids)
     mesher = vtkConformingDelaunayMesher()
+    mesher.SetMeshForToFewestPoints()
     mesher.SetInputData(named)
     mesher.Update()
     return mesher.GetOutputDataObject(1)

@@ -57,40 +57,36 @@ void InputReader::Read(const char* name, bool& value)
   value = read != 0;
 }
 
-void InputReader::Read(const char* name, double& value, double low, double high)
+template <class Number>
+void InputReader::ReadNumber(
+  const char* name, const char* kind, Number& value, Number low, Number high)
 {
-  const std::vector<double>* const values = this->Find<double>(name, "a real number");
+  const std::vector<Number>* const values = this->Find<Number>(name, kind);
   if (!values)
   {
     return;
   }
   if (values->size() != 1 || !(values->front() >= low && values->front() <= high))
   {
+    const bool isBounded = high < std::numeric_limits<Number>::max();
     this->Fail(std::string(name) + " is " +
       (values->size() == 1 ? ToText(values->front()) : "not one number") +
       ": it has to be at least " + ToText(low) +
-      (std::isfinite(high) ? " and at most " + ToText(high) : std::string()) + ".");
+      (isBounded ? " and at most " + ToText(high) : std::string()) + ".");
     return;
   }
   value = values->front();
 }
 
+void InputReader::Read(const char* name, double& value, double low, double high)
+{
+  this->ReadNumber(name, "a real number", value, low, high);
+}
+
 void InputReader::ReadInteger(
   const char* name, std::int64_t& value, std::int64_t low, std::int64_t high)
 {
-  const std::vector<std::int64_t>* const values = this->Find<std::int64_t>(name, "a whole number");
-  if (!values)
-  {
-    return;
-  }
-  if (values->size() != 1 || values->front() < low || values->front() > high)
-  {
-    this->Fail(std::string(name) + " is " +
-      (values->size() == 1 ? ToText(values->front()) : "not one number") +
-      ": it has to be at least " + ToText(low) + " and at most " + ToText(high) + ".");
-    return;
-  }
-  value = values->front();
+  this->ReadNumber(name, "a whole number", value, low, high);
 }
 
 void InputReader::Read(const char* name, std::vector<double>& values)

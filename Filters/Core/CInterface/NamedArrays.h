@@ -97,6 +97,9 @@ public:
   Status Finish();
 
 private:
+  /** Reads one number between two bounds. */
+  template <class Number>
+  void ReadNumber(const char* name, const char* kind, Number& value, Number low, Number high);
   void ReadInteger(const char* name, std::int64_t& value, std::int64_t low, std::int64_t high);
   bool CheckSize(const char* name, std::size_t count, std::size_t components);
   template <class T>
@@ -116,7 +119,7 @@ public:
   void Write(const std::string& name, double value);
   void Write(const std::string& name, std::int64_t value);
   void Write(const std::string& name, std::string text);
-  /** Of numbers, arrays of ids, points or pairs of regions. */
+  /** Hands out a vector of numbers, of arrays of ids, of points or of pairs of regions. */
   template <class T, class Allocator>
   void Write(const std::string& name, std::vector<T, Allocator> values)
   {

@@ -12,6 +12,7 @@
 
 #include <limits>
 #include <numeric>
+#include <optional>
 
 namespace cdm
 {
@@ -38,16 +39,22 @@ void ReadOptions(InputReader& reader, StructuralEdgeOptions& options)
   reader.Read("flatness_ratio", options.FlatnessRatio, 0.0, 1.0);
 }
 
-void ReadOptions(InputReader& reader, DelaunaySurfaceRefinerOptions& options)
+/** Limits of the surface but for the criterion and the maximum edge length. */
+void ReadLimits(InputReader& reader, DelaunaySurfaceRefinerOptions& options)
 {
-  reader.Read("criterion", options.Criterion, 0, 2);
   reader.Read("minimum_angle", options.MinimumAngle, 0.0, 30.0);
   reader.Read("maximum_area", options.MaximumArea, 0.0, Infinity);
-  reader.Read("maximum_edge_length", options.MaximumEdgeLength, 0.0, Infinity);
   reader.Read("mesh_point_clearance_ratio", options.MeshPointClearanceRatio, 0.0, 1.0);
   reader.Read("minimum_edge_ratio", options.MinimumEdgeRatio, 0.0, 1.0);
   reader.Read("maximum_new_points", options.MaximumNewPoints, 0, LargestId);
   ReadOptions(reader, options.StructuralEdges);
+}
+
+void ReadOptions(InputReader& reader, DelaunaySurfaceRefinerOptions& options)
+{
+  reader.Read("criterion", options.Criterion, 0, 2);
+  reader.Read("maximum_edge_length", options.MaximumEdgeLength, 0.0, Infinity);
+  ReadLimits(reader, options);
 }
 
 void ReadOptions(InputReader& reader, MeshPointGeneratorOptions& options)
@@ -87,17 +94,32 @@ void ReadOptions(InputReader& reader, SteinerPointRefinerOptions& options)
   ReadOptions(reader, options.StructuralEdges);
 }
 
+/** What is not there stays without a value. */
+template <class T, class... Range>
+void ReadChoice(InputReader& reader, const char* name, std::optional<T>& choice, Range... range)
+{
+  if (reader.Has(name))
+  {
+    choice.emplace();
+    reader.Read(name, *choice, range...);
+  }
+}
+
 void ReadOptions(InputReader& reader, ConformingMesherOptions& options)
 {
   ReadOptions(reader, options.Boundary);
-  ReadOptions(reader, options.Surface);
+  ReadLimits(reader, options.Surface);
   ReadOptions(reader, options.MeshPoints);
+  reader.Read("mesh_for", options.MeshFor, 0, NumberOfMeshPurposes - 1);
+  MeshOptionChoices& choices = options.Choices;
+  ReadChoice(reader, "criterion", choices.Criterion, 0, 2);
+  ReadChoice(reader, "add_steiner_points", choices.AddsSteinerPoints);
+  ReadChoice(reader, "remove_slivers", choices.RemovesSlivers);
+  ReadChoice(reader, "dihedral_angle_target", choices.DihedralAngleTarget, 0.0, 70.0);
+  ReadChoice(reader, "radius_edge_ratio", choices.RadiusEdgeRatio, 0.0, Infinity);
+  ReadChoice(reader, "maximum_edge_length", choices.MaximumEdgeLength, 0.0, Infinity);
   reader.Read("generate_mesh_points", options.GeneratesMeshPoints);
   reader.Read("close_open_boundary", options.CloseOpenBoundary);
-  reader.Read("remove_slivers", options.RemovesSlivers);
-  reader.Read("dihedral_angle_target", options.DihedralAngleTarget, 0.0, 70.0);
-  reader.Read("add_steiner_points", options.AddsSteinerPoints);
-  reader.Read("radius_edge_ratio", options.RadiusEdgeRatio, 0.0, Infinity);
   reader.Read("maximum_volume", options.MaximumVolume, 0.0, Infinity);
 }
 
@@ -245,21 +267,33 @@ void Write(OutputWriter& writer, const std::vector<StructuralEdge>& edges)
   writer.Write("edge_angles", std::move(angles));
 }
 
+void Write(OutputWriter& writer, const MeshSettings& settings)
+{
+  writer.Write("criterion", static_cast<std::int64_t>(settings.Criterion));
+  writer.Write("add_steiner_points", static_cast<std::int64_t>(settings.AddsSteinerPoints));
+  writer.Write("remove_slivers", static_cast<std::int64_t>(settings.RemovesSlivers));
+  writer.Write("dihedral_angle_target", settings.DihedralAngleTarget);
+  writer.Write("radius_edge_ratio", settings.RadiusEdgeRatio);
+  writer.Write("maximum_edge_length", settings.MaximumEdgeLength);
+}
+
 void Write(OutputWriter& writer, const MeshCertificate& certificate)
 {
   writer.Write("certificate", certificate.GetText());
   writer.Write("verdict", std::string(certificate.GetVerdictName()));
   writer.Write("reasons", certificate.GetReasons());
+  writer.Write("settings", certificate.Settings);
   writer.Write("smallest_dihedral_angle", certificate.SmallestDihedralAngle);
   writer.Write("largest_dihedral_angle", certificate.LargestDihedralAngle);
   writer.Write("volume_error", certificate.LargestVolumeError);
   writer.Write(
     "fault_counts", std::vector<Id>(certificate.Faults.begin(), certificate.Faults.end()));
-  std::vector<EdgeIds> flat;
+  writer.Write("smallest_volume_ratio", certificate.SmallestVolumeRatio);
+  std::vector<TriangleIds> flat;
   for (const FlatterTetrahedra& under :
     { certificate.Under5Degrees, certificate.Under10Degrees, certificate.Under15Degrees })
   {
-    flat.push_back({ under.Count, under.BetweenBoundaries });
+    flat.push_back({ under.Count, under.AtSharpAngles, under.AcrossLayers });
   }
   writer.Write("flat_tetrahedra", std::move(flat));
   std::vector<Id> regions;
@@ -274,16 +308,6 @@ void Write(OutputWriter& writer, const MeshCertificate& certificate)
   writer.Write("region_ids", std::move(regions));
   writer.Write("region_volumes", std::move(volumes));
   writer.Write("region_unsigned_box_ratios", std::move(ratios));
-}
-
-std::vector<char> ToFaults(const std::vector<SteinerFault>& faults)
-{
-  std::vector<char> numbers;
-  for (const SteinerFault fault : faults)
-  {
-    numbers.push_back(static_cast<char>(fault));
-  }
-  return numbers;
 }
 
 //--------------------------------------------------------------------------------------------------
@@ -316,8 +340,9 @@ Status MeshPolygonsStage(InputReader& reader, const SizingField& function,
     Write(writer, output.Boundary);
     writer.Write("facets", std::move(output.Facets));
     writer.Write("unresolved_triangles", std::move(output.UnresolvedTriangles));
-    writer.Write("faults", ToFaults(output.Faults));
+    writer.Write("faults", std::move(output.Faults));
     writer.Write("is_free", std::move(output.IsFree));
+    Write(writer, output.Settings);
     Write(writer, output.Certificate);
   }
   return status;
@@ -505,7 +530,7 @@ Status RefineMeshStage(InputReader& reader, const SizingField& function,
     Write(writer, output.Mesh);
     Write(writer, output.Boundary);
     writer.Write("is_free", std::move(output.IsFree));
-    writer.Write("faults", ToFaults(output.Faults));
+    writer.Write("faults", std::move(output.Faults));
     writer.Write("point_sources", std::move(output.PointSources));
   }
   return status;

@@ -17,7 +17,9 @@
  * with a line for each.
  *
  * Stages:
- *  - mesh_polygons: ConformingMesher.h; polygons in, mesh, boundary and certificate out;
+ *  - mesh_polygons: ConformingMesher.h; polygons in, mesh, boundary and certificate out. What is
+ *    not given of the options in MeshPurpose.h is as mesh_for asks; the values that were used come
+ *    back under the names of these options, and as the text settings;
  *  - triangulate_boundary: BoundaryTriangulator.h; polygons in, surface and problems out;
  *  - extract_structural_edges: StructuralEdges.h; surface in, edges and facets out;
  *  - refine_surface: DelaunaySurfaceRefiner.h; surface, facets, mesh points, sizing;

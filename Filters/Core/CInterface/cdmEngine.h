@@ -67,7 +67,7 @@ extern "C"
     cdmArrays* arrays, const char* name, const int64_t* values, int64_t count);
 
   CDM_ENGINE_EXPORT int64_t cdmGetNumberOfArrays(const cdmArrays* arrays);
-  /** By its number, in alphabetical order; the name is valid as long as the object. */
+  /** The name of an array, numbered in alphabetical order. It is valid as long as the object. */
   CDM_ENGINE_EXPORT const char* cdmGetName(const cdmArrays* arrays, int64_t index);
   /**
  * The values of an output array, valid as long as the object; null if there are none.

@@ -23,142 +23,200 @@ std::uint64_t MakeKey(const TriangleIds& facet)
 }
 } // namespace
 
-bool CavityFilling::Run(const Cavity& cavity)
+//--------------------------------------------------------------------------------------------------
+/** The Delaunay tetrahedra of a cavity's points, and which of them fill it. */
+class CavityFilling::Flood
 {
-  this->Cells.clear();
-  DelaunayTetrahedralization local;
-  if (cavity.Numbers.size() >> BitsOfPoint > 0 ||
-    !BuildDelaunayTetrahedralization(
-      cavity.Points, cavity.Numbers, GridBlock(), 1, ExecutionContext(), local)
-       .IsOk())
+public:
+  Flood(CavityFilling& filling, const Cavity& cavity)
+    : Filling(filling), Input(cavity), Infinite(static_cast<Id>(cavity.Numbers.size()))
   {
-    return false;
   }
-  const Id infinite = static_cast<Id>(cavity.Numbers.size());
-  const auto isOutside = [&](Id t)
-  {
-    const TetrahedronIds& vertices = local.Tetrahedra[t];
-    return std::find(vertices.begin(), vertices.end(), infinite) != vertices.end();
-  };
-  this->Facets.clear();
-  for (Id t = 0; t < static_cast<Id>(local.Tetrahedra.size()); ++t)
-  {
-    if (local.Tetrahedra[t][0] == NoId || isOutside(t))
-    {
-      continue;
-    }
-    for (int i = 0; i < 4; ++i)
-    {
-      this->Facets.emplace_back(MakeKey(GetFacet(local.Tetrahedra[t], i)), 4 * t + i);
-    }
-  }
-  std::sort(this->Facets.begin(), this->Facets.end());
 
-  // What is behind each facet of a tetrahedron, if it is on the border or a wall.
-  constexpr Id open = -1;
-  constexpr Id wall = -2;
-  std::vector<Id> behind(4 * local.Tetrahedra.size(), open);
-  // A point that the cavity does not have is told by its index: no facet is found at it.
-  const auto findCorners = [&](TriangleIds facet)
+  /** False: there is no such tetrahedralization. */
+  bool Tetrahedralize()
   {
-    for (Id& id : facet)
-    {
-      const auto place = std::lower_bound(cavity.Numbers.begin(), cavity.Numbers.end(), id);
-      const bool isThere = place != cavity.Numbers.end() && *place == id;
-      id = isThere ? static_cast<Id>(place - cavity.Numbers.begin()) : infinite;
-    }
-    return facet;
-  };
-  const auto forEachSide = [&](const TriangleIds& facet, auto&& apply)
-  {
-    const std::uint64_t key = MakeKey(facet);
-    auto found = std::lower_bound(
-      this->Facets.begin(), this->Facets.end(), std::pair<std::uint64_t, Id>(key, 0));
-    bool isThere = false;
-    for (; found != this->Facets.end() && found->first == key; ++found)
-    {
-      isThere = true;
-      apply(found->second);
-    }
-    return isThere;
-  };
-  for (const TriangleIds& facet : cavity.Walls)
-  {
-    if (!forEachSide(findCorners(facet), [&](Id side) { behind[side] = wall; }))
+    if (this->Input.Numbers.size() >> BitsOfPoint > 0 ||
+      !BuildDelaunayTetrahedralization(
+        this->Input.Points, this->Input.Numbers, GridBlock(), 1, ExecutionContext(), this->Local)
+         .IsOk())
     {
       return false;
     }
-  }
-  std::vector<Id> cells(local.Tetrahedra.size(), NoId);
-  std::vector<Id> filled;
-  const auto add = [&](Id t, Id region)
-  {
-    if (cells[t] != NoId)
+    std::vector<std::pair<std::uint64_t, Id>>& facets = this->Filling.Facets;
+    facets.clear();
+    for (Id t = 0; t < static_cast<Id>(this->Local.Tetrahedra.size()); ++t)
     {
-      return this->Cells[cells[t]].Region == region;
-    }
-    const TetrahedronIds& vertices = local.Tetrahedra[t];
-    cells[t] = static_cast<Id>(this->Cells.size());
-    this->Cells.push_back({ { cavity.Numbers[vertices[0]], cavity.Numbers[vertices[1]],
-                              cavity.Numbers[vertices[2]], cavity.Numbers[vertices[3]] },
-      region, { NoId, NoId, NoId, NoId } });
-    filled.push_back(t);
-    return true;
-  };
-  for (Id k = 0; k < static_cast<Id>(cavity.Border.size()); ++k)
-  {
-    const TriangleIds facet = findCorners(cavity.Border[k]);
-    Id inner = NoId;
-    forEachSide(facet,
-      [&](Id side)
+      for (int i = 0; i < 4 && this->Local.Tetrahedra[t][0] != NoId && !this->IsOutside(t); ++i)
       {
-        const Vec3& apex = cavity.Points[local.Tetrahedra[side / 4][side % 4]];
-        if (Orientation(
-              cavity.Points[facet[0]], cavity.Points[facet[1]], cavity.Points[facet[2]], apex) > 0)
-        {
-          inner = side;
-        }
-      });
-    if (inner == NoId)
-    {
-      return false;
+        facets.emplace_back(MakeKey(GetFacet(this->Local.Tetrahedra[t], i)), 4 * t + i);
+      }
     }
-    behind[inner] = k;
-    if (!add(inner / 4, cavity.Regions[k]))
-    {
-      return false;
-    }
+    std::sort(facets.begin(), facets.end());
+    this->Behind.resize(4 * this->Local.Tetrahedra.size(), Open);
+    this->Cells.resize(this->Local.Tetrahedra.size(), NoId);
+    return true;
   }
-  for (std::size_t k = 0; k < filled.size(); ++k)
+
+  /** False: a wall is missing. */
+  bool FindWalls()
   {
-    const Id region = this->Cells[k].Region;
-    for (int i = 0; i < 4; ++i)
+    return std::all_of(this->Input.Walls.begin(), this->Input.Walls.end(),
+      [this](const TriangleIds& wall)
+      {
+        return this->VisitSides(
+          this->FindCorners(wall), [this](Id side) { this->Behind[side] = Wall; });
+      });
+  }
+
+  /** Takes what is in front of each facet of the border. False: a facet is missing. */
+  bool StartAtBorder()
+  {
+    for (Id k = 0; k < static_cast<Id>(this->Input.Border.size()); ++k)
     {
-      const Id side = 4 * filled[k] + i;
-      const Id next = local.Neighbors[filled[k]][i] / 4;
-      if (behind[side] == open && (isOutside(next) || !add(next, region)))
+      const TriangleIds facet = this->FindCorners(this->Input.Border[k]);
+      Id inner = NoId;
+      this->VisitSides(facet,
+        [&](Id side)
+        {
+          const auto& points = this->Input.Points;
+          const Vec3& apex = points[this->Local.Tetrahedra[side / 4][side % 4]];
+          if (Orientation(points[facet[0]], points[facet[1]], points[facet[2]], apex) > 0)
+          {
+            inner = side;
+          }
+        });
+      if (inner == NoId)
+      {
+        return false;
+      }
+      this->Behind[inner] = k;
+      if (!this->Take(inner / 4, this->Input.Regions[k]))
       {
         return false;
       }
     }
+    return true;
   }
-  for (std::size_t k = 0; k < filled.size(); ++k)
+
+  /** Goes inwards. False: two regions meet where no wall is, or the border is not closed. */
+  bool Spread()
   {
-    for (int i = 0; i < 4; ++i)
+    for (std::size_t k = 0; k < this->Filled.size(); ++k)
     {
-      const Id side = 4 * filled[k] + i;
-      const Id inner = local.Neighbors[filled[k]][i];
-      Id& neighbor = this->Cells[k].Neighbors[i];
-      if (behind[side] >= 0)
+      const Id region = this->Filling.Cells[k].Region;
+      for (int i = 0; i < 4; ++i)
       {
-        neighbor = OutOf(behind[side]);
+        const Id next = this->Local.Neighbors[this->Filled[k]][i] / 4;
+        if (this->Behind[4 * this->Filled[k] + i] == Open &&
+          (this->IsOutside(next) || !this->Take(next, region)))
+        {
+          return false;
+        }
       }
-      else if (cells[inner / 4] != NoId)
+    }
+    return true;
+  }
+
+  void Connect()
+  {
+    for (std::size_t k = 0; k < this->Filled.size(); ++k)
+    {
+      for (int i = 0; i < 4; ++i)
       {
-        neighbor = 4 * cells[inner / 4] + inner % 4;
+        const Id side = 4 * this->Filled[k] + i;
+        const Id inner = this->Local.Neighbors[this->Filled[k]][i];
+        Id& neighbor = this->Filling.Cells[k].Neighbors[i];
+        if (this->Behind[side] >= 0)
+        {
+          neighbor = OutOf(this->Behind[side]);
+        }
+        else if (this->Cells[inner / 4] != NoId)
+        {
+          neighbor = 4 * this->Cells[inner / 4] + inner % 4;
+        }
       }
     }
   }
+
+private:
+  bool IsOutside(Id t) const
+  {
+    const TetrahedronIds& vertices = this->Local.Tetrahedra[t];
+    return std::find(vertices.begin(), vertices.end(), this->Infinite) != vertices.end();
+  }
+
+  /** Indices in the cavity; Infinite for a point that it does not have: no facet is found at it. */
+  TriangleIds FindCorners(TriangleIds facet) const
+  {
+    const std::vector<Id>& numbers = this->Input.Numbers;
+    for (Id& id : facet)
+    {
+      const auto place = std::lower_bound(numbers.begin(), numbers.end(), id);
+      const bool isThere = place != numbers.end() && *place == id;
+      id = isThere ? static_cast<Id>(place - numbers.begin()) : this->Infinite;
+    }
+    return facet;
+  }
+
+  /** Visits a facet from the tetrahedra on its sides, as 4 * tetrahedron + facet. False: none. */
+  template <typename Function>
+  bool VisitSides(const TriangleIds& facet, Function&& visit) const
+  {
+    const std::vector<std::pair<std::uint64_t, Id>>& facets = this->Filling.Facets;
+    const std::uint64_t key = MakeKey(facet);
+    const auto first =
+      std::lower_bound(facets.begin(), facets.end(), std::pair<std::uint64_t, Id>(key, 0));
+    auto found = first;
+    for (; found != facets.end() && found->first == key; ++found)
+    {
+      visit(found->second);
+    }
+    return found != first;
+  }
+
+  /** Makes a tetrahedron a cell. False: it is one, in another region. */
+  bool Take(Id t, Id region)
+  {
+    if (this->Cells[t] != NoId)
+    {
+      return this->Filling.Cells[this->Cells[t]].Region == region;
+    }
+    const TetrahedronIds& vertices = this->Local.Tetrahedra[t];
+    const std::vector<Id>& numbers = this->Input.Numbers;
+    this->Cells[t] = static_cast<Id>(this->Filling.Cells.size());
+    this->Filling.Cells.push_back(
+      { { numbers[vertices[0]], numbers[vertices[1]], numbers[vertices[2]], numbers[vertices[3]] },
+        region, { NoId, NoId, NoId, NoId } });
+    this->Filled.push_back(t);
+    return true;
+  }
+
+  /** Behind a facet is a tetrahedron, or a wall; or else a facet of the border, by its index. */
+  static constexpr Id Open = -1;
+  static constexpr Id Wall = -2;
+
+  CavityFilling& Filling;
+  const Cavity& Input;
+  const Id Infinite;
+  DelaunayTetrahedralization Local;
+  /** What is behind facet i of tetrahedron t, at 4 * t + i. */
+  std::vector<Id> Behind;
+  /** The cell that a tetrahedron is, or NoId; and the tetrahedron of each cell. */
+  std::vector<Id> Cells;
+  std::vector<Id> Filled;
+};
+
+//--------------------------------------------------------------------------------------------------
+bool CavityFilling::Run(const Cavity& cavity)
+{
+  this->Cells.clear();
+  Flood flood(*this, cavity);
+  if (!flood.Tetrahedralize() || !flood.FindWalls() || !flood.StartAtBorder() || !flood.Spread())
+  {
+    return false;
+  }
+  flood.Connect();
   return true;
 }
 } // namespace cdm

@@ -69,6 +69,8 @@ public:
   const std::vector<Cell>& GetCells() const { return this->Cells; }
 
 private:
+  class Flood;
+
   std::vector<Cell> Cells;
   /** Work space: facets of local tetrahedra, by their points' indices in the cavity. */
   std::vector<std::pair<std::uint64_t, Id>> Facets;

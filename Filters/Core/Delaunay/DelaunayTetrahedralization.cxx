@@ -68,6 +68,9 @@ private:
   };
 
   Status InsertRound(std::vector<Id> left, int numberOfThreads);
+  void DivideWork(std::vector<Id>& left, Id shift, int numberOfThreads);
+  bool WorkInParts(int numberOfThreads, const std::function<bool(std::size_t)>& report);
+  std::vector<Id> CollectPostponed(int numberOfThreads);
   template <bool IsShared>
   bool Work(Worker& worker, const std::function<bool(std::size_t)>& mayContinue);
   bool HandOver(Worker& from, std::size_t next, Worker& to);
@@ -190,10 +193,111 @@ bool Builder::WaitForMore(Worker& worker, const std::function<bool(std::size_t)>
   }
 }
 
+/**
+ * Cuts the curve into parts, one for each thread, and divides the vertices among them. Each part
+ * gets a tetrahedron of its own to start from; the vertices of one that has none are postponed.
+ */
+void Builder::DivideWork(std::vector<Id>& left, Id shift, int numberOfThreads)
+{
+  const Id part = this->Infinite / numberOfThreads + 1;
+  FreeSlots spare;
+  this->Workers[0].Space.Free.MoveTo(spare, std::numeric_limits<std::size_t>::max());
+  const Id last = this->Workers[0].Space.Last;
+  // Along the curve, from where the first part begins.
+  std::rotate(left.begin(), std::lower_bound(left.begin(), left.end(), shift), left.end());
+  auto first = left.begin();
+  for (int w = 0; w < numberOfThreads; ++w)
+  {
+    Worker& worker = this->Workers[static_cast<std::size_t>(w)];
+    worker.Space.Own = { w * part + shift, std::min(part, this->Infinite - w * part),
+      this->Infinite };
+    const auto end = std::partition_point(
+      first, left.end(), [&worker](Id vertex) { return worker.Space.Own.Has(vertex); });
+    worker.Todo.assign(first, end);
+    worker.Postponed.clear();
+    first = end;
+  }
+  for (int w = 0; w < numberOfThreads; ++w)
+  {
+    Worker& worker = this->Workers[static_cast<std::size_t>(w)];
+    worker.Space.HasInserted = false;
+    worker.Space.Last = last;
+    bool hasStart = false;
+    for (std::size_t i = 0; i < worker.Todo.size() && !hasStart; i += 1 + worker.Todo.size() / 64)
+    {
+      worker.Space.Last = this->Insertion.Locate(worker.Todo[i], worker.Space);
+      hasStart = this->Insertion.IsOwned(worker.Space.Last, worker.Space.Own);
+    }
+    if (!hasStart)
+    {
+      worker.Postponed.swap(worker.Todo);
+      worker.Todo.clear();
+    }
+    const std::size_t wanted = 7 * worker.Todo.size() + worker.Todo.size() / 2;
+    spare.MoveTo(worker.Space.Free, wanted);
+    if (worker.Space.Free.GetSize() < wanted)
+    {
+      this->Insertion.AddRoom(wanted - worker.Space.Free.GetSize(), worker.Space);
+    }
+  }
+  spare.MoveTo(this->Workers[0].Space.Free, std::numeric_limits<std::size_t>::max());
+}
+
+/** Inserts the vertices of all parts. False: aborted. */
+bool Builder::WorkInParts(int numberOfThreads, const std::function<bool(std::size_t)>& report)
+{
+  std::atomic<bool> isAborted{ false };
+  this->Idle = nullptr;
+  this->NumberOfBusy = numberOfThreads;
+  RunOnThreads(numberOfThreads,
+    [&](int w)
+    {
+      const auto mayContinue = [&](std::size_t done)
+      {
+        isAborted =
+          isAborted || (w == 0 && !report(done * static_cast<std::size_t>(numberOfThreads)));
+        return !isAborted;
+      };
+      Worker& worker = this->Workers[static_cast<std::size_t>(w)];
+      try
+      {
+        do
+        {
+          this->Work<true>(worker, mayContinue);
+        } while (this->WaitForMore(worker, mayContinue));
+      }
+      catch (...)
+      {
+        isAborted = true;
+        --this->NumberOfBusy;
+        throw;
+      }
+    });
+  return !isAborted;
+}
+
+/** The vertices that were postponed, ascending. The first worker gets all free slots. */
+std::vector<Id> Builder::CollectPostponed(int numberOfThreads)
+{
+  std::vector<Id> left;
+  FreeSlots spare;
+  Id last = this->Workers[0].Space.Last;
+  for (int w = 0; w < numberOfThreads; ++w)
+  {
+    Worker& worker = this->Workers[static_cast<std::size_t>(w)];
+    left.insert(left.end(), worker.Postponed.begin(), worker.Postponed.end());
+    worker.Space.Free.MoveTo(spare, std::numeric_limits<std::size_t>::max());
+    last = worker.Space.HasInserted ? worker.Space.Last : last;
+  }
+  std::sort(left.begin(), left.end());
+  spare.MoveTo(this->Workers[0].Space.Free, std::numeric_limits<std::size_t>::max());
+  this->Workers[0].Space.Last = last;
+  return left;
+}
+
 /** The vertices ascend. */
 Status Builder::InsertRound(std::vector<Id> left, int numberOfThreads)
 {
-  std::atomic<bool> isAborted{ false };
   const double begin = static_cast<double>(this->Output.Tetrahedra.size()) / 6.8;
   const auto report = [&](std::size_t done)
   {
@@ -207,90 +311,13 @@ Status Builder::InsertRound(std::vector<Id> left, int numberOfThreads)
   // have all of that.
   for (int cut = 0; cut < 2 && numberOfThreads > 1 && left.size() >= SmallRound; ++cut)
   {
-    const std::size_t count = static_cast<std::size_t>(numberOfThreads);
-    const Id part = this->Infinite / numberOfThreads + 1;
-    const Id shift = cut == 0 ? 0 : part / 2;
-    FreeSlots spare;
-    this->Workers[0].Space.Free.MoveTo(spare, std::numeric_limits<std::size_t>::max());
-    Id last = this->Workers[0].Space.Last;
-    // Along the curve, from where the first part begins.
-    std::rotate(left.begin(), std::lower_bound(left.begin(), left.end(), shift), left.end());
-    auto first = left.begin();
-    for (std::size_t w = 0; w < count; ++w)
-    {
-      Worker& worker = this->Workers[w];
-      worker.Space.Own = { static_cast<Id>(w) * part + shift,
-        std::min(part, this->Infinite - static_cast<Id>(w) * part), this->Infinite };
-      const auto end = std::partition_point(
-        first, left.end(), [&worker](Id vertex) { return worker.Space.Own.Has(vertex); });
-      worker.Todo.assign(first, end);
-      worker.Postponed.clear();
-      first = end;
-    }
-    for (std::size_t w = 0; w < count; ++w)
-    {
-      // Somewhere to start from: a tetrahedron of the part's own.
-      Worker& worker = this->Workers[w];
-      worker.Space.HasInserted = false;
-      worker.Space.Last = last;
-      bool hasStart = false;
-      for (std::size_t i = 0; i < worker.Todo.size() && !hasStart; i += 1 + worker.Todo.size() / 64)
-      {
-        worker.Space.Last = this->Insertion.Locate(worker.Todo[i], worker.Space);
-        hasStart = this->Insertion.IsOwned(worker.Space.Last, worker.Space.Own);
-      }
-      if (!hasStart)
-      {
-        worker.Postponed.swap(worker.Todo);
-        worker.Todo.clear();
-      }
-      const std::size_t wanted = 7 * worker.Todo.size() + worker.Todo.size() / 2;
-      spare.MoveTo(worker.Space.Free, wanted);
-      if (worker.Space.Free.GetSize() < wanted)
-      {
-        this->Insertion.AddRoom(wanted - worker.Space.Free.GetSize(), worker.Space);
-      }
-    }
-    this->Idle = nullptr;
-    this->NumberOfBusy = numberOfThreads;
-    RunOnThreads(numberOfThreads,
-      [&](int w)
-      {
-        const auto mayContinue = [&](std::size_t done)
-        {
-          isAborted = isAborted || (w == 0 && !report(done * count));
-          return !isAborted;
-        };
-        Worker& worker = this->Workers[static_cast<std::size_t>(w)];
-        try
-        {
-          do
-          {
-            this->Work<true>(worker, mayContinue);
-          } while (this->WaitForMore(worker, mayContinue));
-        }
-        catch (...)
-        {
-          isAborted = true;
-          --this->NumberOfBusy;
-          throw;
-        }
-      });
-    if (isAborted)
+    this->DivideWork(
+      left, cut == 0 ? 0 : (this->Infinite / numberOfThreads + 1) / 2, numberOfThreads);
+    if (!this->WorkInParts(numberOfThreads, report))
     {
       return Status::Aborted();
     }
-    left.clear();
-    for (std::size_t w = 0; w < count; ++w)
-    {
-      Worker& worker = this->Workers[w];
-      left.insert(left.end(), worker.Postponed.begin(), worker.Postponed.end());
-      worker.Space.Free.MoveTo(spare, std::numeric_limits<std::size_t>::max());
-      last = worker.Space.HasInserted ? worker.Space.Last : last;
-    }
-    std::sort(left.begin(), left.end());
-    spare.MoveTo(this->Workers[0].Space.Free, std::numeric_limits<std::size_t>::max());
-    this->Workers[0].Space.Last = last;
+    left = this->CollectPostponed(numberOfThreads);
   }
   Worker& worker = this->Workers[0];
   worker.Todo.swap(left);

@@ -62,7 +62,12 @@ public:
     Box Bounds;
   };
 
-  /** As for PartTetrahedralization. */
+  /**
+   * @param own distinct points, ascending by number
+   * @param part the number of this part
+   * @param bounds the tight boxes of the points of all parts
+   * @param cell what belongs to this part and to no other; its border may belong to others
+   */
   PartPoints(
     std::vector<NumberedPoint> own, int part, const std::vector<Box>& bounds, const Box& cell);
 

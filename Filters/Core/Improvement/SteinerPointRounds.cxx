@@ -298,7 +298,7 @@ Status SteinerPointRounds::MakeMesh(const TriangleMesh& surface,
   {
     return this->Translate(std::move(status), sourceCells);
   }
-  // Until here the mesh of the round before counts.
+  // A failure above leaves the mesh of the round before as the result.
   ++this->Report.Rounds;
   this->CollectReport();
   this->Interior = Select(interior, made.MeshPointSources);

@@ -195,17 +195,17 @@ Status PlaceLayerPoints(const ExecutionContext& context, MeshPointPlacer& placer
        ++layers)
   {
     std::vector<LayerFoot> feet;
-    status = FindLayerFeet(*layers, placer.GetLocator(), refined, feet);
-    if (status.IsOk() &&
-      placer.GetOutput().Points.size() + static_cast<double>(feet.size()) * layers->NumberOfLayers >
-        options.MaximumNumberOfPoints)
+    const auto checkNumber = [&]
     {
-      status = MakeTooManyPoints(options.MaximumNumberOfPoints);
-    }
-    if (status.IsOk())
-    {
-      status = PlaceLayers(*layers, feet, context.Part(1.0, 1.0), placer);
-    }
+      const double number = static_cast<double>(placer.GetOutput().Points.size()) +
+        static_cast<double>(feet.size()) * layers->NumberOfLayers;
+      return number > options.MaximumNumberOfPoints
+        ? MakeTooManyPoints(options.MaximumNumberOfPoints)
+        : Status();
+    };
+    status = FindLayerFeet(*layers, placer.GetLocator(), refined, feet)
+               .Then(checkNumber)
+               .Then([&] { return PlaceLayers(*layers, feet, context.Part(1.0, 1.0), placer); });
   }
   return status;
 }

@@ -320,12 +320,9 @@ Status RandomPlacement::Smooth(const ExecutionContext& context)
 
 Status RandomPlacement::Run(const ExecutionContext& context)
 {
-  Status status = this->Placer.BuildOctree(1.0, context.Part(0.0, 0.13), this->Octree);
-  if (status.IsOk())
-  {
-    status = this->ThrowDarts(context.Part(0.13, 0.47));
-  }
-  return status.IsOk() ? this->Smooth(context.Part(0.47, 1.0)) : status;
+  return this->Placer.BuildOctree(1.0, context.Part(0.0, 0.13), this->Octree)
+    .Then([&] { return this->ThrowDarts(context.Part(0.13, 0.47)); })
+    .Then([&] { return this->Smooth(context.Part(0.47, 1.0)); });
 }
 } // namespace
 

@@ -42,11 +42,8 @@ bool HasRightNeighbors(const TetMesh& mesh, Id tetrahedron)
 
 Status CheckTetrahedra(const TetMesh& mesh)
 {
-  Status status = CheckNumberOfTetrahedra(mesh.Tetrahedra.size());
-  if (status.IsOk())
-  {
-    status = CheckIdRange(mesh.Points.size(), "points");
-  }
+  Status status = CheckNumberOfTetrahedra(mesh.Tetrahedra.size())
+                    .Then([&] { return CheckIdRange(mesh.Points.size(), "points"); });
   if (!status.IsOk())
   {
     return status;

@@ -265,11 +265,7 @@ private:
 
 Status Remeshing::Run(const ExecutionContext& context)
 {
-  Status status = this->Start();
-  if (status.IsOk())
-  {
-    status = this->Advance(context);
-  }
+  Status status = this->Start().Then([&] { return this->Advance(context); });
   if (status.IsOk())
   {
     this->FindTetrahedronSources();

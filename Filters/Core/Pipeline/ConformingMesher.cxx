@@ -6,6 +6,7 @@
 #include "Core/Improvement/SliverRemover.h"
 #include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/MeshBoundary.h"
+#include "Core/Sizing/DefaultSize.h"
 #include "Core/Surface/StructuralEdges.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 
@@ -65,11 +66,13 @@ public:
 
 private:
   Status TriangulateSurface();
+  void ChooseSettings();
   Status PlaceMeshPoints();
   Status RefineSurface();
   Status Tetrahedralize();
   Status AddSteinerPoints();
   Status RemoveFlatTetrahedra();
+  void WarnOfFlatTetrahedra();
   Status Check();
   Status CheckPeeled(const CertificateOptions& options, const ExecutionContext& context);
 
@@ -89,6 +92,8 @@ private:
   const ConformingMesherOptions& Options;
   const ExecutionContext& Context;
   ConformingMesherOutput& Output;
+  /** What the choices became. */
+  MeshSettings Settings;
   /** The surface as it is now; its source cells are polygons of the input. */
   TriangleMesh Surface;
   /** Given mesh points, then generated ones, as far as they are still there, and their numbers. */
@@ -146,11 +151,24 @@ Status ConformingMesher::TriangulateSurface()
   this->Surface = std::move(clean.Surface);
   this->Output.Points.SurfaceSources = std::move(clean.PointSources);
   this->Output.Points.SurfacePoints = std::move(clean.NewPoints);
+  this->ChooseSettings();
   if (this->Input.MeshPoints != nullptr)
   {
     this->MeshPoints = *this->Input.MeshPoints;
   }
   return status;
+}
+
+/** By the surface as it is after its repair. */
+void ConformingMesher::ChooseSettings()
+{
+  const MeshOptionChoices& given = this->Options.Choices;
+  this->Settings = MakeSettings(this->Options.MeshFor, given);
+  if (NeedsDefaultSize(this->Options.MeshFor, given, static_cast<bool>(this->Input.Sizing)))
+  {
+    this->Settings.MaximumEdgeLength = GetDefaultSize(this->Surface);
+  }
+  this->Output.Settings = this->Settings;
 }
 
 Status ConformingMesher::PlaceMeshPoints()
@@ -162,8 +180,8 @@ Status ConformingMesher::PlaceMeshPoints()
   MeshPointGeneratorOptions options = this->Options.MeshPoints;
   for (int axis = 0; axis < 3; ++axis)
   {
-    options.Spacing[axis] = options.Spacing[axis] == 0.0 ? this->Options.Surface.MaximumEdgeLength
-                                                         : options.Spacing[axis];
+    options.Spacing[axis] =
+      options.Spacing[axis] == 0.0 ? this->Settings.MaximumEdgeLength : options.Spacing[axis];
   }
   MeshPointGeneratorOutput generated;
   Status status = GenerateMeshPoints({ &this->Surface, this->Input.Sizing }, options,
@@ -184,6 +202,8 @@ Status ConformingMesher::RefineSurface()
   input.MeshPoints = &this->MeshPoints;
   input.Sizing = this->Input.Sizing;
   DelaunaySurfaceRefinerOptions options = this->Options.Surface;
+  options.Criterion = this->Settings.Criterion;
+  options.MaximumEdgeLength = this->Settings.MaximumEdgeLength;
   if (!this->Input.Facets.empty())
   {
     options.StructuralEdges.Facets = Compose(this->Input.Facets, this->Surface.SourceCells, Id(0));
@@ -234,7 +254,7 @@ Status ConformingMesher::Tetrahedralize()
   options.CloseOpenBoundary = this->Options.CloseOpenBoundary;
   AdvancingFrontTetrahedralizerOutput made;
   Status status = TetrahedralizeByAdvancingFront(input, options,
-    this->GetPart("Tetrahedralization", 0.5, this->Options.AddsSteinerPoints ? 0.6 : 0.85), made);
+    this->GetPart("Tetrahedralization", 0.5, this->Settings.AddsSteinerPoints ? 0.6 : 0.85), made);
   if (!status.IsOk())
   {
     return this->Name(std::move(status), this->Surface.SourceCells);
@@ -260,18 +280,18 @@ void ConformingMesher::FindFreePoints()
   const std::size_t numberOfGiven =
     this->Input.MeshPoints != nullptr ? this->Input.MeshPoints->size() : 0;
   const bool hasFlags = !this->Input.AreMeshPointsFree.empty();
-  if (!this->Options.AddsSteinerPoints && (!hasFlags || this->Options.GeneratesMeshPoints))
+  if (!this->Settings.AddsSteinerPoints && (!hasFlags || this->Options.GeneratesMeshPoints))
   {
     return;
   }
   this->IsFree.assign(history.SurfaceSources.size() + history.SurfacePoints.size(), 0);
   this->IsFree.insert(
-    this->IsFree.end(), history.RefinedPoints.size(), this->Options.AddsSteinerPoints);
+    this->IsFree.end(), history.RefinedPoints.size(), this->Settings.AddsSteinerPoints);
   for (const Id source : history.MeshPointSources)
   {
     const bool isGiven = static_cast<std::size_t>(source) < numberOfGiven;
     this->IsFree.push_back(
-      this->Options.AddsSteinerPoints ? !isGiven : this->Input.AreMeshPointsFree[source] != 0);
+      this->Settings.AddsSteinerPoints ? !isGiven : this->Input.AreMeshPointsFree[source] != 0);
   }
 }
 
@@ -283,15 +303,15 @@ Status ConformingMesher::AddSteinerPoints()
   input.Sizing = this->Input.Sizing;
   input.IsFree = this->IsFree;
   SteinerPointRefinerOptions options;
-  options.Criterion = std::max(this->Options.Surface.Criterion, SurfaceCriterion::SmallestSphere);
+  options.Criterion = std::max(this->Settings.Criterion, SurfaceCriterion::SmallestSphere);
   options.StructuralEdges.AccuracyAngle = this->Options.Surface.StructuralEdges.AccuracyAngle;
   options.StructuralEdges.Facets = this->Facets;
-  options.RadiusEdgeRatio = this->Options.RadiusEdgeRatio;
-  options.DihedralAngleTarget = this->Options.RemovesSlivers
-    ? std::min(this->Options.DihedralAngleTarget, LargestSteinerAngle)
+  options.RadiusEdgeRatio = this->Settings.RadiusEdgeRatio;
+  options.DihedralAngleTarget = this->Settings.RemovesSlivers
+    ? std::min(this->Settings.DihedralAngleTarget, LargestSteinerAngle)
     : 0.0;
   options.MaximumVolume = this->Options.MaximumVolume;
-  options.MaximumEdgeLength = this->Options.Surface.MaximumEdgeLength;
+  options.MaximumEdgeLength = this->Settings.MaximumEdgeLength;
   SteinerPointRefinerOutput refined;
   Status status =
     RefineBySteinerPoints(input, options, this->GetPart("Steiner points", 0.6, 0.95), refined);
@@ -319,8 +339,8 @@ Status ConformingMesher::AddSteinerPoints()
 Status ConformingMesher::RemoveFlatTetrahedra()
 {
   SliverRemoverOptions options;
-  options.DihedralAngleTarget = this->Options.DihedralAngleTarget;
-  if (this->Options.Surface.Criterion != SurfaceCriterion::Delaunay)
+  options.DihedralAngleTarget = this->Settings.DihedralAngleTarget;
+  if (this->Settings.Criterion != SurfaceCriterion::Delaunay)
   {
     // Peeling flips a diagonal of the boundary, which the stronger criteria do not allow.
     options.FlatnessRatio = 0.0;
@@ -377,13 +397,33 @@ Status ConformingMesher::CheckPeeled(
   return status;
 }
 
+/** With what could be done about them. */
+void ConformingMesher::WarnOfFlatTetrahedra()
+{
+  std::string text = this->Output.Certificate.DescribeFlatTetrahedra();
+  if (text.empty())
+  {
+    return;
+  }
+  const FlatterTetrahedra& flat = this->Output.Certificate.Under15Degrees;
+  if (!this->Settings.AddsSteinerPoints)
+  {
+    text += " Steiner points, which a mesh for finite volumes or finite elements has, make better "
+            "ones where the input allows it.";
+  }
+  else if (flat.AcrossLayers > 0)
+  {
+    text += " A maximum edge length below the thickness of the layers makes better ones there.";
+  }
+  this->Output.Warnings.push_back({ std::move(text) });
+}
+
 Status ConformingMesher::Check()
 {
   const ExecutionContext context = this->Context.Part(0.95, 1.0);
   CertificateOptions options;
-  options.Level = this->Options.Surface.Criterion == SurfaceCriterion::Delaunay
-    ? CertificateLevel::Basic
-    : CertificateLevel::Full;
+  options.Level = this->Settings.Criterion == SurfaceCriterion::Delaunay ? CertificateLevel::Basic
+                                                                         : CertificateLevel::Full;
   Status status = this->PeeledTetrahedra > 0
     ? this->CheckPeeled(options, context)
     : CertifyMesh(
@@ -393,6 +433,9 @@ Status ConformingMesher::Check()
     this->Output.Warnings.push_back(
       { "The check finds fault with the mesh: " + this->Output.Certificate.GetReasons() });
   }
+  this->WarnOfFlatTetrahedra();
+  this->Output.Certificate.Settings =
+    DescribeSettings(this->Options.MeshFor, this->Options.Choices, this->Settings);
   this->Output.Facets = std::move(this->Facets);
   for (std::size_t i = 0; i < this->IsUnresolved.size(); ++i)
   {
@@ -413,9 +456,9 @@ Status ConformingMesher::Run()
     .Then(
       [this]
       {
-        return this->Options.AddsSteinerPoints ? this->AddSteinerPoints()
-          : this->Options.RemovesSlivers       ? this->RemoveFlatTetrahedra()
-                                               : Status();
+        return this->Settings.AddsSteinerPoints ? this->AddSteinerPoints()
+          : this->Settings.RemovesSlivers       ? this->RemoveFlatTetrahedra()
+                                                : Status();
       })
     .Then([this] { return this->Check(); });
 }

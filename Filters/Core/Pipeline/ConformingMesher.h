@@ -10,7 +10,8 @@
  *     mesh;
  *  3. AdvancingFrontTetrahedralizer.h: tetrahedra for every enclosed region;
  *  4. SteinerPointRefiner.h, if Steiner points are to be added, otherwise SliverRemover.h, if
- *     slivers are to be removed;
+ *     slivers are to be removed: MeshPurpose.h says what is to be done where that is not given, and
+ *     DefaultSize.h how long edges may be;
  *  5. MeshCertificate.h: a check of the result, from the mesh and its boundary alone; at the full
  *     level if the criterion is one for finite volumes.
  *
@@ -31,6 +32,7 @@
 #include "Core/Meshes/PolygonSoup.h"
 #include "Core/Meshes/TetMesh.h"
 #include "Core/Meshes/TriangleMesh.h"
+#include "Core/Pipeline/MeshPurpose.h"
 #include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 
@@ -41,22 +43,18 @@ namespace cdm
 /** Each option is that of the stage that has it, see there. */
 struct ConformingMesherOptions
 {
+  /** Decides the choices that are not given. */
+  MeshPurpose MeshFor = MeshPurpose::FiniteVolumes;
+  MeshOptionChoices Choices;
   /** What counts as one point, and what is repaired. */
   BoundaryTriangulatorOptions Boundary;
-  /** The criterion, sizes and limits of the surface; MaximumEdgeLength is that of the volume too. */
+  /** Limits of the surface; Criterion and MaximumEdgeLength are those of Choices. */
   DelaunaySurfaceRefinerOptions Surface;
   bool GeneratesMeshPoints = false;
-  /** Where they are. A Spacing of 0 is Surface.MaximumEdgeLength, if there is one. */
+  /** Where they are. A Spacing of 0 is the maximum edge length, if there is one. */
   MeshPointGeneratorOptions MeshPoints;
   /** Where the surface is open, close the mesh by the convex hull of the points. */
   bool CloseOpenBoundary = false;
-  /** Whether tetrahedra with a dihedral angle below the target are to be removed. */
-  bool RemovesSlivers = true;
-  /** Degrees, 0 to 70; with Steiner points more than 40 count as 40. */
-  double DihedralAngleTarget = 15.0;
-  bool AddsSteinerPoints = false;
-  /** Circumradius to shortest edge, with Steiner points. 0 (off) or at least 1. */
-  double RadiusEdgeRatio = 1.4;
   /** With Steiner points. Cubic model units; 0: off. */
   double MaximumVolume = 0.0;
 };
@@ -114,6 +112,8 @@ struct ConformingMesherOutput
   /** With Steiner points, if there are any: one for each tetrahedron. */
   std::vector<SteinerFault> Faults;
   PointHistory Points;
+  /** What the choices became. */
+  MeshSettings Settings;
   MeshCertificate Certificate;
   /** Findings about the polygons, also of a run that failed. */
   std::vector<SurfaceProblem> Problems;

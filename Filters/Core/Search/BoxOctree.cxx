@@ -51,6 +51,10 @@ void BoxOctree::Add(Id id, const Box& box)
     }
     current = child;
   }
+  if (static_cast<std::size_t>(id) >= this->Entries.size())
+  {
+    this->Entries.resize(static_cast<std::size_t>(id) + 1);
+  }
   Entry& entry = this->Entries[id];
   entry.Bounds = box;
   entry.Cell = current;

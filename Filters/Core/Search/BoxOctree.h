@@ -26,7 +26,7 @@ namespace cdm
 class BoxOctree
 {
 public:
-  /** bounds holds all boxes that will come; ids are 0 to capacity - 1. */
+  /** bounds holds all boxes that will come; room for the ids 0 to capacity - 1, which may grow. */
   BoxOctree(const Box& bounds, Id capacity);
 
   /** Adds a box under an id that is not in use. */

@@ -129,18 +129,7 @@ Status MakeCellSizing(SizingCells cells, std::vector<double> lengths, SizingFiel
     return Status::InvalidInput(
       "A sizing needs points with finite coordinates, and a positive length at each.", {}, bad);
   }
-  auto minima = std::make_shared<const SizingMinima>(
-    [&]
-    {
-      SizingCells found = cells;
-      for (std::size_t i = 0; i < cells.Points.size() && cells.Connectivity.empty(); ++i)
-      {
-        found.Connectivity.push_back(static_cast<Id>(i));
-        found.Offsets.push_back(static_cast<Id>(i + 1));
-      }
-      return found;
-    }(),
-    lengths);
+  auto minima = std::make_shared<const SizingMinima>(cells, lengths);
   const auto interpolator =
     std::make_shared<const CellInterpolator>(std::move(cells), std::move(lengths));
   sizing = SizingField(

@@ -73,6 +73,7 @@ private:
   std::array<Sample, MaximumSize> Samples;
   int Size = 0;
 };
+
 /** The facets of a cell as triangles of its corners; of edges and points as degenerate ones. */
 struct Facets
 {
@@ -167,8 +168,16 @@ void ConvexRegion::AddPlane(const Vec3& origin, const Vec3& normal)
 
 //--------------------------------------------------------------------------------------------------
 SizingMinima::SizingMinima(SizingCells cells, std::vector<double> lengths)
-  : Cells(std::move(cells)), Lengths(std::move(lengths)), Order(this->Cells.Offsets.size() - 1)
+  : Cells(std::move(cells)), Lengths(std::move(lengths))
 {
+  if (this->Cells.Connectivity.empty())
+  {
+    this->Cells.Connectivity.resize(this->Cells.Points.size());
+    std::iota(this->Cells.Connectivity.begin(), this->Cells.Connectivity.end(), 0);
+    this->Cells.Offsets.resize(this->Cells.Points.size() + 1);
+    std::iota(this->Cells.Offsets.begin(), this->Cells.Offsets.end(), 0);
+  }
+  this->Order.resize(this->Cells.Offsets.size() - 1);
   std::vector<Vec3> centers(this->Order.size());
   for (std::size_t cell = 0; cell < centers.size(); ++cell)
   {
@@ -222,42 +231,8 @@ void SizingMinima::Build(Id begin, Id end, const std::vector<Vec3>& centers)
   this->Build(middle, end, centers);
 }
 
-bool SizingMinima::MayBeBelow(const Vec3& position, double length) const
-{
-  Box box;
-  box.Add(position);
-  bool isAround = false;
-  std::array<Id, 64> stack;
-  int size = 0;
-  if (!this->Nodes.empty())
-  {
-    stack[size++] = 0;
-  }
-  while (size > 0)
-  {
-    const Id index = stack[--size];
-    const Node& node = this->Nodes[index];
-    if (!node.Bounds.Overlaps(box))
-    {
-      continue;
-    }
-    // Smaller lengths may belong to cells elsewhere in this node.
-    if (node.Second != NoId)
-    {
-      stack[size++] = node.Second;
-      stack[size++] = index + 1;
-      continue;
-    }
-    if (node.Smallest < length)
-    {
-      return true;
-    }
-    isAround = true;
-  }
-  return !isAround;
-}
-
-void SizingMinima::VisitBelow(const ConvexRegion& region, double length, const Visitor& visit) const
+template <class Predicate, class Function>
+void SizingMinima::VisitLeaves(const Box& box, Predicate&& isWanted, Function&& visit) const
 {
   // Halves of ranges are not deeper than the bits of an Id.
   std::array<Id, 64> stack;
@@ -270,24 +245,51 @@ void SizingMinima::VisitBelow(const ConvexRegion& region, double length, const V
   {
     const Id index = stack[--size];
     const Node& node = this->Nodes[index];
-    if (!(node.Smallest < length) || !node.Bounds.Overlaps(region.GetBounds()))
+    if (!isWanted(node) || !node.Bounds.Overlaps(box))
     {
       continue;
     }
-    if (node.Second != NoId)
+    if (node.Second == NoId)
     {
-      // The smaller half first: afterwards less of the other one is below the length.
-      const bool isFirstSmaller =
-        this->Nodes[index + 1].Smallest <= this->Nodes[node.Second].Smallest;
-      stack[size++] = isFirstSmaller ? node.Second : index + 1;
-      stack[size++] = isFirstSmaller ? index + 1 : node.Second;
+      visit(node);
       continue;
     }
-    for (Id i = node.Begin; i < node.End && length > 0.0; ++i)
-    {
-      length = this->VisitCell(region, this->Order[i], length, visit);
-    }
+    // The smaller half first: afterwards less of the other one is below the length.
+    const bool isFirstSmaller =
+      this->Nodes[index + 1].Smallest <= this->Nodes[node.Second].Smallest;
+    stack[size++] = isFirstSmaller ? node.Second : index + 1;
+    stack[size++] = isFirstSmaller ? index + 1 : node.Second;
   }
+}
+
+bool SizingMinima::MayBeBelow(const Vec3& position, double length) const
+{
+  Box box;
+  box.Add(position);
+  bool isAround = false;
+  bool isBelow = false;
+  // Smaller lengths of an inner node may belong to cells elsewhere in it: leaves decide.
+  this->VisitLeaves(
+    box, [&](const Node&) { return !isBelow; },
+    [&](const Node& leaf)
+    {
+      isAround = true;
+      isBelow = leaf.Smallest < length;
+    });
+  return isBelow || !isAround;
+}
+
+void SizingMinima::VisitBelow(const ConvexRegion& region, double length, const Visitor& visit) const
+{
+  this->VisitLeaves(
+    region.GetBounds(), [&](const Node& node) { return node.Smallest < length; },
+    [&](const Node& leaf)
+    {
+      for (Id i = leaf.Begin; i < leaf.End && length > 0.0; ++i)
+      {
+        length = this->VisitCell(region, this->Order[i], length, visit);
+      }
+    });
 }
 
 double SizingMinima::GetTwist(const Id* corners, int face) const

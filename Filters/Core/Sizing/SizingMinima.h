@@ -56,7 +56,7 @@ private:
   int NumberOfPlanes = 0;
 };
 
-/** Points in cells: cell i has the points Connectivity[Offsets[i]] to [Offsets[i + 1]]. */
+/** Points in cells: cell i has the points from Connectivity[Offsets[i]] to [Offsets[i + 1] - 1]. */
 struct SizingCells
 {
   std::vector<Vec3> Points;
@@ -69,7 +69,7 @@ class SizingMinima
 public:
   /**
    * @param cells points, edges, triangles, tetrahedra; or hexahedra, the fifth corner above the
-   *   first
+   *   first; without any, each point is a cell
    * @param lengths the smallest length of the spacing at each point
    */
   SizingMinima(SizingCells cells, std::vector<double> lengths);
@@ -99,6 +99,9 @@ private:
   };
 
   void Build(Id begin, Id end, const std::vector<Vec3>& centers);
+  /** Visits leaves whose box overlaps a box, and which are wanted, as all nodes above them are. */
+  template <class Predicate, class Function>
+  void VisitLeaves(const Box& box, Predicate&& isWanted, Function&& visit) const;
   /** What makes the field bilinear in a face of a hexahedron; 0: linear. */
   double GetTwist(const Id* corners, int face) const;
   double VisitCell(const ConvexRegion& region, Id cell, double length, const Visitor& visit) const;

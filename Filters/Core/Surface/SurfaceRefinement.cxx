@@ -959,10 +959,12 @@ void SurfaceRefinement::ProcessEdge()
 
 Status SurfaceRefinement::Refine(const ExecutionContext& context)
 {
+  // A step may leave more to do than before: what is reported never goes back.
+  double done = 0.0;
   for (std::size_t steps = 0; !this->EdgeQueue.empty() || !this->Queue.empty(); ++steps)
   {
     const double left = static_cast<double>(this->EdgeQueue.size() + this->Queue.size());
-    const double done = static_cast<double>(steps) / (static_cast<double>(steps) + left);
+    done = std::max(done, static_cast<double>(steps) / (static_cast<double>(steps) + left));
     if (steps % ReportInterval == 0 && !context.Continue(done, "Refining the surface"))
     {
       return Status::Aborted();

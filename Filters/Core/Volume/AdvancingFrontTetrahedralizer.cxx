@@ -577,10 +577,7 @@ Status AdvancingFront::MeshRegions()
       this->Context.Part(0.6, 0.75), this->Surface, this->Facets);
     this->Output.Report.TurnedDiagonals = this->Facets.TurnedDiagonals;
   }
-  if (status.IsOk())
-  {
-    status = this->FindSeeds();
-  }
+  status = std::move(status).Then([&] { return this->FindSeeds(); });
   if (!status.IsOk())
   {
     return status;
@@ -620,11 +617,7 @@ Status AdvancingFront::MeshRegions()
 
 Status AdvancingFront::Run()
 {
-  Status status = this->CollectPoints();
-  if (status.IsOk())
-  {
-    status = this->TetrahedralizePoints();
-  }
+  Status status = this->CollectPoints().Then([&] { return this->TetrahedralizePoints(); });
   if (!status.IsOk())
   {
     return status;

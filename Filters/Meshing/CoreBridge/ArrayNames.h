@@ -22,6 +22,10 @@ constexpr const char* StructuralFacetIdName = "StructuralFacetId";
 constexpr const char* FreePointName = "FreePoint";
 /** Point array of structural edges: ids of the surface's points. */
 constexpr const char* SurfacePointIdName = "SurfacePointId";
+/** Field array: names of the regions, see Texts.h. */
+constexpr const char* RegionNamesName = "RegionNames";
+/** Field array: names of the contacts, see Texts.h. */
+constexpr const char* ContactNamesName = "ContactNames";
 } // namespace vtkCoreBridge
 
 #endif

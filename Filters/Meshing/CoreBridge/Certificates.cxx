@@ -2,14 +2,15 @@
 #include "CoreBridge/Certificates.h"
 
 #include "CoreBridge/Outputs.h"
+#include "CoreBridge/Texts.h"
 
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkIdTypeArray.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
-#include <vtkStringArray.h>
 
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,7 +36,9 @@ std::vector<std::pair<const char*, vtkIdType>> GetCounts(const cdm::MeshCertific
       { "Couplings", certificate.Couplings }, { "CoincidentPoints", certificate.CoincidentPoints },
       { "TetrahedraUnder5Degrees", certificate.Under5Degrees.Count },
       { "TetrahedraUnder10Degrees", certificate.Under10Degrees.Count },
-      { "TetrahedraUnder15Degrees", certificate.Under15Degrees.Count } });
+      { "TetrahedraUnder15Degrees", certificate.Under15Degrees.Count },
+      { "FlatTetrahedraAtSharpAngles", certificate.Under15Degrees.AtSharpAngles },
+      { "FlatTetrahedraAcrossLayers", certificate.Under15Degrees.AcrossLayers } });
   return counts;
 }
 
@@ -51,18 +54,22 @@ namespace vtkCoreBridge
 //--------------------------------------------------------------------------------------------------
 void AddCertificate(const cdm::MeshCertificate& certificate, vtkFieldData* data)
 {
-  vtkNew<vtkStringArray> text;
-  text->SetName("Certificate");
-  text->InsertNextValue(certificate.GetText());
-  data->AddArray(text);
+  std::vector<std::string> lines;
+  std::istringstream text(certificate.GetText());
+  for (std::string line; std::getline(text, line);)
+  {
+    lines.push_back(line);
+  }
+  SetTexts("Certificate", lines, data);
   for (const auto& count : GetCounts(certificate))
   {
     AddArray<vtkIdTypeArray>(data, count.first, 1, [&count](std::size_t) { return count.second; });
   }
-  const auto addAngle = [data](const char* name, double angle)
-  { AddArray<vtkDoubleArray>(data, name, 1, [angle](std::size_t) { return angle; }); };
-  addAngle("MeshSmallestDihedralAngle", certificate.SmallestDihedralAngle);
-  addAngle("MeshLargestDihedralAngle", certificate.LargestDihedralAngle);
+  const auto addNumber = [data](const char* name, double number)
+  { AddArray<vtkDoubleArray>(data, name, 1, [number](std::size_t) { return number; }); };
+  addNumber("MeshSmallestDihedralAngle", certificate.SmallestDihedralAngle);
+  addNumber("MeshLargestDihedralAngle", certificate.LargestDihedralAngle);
+  addNumber("SmallestVolumeRatio", certificate.SmallestVolumeRatio);
   const auto& regions = certificate.Regions;
   AddArray<vtkIntArray>(
     data, "RegionIds", regions.size(), [&](std::size_t i) { return regions[i].Region; });

@@ -13,8 +13,8 @@ class vtkFieldData;
 namespace vtkCoreBridge
 {
 /**
- * The string array Certificate (three lines: verdict, reasons, numbers), IsClean, one count for each
- * kind of fault, and the numbers of what was looked at.
+ * The texts Certificate (the lines of MeshCertificate::GetText(), see Texts.h), IsClean, one count for
+ * each kind of fault, and the numbers of what was looked at.
  */
 void AddCertificate(const cdm::MeshCertificate& certificate, vtkFieldData* data);
 

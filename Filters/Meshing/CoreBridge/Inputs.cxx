@@ -159,6 +159,115 @@ cdm::Status FindScalars(vtkDataSetAttributes* data, const std::string& name,
   }
   return {};
 }
+
+/** Ids of cells that several threads find, in the order of the cells. */
+class FoundCells
+{
+public:
+  explicit FoundCells(std::size_t numberOfBlocks) : Blocks(numberOfBlocks) {}
+
+  void Add(std::size_t block, std::size_t cell)
+  {
+    this->Blocks[block].push_back(static_cast<cdm::Id>(cell));
+  }
+
+  std::vector<cdm::Id> Collect() const
+  {
+    std::vector<cdm::Id> all;
+    for (const std::vector<cdm::Id>& block : this->Blocks)
+    {
+      all.insert(all.end(), block.begin(), block.end());
+    }
+    return all;
+  }
+
+private:
+  std::vector<std::vector<cdm::Id>> Blocks;
+};
+
+/** The cells that are tetrahedra. Other cells with a volume are an error. */
+cdm::Status FindTetrahedra(vtkUnstructuredGrid* input, std::vector<vtkIdType>& cells)
+{
+  const std::size_t count = static_cast<std::size_t>(input->GetNumberOfCells());
+  const cdm::ParallelLoopOptions loop{ vtkCoreBridge::GetNumberOfThreads(), std::size_t(1) << 14 };
+  FoundCells tetrahedra(cdm::GetNumberOfBlocks(count, loop));
+  FoundCells others(cdm::GetNumberOfBlocks(count, loop));
+  const auto sortCells = [&](std::size_t begin, std::size_t end, std::size_t block)
+  {
+    for (std::size_t cell = begin; cell < end; ++cell)
+    {
+      const int type = input->GetCellType(static_cast<vtkIdType>(cell));
+      if (type == VTK_TETRA)
+      {
+        tetrahedra.Add(block, cell);
+      }
+      else if (GetCellDimension(type) > 2)
+      {
+        others.Add(block, cell);
+      }
+    }
+  };
+  cdm::ParallelLoop(count, loop, {}, "", sortCells);
+  std::vector<cdm::Id> notTetrahedra = others.Collect();
+  if (!notTetrahedra.empty())
+  {
+    return NotTetrahedra(std::move(notTetrahedra));
+  }
+  const std::vector<cdm::Id> found = tetrahedra.Collect();
+  cells.assign(found.begin(), found.end());
+  if (cells.empty())
+  {
+    return cdm::Status::InvalidInput(count == 0
+        ? "The input is empty: it has no cells."
+        : "The input has no tetrahedra. Choose a tetrahedral mesh.");
+  }
+  return {};
+}
+
+/** Points and regions of tetrahedra. */
+cdm::Status CopyTetrahedra(
+  vtkUnstructuredGrid* input, const std::vector<vtkIdType>& cells, cdm::TetMesh& mesh)
+{
+  vtkDataArray* regions = input->GetCellData()->GetArray(vtkCoreBridge::RegionIdName);
+  mesh.Tetrahedra.resize(cells.size());
+  mesh.Regions.resize(cells.size(), 0);
+  const cdm::ParallelLoopOptions loop{ vtkCoreBridge::GetNumberOfThreads(), std::size_t(1) << 14 };
+  FoundCells missingPoints(cdm::GetNumberOfBlocks(cells.size(), loop));
+  FoundCells wrongRegions(cdm::GetNumberOfBlocks(cells.size(), loop));
+  const auto copy = [&](std::size_t begin, std::size_t end, std::size_t block)
+  {
+    vtkNew<vtkIdList> ids;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const vtkIdType cell = cells[i];
+      input->GetCellPoints(cell, ids);
+      std::copy_n(ids->GetPointer(0), 4, mesh.Tetrahedra[i].begin());
+      if (vtkCoreBridge::UsesMissingPoints(4, ids->GetPointer(0), input->GetNumberOfPoints()))
+      {
+        missingPoints.Add(block, static_cast<std::size_t>(cell));
+      }
+      if (regions &&
+        (!ToRegion(regions->GetComponent(cell, 0), mesh.Regions[i]) || mesh.Regions[i] < 0))
+      {
+        wrongRegions.Add(block, static_cast<std::size_t>(cell));
+      }
+    }
+  };
+  cdm::ParallelLoop(cells.size(), loop, {}, "", copy);
+  std::vector<cdm::Id> missing = missingPoints.Collect();
+  if (!missing.empty())
+  {
+    return vtkCoreBridge::MissingPoints(std::move(missing));
+  }
+  std::vector<cdm::Id> wrong = wrongRegions.Collect();
+  if (!wrong.empty())
+  {
+    return cdm::Status::InvalidInput(
+      "The cell array RegionId holds values that are no whole numbers from 0 on.",
+      std::move(wrong));
+  }
+  return {};
+}
 } // namespace
 
 namespace vtkCoreBridge
@@ -427,124 +536,30 @@ cdm::Status ToSeeds(vtkPointSet* input, std::vector<cdm::RegionSeed>& seeds)
 cdm::Status ToTetrahedra(
   vtkUnstructuredGrid* input, cdm::TetMesh& mesh, std::vector<vtkIdType>& cells)
 {
-  const vtkIdType count = input->GetNumberOfCells();
-  cdm::Status status = cdm::CheckNumberOfTetrahedra(count);
-  if (status.IsOk())
-  {
-    status = cdm::CheckIdRange(input->GetNumberOfPoints(), "points");
-  }
-  if (status.IsOk())
-  {
-    status = CheckArrays(input);
-  }
+  mesh = {};
+  cdm::Status status =
+    cdm::CheckNumberOfTetrahedra(input->GetNumberOfCells())
+      .Then([&] { return cdm::CheckIdRange(input->GetNumberOfPoints(), "points"); })
+      .Then([&] { return CheckArrays(input); })
+      .Then([&] { return FindTetrahedra(input, cells); })
+      .Then([&] { return CopyTetrahedra(input, cells, mesh); })
+      .Then([&] { return ToVectors(input->GetPoints(), mesh.Points); });
   if (!status.IsOk())
   {
     return status;
   }
-  vtkDataArray* regions = input->GetCellData()->GetArray(RegionIdName);
-  mesh = {};
-  struct Block
-  {
-    std::size_t Begin = 0;
-    std::size_t Tetrahedra = 0;
-    std::vector<cdm::Id> NotTetrahedra;
-    std::vector<cdm::Id> MissingPoints;
-    std::vector<cdm::Id> WrongRegions;
-  };
-  const cdm::ParallelLoopOptions loop{ GetNumberOfThreads(), std::size_t(1) << 14 };
-  std::vector<Block> blocks(cdm::GetNumberOfBlocks(count, loop));
-  const auto countBlock = [&](std::size_t begin, std::size_t end, std::size_t block)
-  {
-    for (std::size_t cell = begin; cell < end; ++cell)
-    {
-      const int type = input->GetCellType(static_cast<vtkIdType>(cell));
-      blocks[block].Tetrahedra += type == VTK_TETRA;
-      if (type != VTK_TETRA && GetCellDimension(type) > 2)
-      {
-        blocks[block].NotTetrahedra.push_back(static_cast<cdm::Id>(cell));
-      }
-    }
-  };
-  cdm::ParallelLoop(count, loop, {}, "", countBlock);
-  std::size_t numberOfTetrahedra = 0;
-  for (Block& block : blocks)
-  {
-    block.Begin = numberOfTetrahedra;
-    numberOfTetrahedra += block.Tetrahedra;
-  }
-  mesh.Tetrahedra.resize(numberOfTetrahedra);
-  mesh.Regions.resize(numberOfTetrahedra, 0);
-  cells.resize(numberOfTetrahedra);
-  const auto convertBlock = [&](std::size_t begin, std::size_t end, std::size_t block)
-  {
-    vtkNew<vtkIdList> ids;
-    std::size_t tetrahedron = blocks[block].Begin;
-    for (std::size_t i = begin; i < end; ++i)
-    {
-      const auto cell = static_cast<vtkIdType>(i);
-      if (input->GetCellType(cell) != VTK_TETRA)
-      {
-        continue;
-      }
-      input->GetCellPoints(cell, ids);
-      cells[tetrahedron] = cell;
-      std::copy_n(ids->GetPointer(0), 4, mesh.Tetrahedra[tetrahedron].begin());
-      if (UsesMissingPoints(4, ids->GetPointer(0), input->GetNumberOfPoints()))
-      {
-        blocks[block].MissingPoints.push_back(static_cast<cdm::Id>(cell));
-      }
-      cdm::Id& region = mesh.Regions[tetrahedron];
-      if (regions && (!ToRegion(regions->GetComponent(cell, 0), region) || region < 0))
-      {
-        blocks[block].WrongRegions.push_back(static_cast<cdm::Id>(cell));
-      }
-      ++tetrahedron;
-    }
-  };
-  cdm::ParallelLoop(count, loop, {}, "", convertBlock);
-  std::vector<cdm::Id> notTetrahedra;
-  std::vector<cdm::Id> missingPoints;
-  std::vector<cdm::Id> wrongRegions;
-  for (const Block& block : blocks)
-  {
-    const auto append = [](std::vector<cdm::Id>& all, const std::vector<cdm::Id>& some)
-    { all.insert(all.end(), some.begin(), some.end()); };
-    append(notTetrahedra, block.NotTetrahedra);
-    append(missingPoints, block.MissingPoints);
-    append(wrongRegions, block.WrongRegions);
-  }
-  if (!notTetrahedra.empty())
-  {
-    return NotTetrahedra(std::move(notTetrahedra));
-  }
-  if (!missingPoints.empty())
-  {
-    return MissingPoints(std::move(missingPoints));
-  }
-  if (!wrongRegions.empty())
-  {
-    return cdm::Status::InvalidInput(
-      "The cell array RegionId holds values that are no whole numbers from 0 on.",
-      std::move(wrongRegions));
-  }
-  if (cells.empty())
-  {
-    return cdm::Status::InvalidInput(count == 0
-        ? "The input is empty: it has no cells."
-        : "The input has no tetrahedra. Choose a tetrahedral mesh.");
-  }
-  status = ToVectors(input->GetPoints(), mesh.Points);
+  std::vector<cdm::Id> notFinite;
   for (std::size_t i = 0; i < mesh.Points.size(); ++i)
   {
     if (!cdm::IsFinite(mesh.Points[i]))
     {
-      status.Points.push_back(static_cast<cdm::Id>(i));
+      notFinite.push_back(static_cast<cdm::Id>(i));
     }
   }
-  if (!status.Points.empty())
+  if (!notFinite.empty())
   {
     return cdm::Status::InvalidInput(
-      "Points have coordinates that are not finite: remove or correct them.", {}, status.Points);
+      "Points have coordinates that are not finite: remove or correct them.", {}, notFinite);
   }
   return status;
 }

@@ -3,6 +3,7 @@
 
 #include "CoreBridge/ArrayNames.h"
 #include "CoreBridge/Execution.h"
+#include "CoreBridge/Texts.h"
 #include "CoreBridge/Tuples.h"
 
 #include <vtkCellArray.h>
@@ -86,6 +87,7 @@ void FromTriangleMesh(const cdm::TriangleMesh& surface, vtkPolyData* output)
     }
     output->GetCellData()->AddArray(labels);
   }
+  EncodeNames(output->GetFieldData());
 }
 
 //--------------------------------------------------------------------------------------------------
@@ -97,6 +99,7 @@ void FromTetMesh(const cdm::TetMesh& mesh, vtkUnstructuredGrid* output)
     VTK_TETRA, MakeCells(count, 4, [&](std::size_t i, int j) { return mesh.Tetrahedra[i][j]; }));
   output->GetCellData()->SetScalars(
     MakeArray<vtkIntArray>(RegionIdName, count, [&](std::size_t i) { return mesh.Regions[i]; }));
+  EncodeNames(output->GetFieldData());
 }
 
 //--------------------------------------------------------------------------------------------------

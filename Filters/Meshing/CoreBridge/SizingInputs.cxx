@@ -235,17 +235,54 @@ private:
   vtkNew<vtkStaticCellLocator> Cells;
   vtkNew<vtkStaticPointLocator> Points;
 };
-/** The smallest principal value of a tuple of Sizing. */
-double FindSmallestLength(const double* tuple, int components)
+
+/** The smallest principal value of the array Sizing at each point, or an error. */
+cdm::Status FindSmallestLengths(vtkDataArray* values, std::vector<double>& smallest)
 {
-  if (components <= 3)
+  const int components = values->GetNumberOfComponents();
+  smallest.resize(values->GetNumberOfTuples());
+  for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i)
   {
-    return *std::min_element(tuple, tuple + components);
+    double tuple[MaximumSizingComponents];
+    values->GetTuple(i, tuple);
+    bool isGood =
+      std::all_of(tuple, tuple + components, [](double value) { return std::isfinite(value); });
+    double lengths[3] = { tuple[0], tuple[components > 1 ? 1 : 0], tuple[components > 1 ? 2 : 0] };
+    if (isGood && components > 3)
+    {
+      double directions[3][3];
+      FindPrincipalAxes(tuple, components, lengths, directions);
+    }
+    const double largest = std::max({ lengths[0], lengths[1], lengths[2] });
+    for (int j = 0; j < 3 && components == 9; ++j)
+    {
+      isGood = isGood &&
+        std::abs(tuple[3 * j + (j + 1) % 3] - tuple[3 * ((j + 1) % 3) + j]) <= 1e-6 * largest;
+    }
+    smallest[i] = std::min({ lengths[0], lengths[1], lengths[2] });
+    if (!isGood || !(smallest[i] > 0.0))
+    {
+      return cdm::Status::InvalidInput(std::string("The point array Sizing must be positive and "
+                                                   "finite, and a tensor symmetric") +
+        "; its value at point " + std::to_string(i) + " of the sizing input is " +
+        ListValues(tuple, components) + ".");
+    }
   }
-  double lengths[3];
-  double directions[3][3];
-  FindPrincipalAxes(tuple, components, lengths, directions);
-  return std::min({ lengths[0], lengths[1], lengths[2] });
+  return {};
+}
+
+/** Copies all points, with several threads. */
+std::vector<cdm::Vec3> CopyPoints(vtkDataSet* input)
+{
+  std::vector<cdm::Vec3> points(input->GetNumberOfPoints());
+  vtkCoreBridge::ForEach(points.size(),
+    [&](std::size_t i)
+    {
+      double x[3];
+      input->GetPoint(static_cast<vtkIdType>(i), x);
+      points[i] = { x[0], x[1], x[2] };
+    });
+  return points;
 }
 
 /** Appends the corners of a cell: as it is, or in simplices; its points if these cannot be had. */
@@ -286,32 +323,20 @@ void AppendCell(vtkGenericCell* cell, vtkIdList* ids, vtkPoints* points, cdm::Si
   }
 }
 
-/** Where the array Sizing is smallest: in cells, or at points without cells. */
+/**
+ * Finds minima of a sizing in the cells of a data set, or at its points if it has no cells.
+ * lengths: the smallest length at each point.
+ */
 cdm::Status FindMinima(
-  vtkDataSet* input, vtkDataArray* values, std::shared_ptr<const cdm::SizingMinima>& minima)
+  vtkDataSet* input, std::vector<double> lengths, std::shared_ptr<const cdm::SizingMinima>& minima)
 {
-  const int components = values->GetNumberOfComponents();
-  const vtkIdType count = input->GetNumberOfPoints();
-  cdm::Status status = cdm::CheckIdRange(count, "points");
+  cdm::Status status = cdm::CheckIdRange(input->GetNumberOfPoints(), "points");
   if (!status.IsOk())
   {
     return status;
   }
-  std::vector<double> lengths(count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    double tuple[MaximumSizingComponents];
-    values->GetTuple(i, tuple);
-    lengths[i] = FindSmallestLength(tuple, components);
-  }
   cdm::SizingCells cells;
-  cells.Points.resize(count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    double x[3];
-    input->GetPoint(i, x);
-    cells.Points[i] = { x[0], x[1], x[2] };
-  }
+  cells.Points = CopyPoints(input);
   vtkNew<vtkGenericCell> cell;
   vtkNew<vtkIdList> ids;
   vtkNew<vtkPoints> points;
@@ -324,11 +349,6 @@ cdm::Status FindMinima(
     {
       return status;
     }
-  }
-  for (vtkIdType i = 0; i < count && input->GetNumberOfCells() == 0; ++i)
-  {
-    cells.Connectivity.push_back(static_cast<cdm::Id>(i));
-    cells.Offsets.push_back(static_cast<cdm::Id>(i + 1));
   }
   minima = std::make_shared<const cdm::SizingMinima>(std::move(cells), std::move(lengths));
   return {};
@@ -349,42 +369,14 @@ cdm::Status ToSizing(vtkDataSet* input, cdm::SizingField& sizing)
       "The sizing input needs a point array Sizing, the target edge length in model units: one "
       "component, 3 (for each axis), or 6 or 9 (a symmetric tensor).");
   }
-  const cdm::Status status = CheckArrays(input);
+  std::vector<double> lengths;
+  std::shared_ptr<const cdm::SizingMinima> minima;
+  const cdm::Status status = CheckArrays(input)
+                               .Then([&] { return FindSmallestLengths(values, lengths); })
+                               .Then([&] { return FindMinima(input, std::move(lengths), minima); });
   if (!status.IsOk())
   {
     return status;
-  }
-  for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i)
-  {
-    double tuple[MaximumSizingComponents];
-    values->GetTuple(i, tuple);
-    bool isGood =
-      std::all_of(tuple, tuple + components, [](double value) { return std::isfinite(value); });
-    double lengths[3] = { tuple[0], tuple[components > 1 ? 1 : 0], tuple[components > 1 ? 2 : 0] };
-    if (isGood && components > 3)
-    {
-      double directions[3][3];
-      FindPrincipalAxes(tuple, components, lengths, directions);
-    }
-    const double largest = std::max({ lengths[0], lengths[1], lengths[2] });
-    for (int j = 0; j < 3 && components == 9; ++j)
-    {
-      isGood = isGood &&
-        std::abs(tuple[3 * j + (j + 1) % 3] - tuple[3 * ((j + 1) % 3) + j]) <= 1e-6 * largest;
-    }
-    if (!isGood || !(std::min({ lengths[0], lengths[1], lengths[2] }) > 0.0))
-    {
-      return cdm::Status::InvalidInput(std::string("The point array Sizing must be positive and "
-                                                   "finite, and a tensor symmetric") +
-        "; its value at point " + std::to_string(i) + " of the sizing input is " +
-        ListValues(tuple, components) + ".");
-    }
-  }
-  std::shared_ptr<const cdm::SizingMinima> minima;
-  const cdm::Status found = FindMinima(input, values, minima);
-  if (!found.IsOk())
-  {
-    return found;
   }
   const auto interpolator = std::make_shared<const SizingInterpolator>(input, values);
   sizing = cdm::SizingField(
@@ -414,14 +406,7 @@ cdm::Status ToSizingCells(vtkDataSet* input, cdm::SizingCells& cells)
       return status;
     }
   }
-  cells.Points.resize(count);
-  ForEach(cells.Points.size(),
-    [&](std::size_t i)
-    {
-      double x[3];
-      input->GetPoint(static_cast<vtkIdType>(i), x);
-      cells.Points[i] = { x[0], x[1], x[2] };
-    });
+  cells.Points = CopyPoints(input);
   vtkNew<vtkIdList> ids;
   for (vtkIdType cell = 0; cell < input->GetNumberOfCells(); ++cell)
   {

@@ -6,11 +6,9 @@
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkFieldData.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPolyData.h>
-#include <vtkStringArray.h>
 
 namespace vtkStructureOutput
 {
@@ -50,16 +48,5 @@ void AddIds(const char* arrayName, const std::vector<cdm::Id>& ids, vtkPolyData*
     array->InsertNextValue(id);
   }
   output->GetCellData()->AddArray(array);
-}
-
-void AddNames(const char* arrayName, const std::vector<std::string>& names, vtkPolyData* output)
-{
-  vtkNew<vtkStringArray> array;
-  array->SetName(arrayName);
-  for (const std::string& name : names)
-  {
-    array->InsertNextValue(name);
-  }
-  output->GetFieldData()->AddArray(array);
 }
 } // namespace vtkStructureOutput

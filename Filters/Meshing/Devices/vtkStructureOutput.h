@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkStructureOutput.h
- * @brief The output of the sources of structures: polygons, their arrays, and names.
+ * @brief The output of the sources of structures: polygons and their arrays.
  */
 #ifndef vtkStructureOutput_h
 #define vtkStructureOutput_h
 
 #include "Core/Meshes/PolygonSoup.h"
 
-#include <string>
 #include <vector>
 
 class vtkPolyData;
@@ -21,9 +20,6 @@ void SetPolygons(
 
 /** A cell array of one integer for each polygon. */
 void AddIds(const char* arrayName, const std::vector<cdm::Id>& ids, vtkPolyData* output);
-
-/** A field array of strings. */
-void AddNames(const char* arrayName, const std::vector<std::string>& names, vtkPolyData* output);
 } // namespace vtkStructureOutput
 
 #endif

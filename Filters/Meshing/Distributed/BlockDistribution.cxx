@@ -123,11 +123,9 @@ cdm::Status BlockDistribution::Run(ProcessGroup& processes, vtkDataObjectTree* i
       }
       return step;
     });
-  if (status.IsOk())
-  {
-    status = this->Assign(processes);
-  }
-  return status.IsOk() ? this->Send(processes) : status;
+  return std::move(status)
+    .Then([&] { return this->Assign(processes); })
+    .Then([&] { return this->Send(processes); });
 }
 
 //--------------------------------------------------------------------------------------------------
@@ -195,10 +193,8 @@ cdm::Status BlockDistribution::Send(ProcessGroup& processes)
       return cdm::Status();
     });
   std::vector<ProcessGroup::Bytes> received;
-  if (status.IsOk())
-  {
-    status = processes.Exchange(std::move(messages), received);
-  }
+  status =
+    std::move(status).Then([&] { return processes.Exchange(std::move(messages), received); });
   if (!status.IsOk())
   {
     return status;

@@ -22,22 +22,22 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <numeric>
 #include <set>
 #include <string>
 #include <unordered_map>
+#include <utility>
 
 namespace vtkDistributed
 {
 namespace
 {
-using Numbers = std::array<std::int64_t, 4>;
-
 /** The region of a tetrahedron that another process has as well. */
 struct SharedTetrahedron
 {
   /** The numbers of its points, ascending. */
-  Numbers Key;
+  std::array<std::int64_t, 4> Key;
   std::int64_t Region;
 };
 
@@ -58,6 +58,36 @@ vtkSmartPointer<vtkIdTypeArray> MakeGlobalIds(const std::vector<std::int64_t>& n
     ids->SetValue(static_cast<vtkIdType>(i), numbers[i]);
   }
   return ids;
+}
+
+/**
+ * Exchanges answers that each consist of flags and points: HaloPoints or ConflictAnswers, one for each
+ * process.
+ */
+template <typename Answer>
+cdm::Status Exchange(
+  ProcessGroup& processes, std::vector<Answer>& answers, std::vector<Answer>& received)
+{
+  std::vector<std::vector<char>> flags;
+  std::vector<std::vector<cdm::NumberedPoint>> points;
+  for (auto& [ownFlags, ownPoints] : answers)
+  {
+    flags.push_back(std::move(ownFlags));
+    points.push_back(std::move(ownPoints));
+  }
+  std::vector<std::vector<char>> flagsThere;
+  std::vector<std::vector<cdm::NumberedPoint>> pointsThere;
+  return processes.Exchange(flags, flagsThere)
+    .Then([&] { return processes.Exchange(points, pointsThere); })
+    .Then(
+      [&]
+      {
+        for (std::size_t i = 0; i < flagsThere.size(); ++i)
+        {
+          received.push_back({ std::move(flagsThere[i]), std::move(pointsThere[i]) });
+        }
+        return cdm::Status();
+      });
 }
 
 vtkSmartPointer<vtkUnsignedCharArray> MakeGhostArray(std::size_t count)
@@ -107,7 +137,6 @@ cdm::Status DistributedMesh::FindSimplex(std::vector<cdm::NumberedPoint>& simple
 //--------------------------------------------------------------------------------------------------
 cdm::Status DistributedMesh::MakePart()
 {
-  const std::size_t count = static_cast<std::size_t>(this->Processes.GetSize());
   std::vector<cdm::NumberedPoint> simplex;
   cdm::Status status = this->FindSimplex(simplex);
   if (!status.IsOk())
@@ -122,141 +151,107 @@ cdm::Status DistributedMesh::MakePart()
   const std::vector<cdm::Box> allBounds =
     this->Processes.GatherAll(std::vector<cdm::Box>{ bounds });
   std::vector<std::vector<cdm::Box>> boxes;
-  status = this->Processes.Do(
-    [&]
+  const auto makePart = [&]
+  {
+    cdm::Status range = cdm::CheckIdRange(this->OwnPoints.size(), "points on one process");
+    if (!range.IsOk())
     {
-      const cdm::Status range = cdm::CheckIdRange(this->OwnPoints.size(), "points on one process");
-      if (!range.IsOk())
-      {
-        return range;
-      }
-      this->Part = std::make_unique<cdm::PartTetrahedralization>(
-        std::move(this->OwnPoints), this->Processes.GetRank(), allBounds, this->Input.GetCell());
-      this->Part->AddPoints(simplex);
-      boxes = this->Part->GetHaloBoxes();
-      return cdm::Status();
-    });
+      return range;
+    }
+    this->Part = std::make_unique<cdm::PartTetrahedralization>(
+      std::move(this->OwnPoints), this->Processes.GetRank(), allBounds, this->Input.GetCell());
+    this->Part->AddPoints(simplex);
+    boxes = this->Part->GetHaloBoxes();
+    return range;
+  };
   std::vector<std::vector<cdm::Box>> wanted;
-  if (status.IsOk())
+  std::vector<cdm::HaloPoints> halo;
+  const auto answer = [&]
   {
-    status = this->Processes.Exchange(boxes, wanted);
+    for (const std::vector<cdm::Box>& boxesThere : wanted)
+    {
+      halo.push_back(this->Part->GetPointsIn(boxesThere));
+    }
+    return cdm::Status();
+  };
+  std::vector<cdm::HaloPoints> received;
+  const auto takeAnswers = [&]
+  {
+    this->Part->TakeHalo(received);
+    return cdm::Status();
+  };
+  return this->Processes.Do(makePart)
+    .Then([&] { return this->Processes.Exchange(boxes, wanted); })
+    .Then([&] { return this->Processes.Do(answer); })
+    .Then([&] { return Exchange(this->Processes, halo, received); })
+    .Then([&] { return this->Processes.Do(takeAnswers); });
+}
+
+//--------------------------------------------------------------------------------------------------
+/**
+ * One round of making tetrahedra and asking the other processes about them. isFinal: nobody has a
+ * point that changes them.
+ */
+cdm::Status DistributedMesh::UpdateTetrahedra(const cdm::ExecutionContext& context, bool& isFinal)
+{
+  std::vector<std::vector<cdm::ConflictQuery>> queries;
+  std::vector<cdm::ConflictAnswers> answers;
+  const auto answer = [&]
+  {
+    cdm::Status step;
+    for (std::size_t i = 0; i < queries.size() && step.IsOk(); ++i)
+    {
+      answers.emplace_back();
+      step = this->Part->Answer(queries[i], context.Part(0.9, 1.0), answers.back());
+    }
+    return step;
+  };
+  cdm::Status status =
+    this->Processes.Do([&] { return this->Part->Update(context.Part(0.0, 0.9)); })
+      .Then([&] { return this->Processes.Exchange(this->Part->GetQueries(), queries); })
+      .Then([&] { return this->Processes.Do(answer); });
+  if (!status.IsOk())
+  {
+    return status;
   }
-  std::vector<std::vector<char>> isComplete(count);
-  std::vector<std::vector<cdm::NumberedPoint>> points(count);
-  if (status.IsOk())
+  if (this->Processes.Maximum(this->Part->GaveUp() ? 1 : 0) > 0)
   {
-    status = this->Processes.Do(
-      [&]
-      {
-        for (std::size_t part = 0; part < count; ++part)
-        {
-          cdm::HaloPoints halo = this->Part->GetPointsIn(wanted[part]);
-          isComplete[part] = std::move(halo.IsComplete);
-          points[part] = std::move(halo.Points);
-        }
-        return cdm::Status();
-      });
+    this->Part->CompareStars();
+    isFinal = false;
+    return status;
   }
-  std::vector<std::vector<char>> completeThere;
-  std::vector<std::vector<cdm::NumberedPoint>> pointsThere;
+  bool isOwnFinal = false;
+  std::vector<cdm::ConflictAnswers> received;
+  const auto takeAnswers = [&]
+  {
+    isOwnFinal = this->Part->TakeAnswers(received);
+    return cdm::Status();
+  };
+  status = Exchange(this->Processes, answers, received)
+             .Then([&] { return this->Processes.Do(takeAnswers); });
   if (status.IsOk())
   {
-    status = this->Processes.Exchange(isComplete, completeThere);
-  }
-  if (status.IsOk())
-  {
-    status = this->Processes.Exchange(points, pointsThere);
-  }
-  if (status.IsOk())
-  {
-    status = this->Processes.Do(
-      [&]
-      {
-        std::vector<cdm::HaloPoints> halo(count);
-        for (std::size_t part = 0; part < count; ++part)
-        {
-          halo[part] = { std::move(completeThere[part]), std::move(pointsThere[part]) };
-        }
-        this->Part->TakeHalo(halo);
-        return cdm::Status();
-      });
+    isFinal = this->Processes.Sum(isOwnFinal ? 0 : 1) == 0;
   }
   return status;
 }
 
 //--------------------------------------------------------------------------------------------------
-/** Rounds of making tetrahedra and asking the other processes about them. */
 cdm::Status DistributedMesh::Tetrahedralize()
 {
-  const std::size_t count = static_cast<std::size_t>(this->Processes.GetSize());
   // The first round takes most of the time; each of the others a part of what is left.
   double begin = 0.1;
   double end = 0.7;
   for (bool isFinal = false; !isFinal;)
   {
-    const cdm::ExecutionContext part = this->Context.Part(begin, end);
-    begin = end;
-    end += 0.5 * (0.85 - end);
-    ++this->NumberOfRounds;
-    cdm::Status status =
-      this->Processes.Do([&] { return this->Part->Update(part.Part(0.0, 0.9)); });
-    std::vector<std::vector<cdm::ConflictQuery>> queries;
-    if (status.IsOk())
-    {
-      status = this->Processes.Exchange(this->Part->GetQueries(), queries);
-    }
-    std::vector<std::vector<char>> hasConflict(count);
-    std::vector<std::vector<cdm::NumberedPoint>> points(count);
-    if (status.IsOk())
-    {
-      status = this->Processes.Do(
-        [&]
-        {
-          cdm::Status step;
-          for (std::size_t i = 0; i < count && step.IsOk(); ++i)
-          {
-            cdm::ConflictAnswers answers;
-            step = this->Part->Answer(queries[i], part.Part(0.9, 1.0), answers);
-            hasConflict[i] = std::move(answers.HasConflict);
-            points[i] = std::move(answers.Points);
-          }
-          return step;
-        });
-    }
-    if (status.IsOk() && this->Processes.Maximum(this->Part->GaveUp() ? 1 : 0) > 0)
-    {
-      this->Part->CompareStars();
-      continue;
-    }
-    std::vector<std::vector<char>> conflictsThere;
-    std::vector<std::vector<cdm::NumberedPoint>> pointsThere;
-    if (status.IsOk())
-    {
-      status = this->Processes.Exchange(hasConflict, conflictsThere);
-    }
-    if (status.IsOk())
-    {
-      status = this->Processes.Exchange(points, pointsThere);
-    }
-    if (status.IsOk())
-    {
-      status = this->Processes.Do(
-        [&]
-        {
-          std::vector<cdm::ConflictAnswers> answers(count);
-          for (std::size_t i = 0; i < count; ++i)
-          {
-            answers[i] = { std::move(conflictsThere[i]), std::move(pointsThere[i]) };
-          }
-          isFinal = this->Part->TakeAnswers(answers);
-          return cdm::Status();
-        });
-    }
+    const cdm::Status status = this->UpdateTetrahedra(this->Context.Part(begin, end), isFinal);
     if (!status.IsOk())
     {
       return status;
     }
-    isFinal = this->Processes.Sum(isFinal ? 0 : 1) == 0;
+    begin = end;
+    end += 0.5 * (0.85 - end);
+    ++this->NumberOfRounds;
   }
   this->NumberOfOwnPoints = this->Part->GetNumberOfOwnPoints();
   this->Points = this->Part->GetPoints();
@@ -285,10 +280,107 @@ void DistributedMesh::FindSurfacePlaces()
 }
 
 //--------------------------------------------------------------------------------------------------
+/** The triangles of the surface that have all their points in the part, with those points. */
+std::vector<cdm::TriangleIds> DistributedMesh::CollectPartTriangles()
+{
+  this->FindSurfacePlaces();
+  std::vector<cdm::TriangleIds> triangles;
+  for (std::size_t t = 0; t < this->Surface.GetMesh().Triangles.size(); ++t)
+  {
+    cdm::TriangleIds ids = this->Surface.GetMesh().Triangles[t];
+    std::transform(
+      ids.begin(), ids.end(), ids.begin(), [this](cdm::Id id) { return this->SurfacePlaces[id]; });
+    if (std::find(ids.begin(), ids.end(), cdm::NoId) == ids.end())
+    {
+      triangles.push_back(ids);
+      this->PartTriangles.push_back(static_cast<cdm::Id>(t));
+    }
+  }
+  return triangles;
+}
+
+//--------------------------------------------------------------------------------------------------
+/** The numbers of a tetrahedron's points, ascending: the same on all processes. */
+DistributedMesh::Numbers DistributedMesh::GetKey(cdm::Id tetrahedron) const
+{
+  Numbers key;
+  const cdm::TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
+  std::transform(
+    ids.begin(), ids.end(), key.begin(), [this](cdm::Id id) { return this->Points[id].Number; });
+  std::sort(key.begin(), key.end());
+  return key;
+}
+
+//--------------------------------------------------------------------------------------------------
+/** The tetrahedra of this process that others have as well, ascending by their keys. */
+std::vector<DistributedMesh::KeyedTetrahedron> DistributedMesh::CollectShared() const
+{
+  std::vector<KeyedTetrahedron> shared;
+  for (std::size_t t = 0; t < this->Mesh.Tetrahedra.size(); ++t)
+  {
+    const cdm::TetrahedronIds& ids = this->Mesh.Tetrahedra[t];
+    if (*std::max_element(ids.begin(), ids.end()) >= this->NumberOfOwnPoints)
+    {
+      shared.emplace_back(this->GetKey(static_cast<cdm::Id>(t)), static_cast<cdm::Id>(t));
+    }
+  }
+  std::sort(shared.begin(), shared.end());
+  return shared;
+}
+
+//--------------------------------------------------------------------------------------------------
+/** Tells the owners of the points of shared tetrahedra which regions these have got, and hears it. */
+cdm::Status DistributedMesh::ExchangeRegions(const std::vector<KeyedTetrahedron>& shared,
+  const std::vector<cdm::Id>& news, cdm::PartRegions& regions)
+{
+  std::vector<std::vector<SharedTetrahedron>> messages(
+    static_cast<std::size_t>(this->Processes.GetSize()));
+  for (cdm::Id t : news)
+  {
+    std::set<int> owners;
+    for (cdm::Id id : this->Mesh.Tetrahedra[t])
+    {
+      if (id >= this->NumberOfOwnPoints)
+      {
+        owners.insert(this->Input.GetOwner(this->Points[id].Position));
+      }
+    }
+    for (int owner : owners)
+    {
+      messages[owner].push_back({ this->GetKey(t), regions.GetRegion(t) });
+    }
+  }
+  std::vector<std::vector<SharedTetrahedron>> received;
+  const auto setRegions = [&]
+  {
+    cdm::Status step;
+    for (const std::vector<SharedTetrahedron>& message : received)
+    {
+      for (const SharedTetrahedron& item : message)
+      {
+        const auto place =
+          std::lower_bound(shared.begin(), shared.end(), std::make_pair(item.Key, cdm::Id(0)));
+        if (place == shared.end() || place->first != item.Key)
+        {
+          return cdm::Status::InternalError("Processes do not agree on a tetrahedron.");
+        }
+        step = regions.SetRegion(place->second, static_cast<cdm::Id>(item.Region));
+        if (!step.IsOk())
+        {
+          return step;
+        }
+      }
+    }
+    return step;
+  };
+  return this->Processes.Exchange(messages, received)
+    .Then([&] { return this->Processes.Do(setRegions); });
+}
+
+//--------------------------------------------------------------------------------------------------
 /** Regions go from the surface to what it bounds, and on to the processes that share that. */
 cdm::Status DistributedMesh::FindRegions()
 {
-  const std::size_t count = static_cast<std::size_t>(this->Processes.GetSize());
   std::vector<cdm::TriangleIds> triangles;
   std::vector<cdm::RegionPair> sides;
   cdm::Status status = this->Processes.Do(
@@ -298,18 +390,10 @@ cdm::Status DistributedMesh::FindRegions()
       {
         this->Mesh.Points.push_back(point.Position);
       }
-      this->FindSurfacePlaces();
-      for (std::size_t t = 0; t < this->Surface.GetMesh().Triangles.size(); ++t)
+      triangles = this->CollectPartTriangles();
+      for (cdm::Id t : this->PartTriangles)
       {
-        cdm::TriangleIds ids = this->Surface.GetMesh().Triangles[t];
-        std::transform(ids.begin(), ids.end(), ids.begin(),
-          [this](cdm::Id id) { return this->SurfacePlaces[id]; });
-        if (std::find(ids.begin(), ids.end(), cdm::NoId) == ids.end())
-        {
-          triangles.push_back(ids);
-          sides.push_back(this->Surface.GetSideRegions()[t]);
-          this->PartTriangles.push_back(static_cast<cdm::Id>(t));
-        }
+        sides.push_back(this->Surface.GetSideRegions()[t]);
       }
       return cdm::BuildNeighbors(this->Mesh, this->Context.GetNumberOfThreads());
     });
@@ -317,96 +401,32 @@ cdm::Status DistributedMesh::FindRegions()
   {
     return status;
   }
-  const auto nameTriangles = [&](cdm::Status& failure)
-  {
-    for (cdm::Id& cell : failure.Cells)
-    {
-      cell = this->PartTriangles[cell];
-    }
-    this->Surface.NameTriangles(failure);
-    return failure;
-  };
   cdm::PartRegions regions(this->Mesh, this->NumberOfOwnPoints, triangles, sides);
-  const auto getKey = [this](cdm::Id tetrahedron)
-  {
-    Numbers key;
-    const cdm::TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
-    std::transform(
-      ids.begin(), ids.end(), key.begin(), [this](cdm::Id id) { return this->Points[id].Number; });
-    std::sort(key.begin(), key.end());
-    return key;
-  };
-  std::vector<std::pair<Numbers, cdm::Id>> shared;
+  std::vector<KeyedTetrahedron> shared;
   std::vector<cdm::Id> sharedIds;
   status = this->Processes.Do(
     [&]
     {
-      for (std::size_t t = 0; t < this->Mesh.Tetrahedra.size(); ++t)
-      {
-        const cdm::TetrahedronIds& ids = this->Mesh.Tetrahedra[t];
-        if (*std::max_element(ids.begin(), ids.end()) >= this->NumberOfOwnPoints)
-        {
-          shared.emplace_back(getKey(static_cast<cdm::Id>(t)), static_cast<cdm::Id>(t));
-          sharedIds.push_back(static_cast<cdm::Id>(t));
-        }
-      }
-      std::sort(shared.begin(), shared.end());
+      shared = this->CollectShared();
+      std::transform(shared.begin(), shared.end(), std::back_inserter(sharedIds),
+        [](const KeyedTetrahedron& tetrahedron) { return tetrahedron.second; });
+      std::sort(sharedIds.begin(), sharedIds.end());
       cdm::Status step = regions.Start();
-      return nameTriangles(step);
+      for (cdm::Id& cell : step.Cells)
+      {
+        cell = this->PartTriangles[cell];
+      }
+      this->Surface.NameTriangles(step);
+      return step;
     });
   for (bool hasNews = true; status.IsOk() && hasNews;)
   {
     const std::vector<cdm::Id> news = regions.TakeNews(sharedIds);
-    std::vector<std::vector<SharedTetrahedron>> messages(count);
-    for (cdm::Id t : news)
-    {
-      std::set<int> owners;
-      for (cdm::Id id : this->Mesh.Tetrahedra[t])
-      {
-        if (id >= this->NumberOfOwnPoints)
-        {
-          owners.insert(this->Input.GetOwner(this->Points[id].Position));
-        }
-      }
-      for (int owner : owners)
-      {
-        messages[owner].push_back({ getKey(t), regions.GetRegion(t) });
-      }
-    }
-    std::vector<std::vector<SharedTetrahedron>> received;
-    status = this->Processes.Exchange(messages, received);
-    if (status.IsOk())
-    {
-      status = this->Processes.Do(
-        [&]
-        {
-          cdm::Status step;
-          for (const std::vector<SharedTetrahedron>& message : received)
-          {
-            for (const SharedTetrahedron& item : message)
-            {
-              const auto place = std::lower_bound(
-                shared.begin(), shared.end(), std::make_pair(item.Key, cdm::Id(0)));
-              if (place == shared.end() || place->first != item.Key)
-              {
-                return cdm::Status::InternalError("Processes do not agree on a tetrahedron.");
-              }
-              step = regions.SetRegion(place->second, static_cast<cdm::Id>(item.Region));
-              if (!step.IsOk())
-              {
-                return step;
-              }
-            }
-          }
-          return step;
-        });
-    }
+    status = this->ExchangeRegions(shared, news, regions);
     hasNews = this->Processes.Sum(static_cast<std::int64_t>(news.size())) > 0;
   }
-  if (status.IsOk())
-  {
-    status = this->Processes.Do([&] { return regions.Finish(this->Mesh.Regions); });
-  }
+  status = std::move(status).Then(
+    [&] { return this->Processes.Do([&] { return regions.Finish(this->Mesh.Regions); }); });
   for (std::size_t t = 0; t < triangles.size() && status.IsOk(); ++t)
   {
     const cdm::Id side = static_cast<cdm::Id>(2 * t);
@@ -505,149 +525,194 @@ void DistributedMesh::CollectOwn()
 }
 
 //--------------------------------------------------------------------------------------------------
-/** Level by level all tetrahedra at the points of those before. */
-cdm::Status DistributedMesh::AddGhosts()
+/** Adds ghosts, level by level: all tetrahedra at the points of those before. */
+class DistributedMesh::GhostLevels
 {
-  const std::size_t count = static_cast<std::size_t>(this->Processes.GetSize());
-  // The tetrahedra of this process at each of its points. Those at its own points are all.
-  std::vector<cdm::Id> starts(this->Points.size() + 1, 0);
-  std::vector<cdm::Id> stars;
-  std::unordered_map<std::int64_t, cdm::Id> places;
-  std::vector<char> isTaken(this->Mesh.Tetrahedra.size(), 0);
-  cdm::Status status = this->Processes.Do(
-    [&]
+public:
+  explicit GhostLevels(DistributedMesh& mesh) : Owner(mesh) {}
+
+  /** Finds the tetrahedra of this process at each of its points. Those at its own points are all. */
+  void Start()
+  {
+    const DistributedMesh& mesh = this->Owner;
+    this->NumberOfPartPoints = static_cast<cdm::Id>(mesh.Points.size());
+    this->IsReached.resize(mesh.Points.size(), 0);
+    this->IsTaken.resize(mesh.Mesh.Tetrahedra.size(), 0);
+    this->Starts.resize(mesh.Points.size() + 1, 0);
+    const auto isMeshed = [&mesh](std::size_t t)
+    { return mesh.Mesh.Regions[t] != cdm::OutsideRegion; };
+    for (std::size_t t = 0; t < this->IsTaken.size(); ++t)
     {
-      const auto isMeshed = [this](std::size_t t)
-      { return this->Mesh.Regions[t] != cdm::OutsideRegion; };
-      for (std::size_t t = 0; t < isTaken.size(); ++t)
+      this->IsTaken[t] = isMeshed(t) && mesh.OwnsLowest(mesh.Mesh.Tetrahedra[t]);
+      for (cdm::Id id : mesh.Mesh.Tetrahedra[t])
       {
-        isTaken[t] = isMeshed(t) && this->OwnsLowest(this->Mesh.Tetrahedra[t]);
-        for (cdm::Id id : this->Mesh.Tetrahedra[t])
+        this->Starts[id] += isMeshed(t);
+      }
+    }
+    std::partial_sum(this->Starts.begin(), this->Starts.end(), this->Starts.begin());
+    this->Stars.resize(static_cast<std::size_t>(this->Starts.back()));
+    for (std::size_t t = this->IsTaken.size(); t-- > 0;)
+    {
+      for (cdm::Id id : mesh.Mesh.Tetrahedra[t])
+      {
+        if (isMeshed(t))
         {
-          starts[id] += isMeshed(t);
+          this->Stars[--this->Starts[id]] = static_cast<cdm::Id>(t);
         }
       }
-      std::partial_sum(starts.begin(), starts.end(), starts.begin());
-      stars.resize(static_cast<std::size_t>(starts.back()));
-      for (std::size_t t = isTaken.size(); t-- > 0;)
+    }
+    for (std::size_t i = 0; i < mesh.Points.size(); ++i)
+    {
+      this->Places.emplace(mesh.Points[i].Number, static_cast<cdm::Id>(i));
+    }
+  }
+
+  cdm::Status AddLevel()
+  {
+    ProcessGroup& processes = this->Owner.Processes;
+    const std::vector<std::vector<std::int64_t>> requests = this->TakeOwn();
+    std::vector<std::vector<std::int64_t>> asked;
+    std::vector<std::vector<GhostTetrahedron>> answers;
+    std::vector<std::vector<GhostTetrahedron>> received;
+    const auto answer = [&]
+    {
+      std::transform(asked.begin(), asked.end(), std::back_inserter(answers),
+        [this](const std::vector<std::int64_t>& numbers) { return this->Answer(numbers); });
+      return cdm::Status();
+    };
+    const auto take = [&]
+    {
+      for (const std::vector<GhostTetrahedron>& message : received)
       {
-        for (cdm::Id id : this->Mesh.Tetrahedra[t])
-        {
-          if (isMeshed(t))
-          {
-            stars[--starts[id]] = static_cast<cdm::Id>(t);
-          }
-        }
-      }
-      for (std::size_t i = 0; i < this->Points.size(); ++i)
-      {
-        places.emplace(this->Points[i].Number, static_cast<cdm::Id>(i));
+        this->Take(message);
       }
       return cdm::Status();
-    });
-  const cdm::Id numberOfPartPoints = static_cast<cdm::Id>(this->Points.size());
-  std::vector<char> isReached(this->Points.size(), 0);
-  std::set<Numbers> ghosts;
-  std::size_t firstOfLevel = 0;
-  for (int level = 0; level < this->NumberOfGhostLevels && status.IsOk(); ++level)
+    };
+    return processes.Exchange(requests, asked)
+      .Then([&] { return processes.Do(answer); })
+      .Then([&] { return processes.Exchange(answers, received); })
+      .Then([&] { return processes.Do(take); });
+  }
+
+private:
+  /** Adds those of this process; the numbers of points at which others are asked for theirs. */
+  std::vector<std::vector<std::int64_t>> TakeOwn()
   {
-    std::vector<std::vector<std::int64_t>> requests(count);
-    const std::size_t endOfLevel = this->Cells.size();
-    for (; firstOfLevel < endOfLevel; ++firstOfLevel)
+    DistributedMesh& mesh = this->Owner;
+    std::vector<std::vector<std::int64_t>> requests(
+      static_cast<std::size_t>(mesh.Processes.GetSize()));
+    const std::size_t endOfLevel = mesh.Cells.size();
+    for (; this->FirstOfLevel < endOfLevel; ++this->FirstOfLevel)
     {
-      for (cdm::Id id : cdm::TetrahedronIds(this->Cells[firstOfLevel].Ids))
+      for (cdm::Id id : cdm::TetrahedronIds(mesh.Cells[this->FirstOfLevel].Ids))
       {
-        if (isReached[id])
+        if (this->IsReached[id])
         {
           continue;
         }
-        isReached[id] = 1;
-        for (cdm::Id i = id < numberOfPartPoints ? starts[id] : 0;
-             id < numberOfPartPoints && i < starts[id + 1]; ++i)
+        this->IsReached[id] = 1;
+        for (cdm::Id i = id < this->NumberOfPartPoints ? this->Starts[id] : 0;
+             id < this->NumberOfPartPoints && i < this->Starts[id + 1]; ++i)
         {
-          if (!isTaken[stars[i]])
+          const cdm::Id t = this->Stars[i];
+          if (!this->IsTaken[t])
           {
-            isTaken[stars[i]] = 1;
-            this->Cells.push_back(
-              this->MakeCell(this->Mesh.Tetrahedra[stars[i]], this->Mesh.Regions[stars[i]]));
+            this->IsTaken[t] = 1;
+            mesh.Cells.push_back(mesh.MakeCell(mesh.Mesh.Tetrahedra[t], mesh.Mesh.Regions[t]));
           }
         }
-        if (id >= this->NumberOfOwnPoints)
+        if (id >= mesh.NumberOfOwnPoints)
         {
-          requests[this->Input.GetOwner(this->Points[id].Position)].push_back(
-            this->Points[id].Number);
+          requests[mesh.Input.GetOwner(mesh.Points[id].Position)].push_back(mesh.Points[id].Number);
         }
       }
     }
-    std::vector<std::vector<std::int64_t>> asked;
-    status = this->Processes.Exchange(requests, asked);
-    std::vector<std::vector<GhostTetrahedron>> answers(count);
-    if (status.IsOk())
+    return requests;
+  }
+
+  /** The tetrahedra at own points of these numbers, each of them once. */
+  std::vector<GhostTetrahedron> Answer(const std::vector<std::int64_t>& numbers) const
+  {
+    const DistributedMesh& mesh = this->Owner;
+    std::vector<GhostTetrahedron> answer;
+    std::set<cdm::Id> sent;
+    for (std::int64_t number : numbers)
     {
-      status = this->Processes.Do(
-        [&]
+      const cdm::Id id = this->Places.at(number);
+      for (cdm::Id k = this->Starts[id]; k < this->Starts[id + 1]; ++k)
+      {
+        const cdm::Id t = this->Stars[k];
+        if (sent.insert(t).second)
         {
-          for (std::size_t i = 0; i < count; ++i)
-          {
-            std::set<cdm::Id> sent;
-            for (std::int64_t number : asked[i])
-            {
-              const cdm::Id id = places.at(number);
-              for (cdm::Id k = starts[id]; k < starts[id + 1]; ++k)
-              {
-                if (sent.insert(stars[k]).second)
-                {
-                  const cdm::TetrahedronIds& ids = this->Mesh.Tetrahedra[stars[k]];
-                  answers[i].push_back({ { this->Points[ids[0]], this->Points[ids[1]],
-                                           this->Points[ids[2]], this->Points[ids[3]] },
-                    this->Mesh.Regions[stars[k]] });
-                }
-              }
-            }
-          }
-          return cdm::Status();
-        });
+          const cdm::TetrahedronIds& ids = mesh.Mesh.Tetrahedra[t];
+          answer.push_back({ { mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]],
+                               mesh.Points[ids[3]] },
+            mesh.Mesh.Regions[t] });
+        }
+      }
     }
-    std::vector<std::vector<GhostTetrahedron>> received;
-    if (status.IsOk())
+    return answer;
+  }
+
+  /** Adds those of another process that are not known yet. */
+  void Take(const std::vector<GhostTetrahedron>& message)
+  {
+    DistributedMesh& mesh = this->Owner;
+    for (const GhostTetrahedron& item : message)
     {
-      status = this->Processes.Exchange(answers, received);
-    }
-    if (status.IsOk())
-    {
-      status = this->Processes.Do(
-        [&]
+      cdm::TetrahedronIds ids;
+      Numbers key;
+      for (int i = 0; i < 4; ++i)
+      {
+        const auto place =
+          this->Places.emplace(item.Points[i].Number, static_cast<cdm::Id>(mesh.Points.size()));
+        if (place.second)
         {
-          for (const std::vector<GhostTetrahedron>& message : received)
-          {
-            for (const GhostTetrahedron& item : message)
-            {
-              cdm::TetrahedronIds ids;
-              Numbers key;
-              for (int i = 0; i < 4; ++i)
-              {
-                const auto place =
-                  places.emplace(item.Points[i].Number, static_cast<cdm::Id>(this->Points.size()));
-                if (place.second)
-                {
-                  this->Points.push_back(item.Points[i]);
-                  isReached.push_back(0);
-                }
-                ids[i] = place.first->second;
-                key[i] = item.Points[i].Number;
-              }
-              std::sort(key.begin(), key.end());
-              // Those at own points are known.
-              if (*std::min_element(ids.begin(), ids.end()) >= this->NumberOfOwnPoints &&
-                ghosts.insert(key).second)
-              {
-                this->Cells.push_back(this->MakeCell(ids, static_cast<cdm::Id>(item.Region)));
-              }
-            }
-          }
-          return cdm::Status();
-        });
+          mesh.Points.push_back(item.Points[i]);
+          this->IsReached.push_back(0);
+        }
+        ids[i] = place.first->second;
+        key[i] = item.Points[i].Number;
+      }
+      std::sort(key.begin(), key.end());
+      // Those at own points are known.
+      if (*std::min_element(ids.begin(), ids.end()) >= mesh.NumberOfOwnPoints &&
+        this->Ghosts.insert(key).second)
+      {
+        mesh.Cells.push_back(mesh.MakeCell(ids, static_cast<cdm::Id>(item.Region)));
+      }
     }
+  }
+
+  DistributedMesh& Owner;
+  cdm::Id NumberOfPartPoints = 0;
+  /** The tetrahedra at point i of the part: Stars[Starts[i]] to Stars[Starts[i + 1] - 1]. */
+  std::vector<cdm::Id> Starts;
+  std::vector<cdm::Id> Stars;
+  /** Index of each point by its number. */
+  std::unordered_map<std::int64_t, cdm::Id> Places;
+  /** Tetrahedra of the part that are cells of the output. */
+  std::vector<char> IsTaken;
+  /** Points whose tetrahedra are cells of the output, or asked for. */
+  std::vector<char> IsReached;
+  /** Tetrahedra of other parts that are cells of the output. */
+  std::set<Numbers> Ghosts;
+  std::size_t FirstOfLevel = 0;
+};
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status DistributedMesh::AddGhosts()
+{
+  GhostLevels levels(*this);
+  cdm::Status status = this->Processes.Do(
+    [&]
+    {
+      levels.Start();
+      return cdm::Status();
+    });
+  for (int level = 0; level < this->NumberOfGhostLevels && status.IsOk(); ++level)
+  {
+    status = levels.AddLevel();
   }
   if (status.IsOk())
   {
@@ -718,56 +783,42 @@ std::vector<char> DistributedMesh::FindUsed() const
 cdm::Status DistributedMesh::Run(vtkPointSet* input, vtkPointSet* meshPoints)
 {
   vtkPolyData* surface = vtkPolyData::SafeDownCast(input);
-  cdm::Status status = this->Processes.Do(
-    [&]
-    {
-      cdm::Status step = this->Input.Read(input, "input", 0);
-      step = step.IsOk() ? this->Input.Read(meshPoints, "mesh points", 1) : step;
-      return step.IsOk() ? this->Surface.Read(surface) : step;
-    });
-  const auto next = [&status](const auto& step)
+  const auto read = [&]
   {
-    if (status.IsOk())
-    {
-      status = step();
-    }
+    return this->Input.Read(input, "input", 0)
+      .Then([&] { return this->Input.Read(meshPoints, "mesh points", 1); })
+      .Then([&] { return this->Surface.Read(surface); });
   };
-  next([&] { return this->Input.Number(input, meshPoints); });
-  next([&] { return this->Surface.Gather(surface, this->Input.GetPiece(0)); });
-  if (this->Surface.Exists())
+  const auto checkSurface = [&]
   {
-    next([&] { return this->Processes.Do([&] { return this->Surface.Check(); }); });
-  }
-  next(
-    [&]
-    {
-      // Copies on the surface are what its pieces share.
-      return this->Input.Distribute(this->Surface.Exists() ? this->Input.GetFirstMeshPoint() : 0,
-        this->OwnPoints, this->NumberOfUnusedMeshPoints);
-    });
-  next([&] { return this->MakePart(); });
-  next([&] { return this->Tetrahedralize(); });
-  if (this->Surface.Exists())
+    return this->Surface.Exists() ? this->Processes.Do([&] { return this->Surface.Check(); })
+                                  : cdm::Status();
+  };
+  const auto distribute = [&]
   {
-    next([&] { return this->FindRegions(); });
-  }
-  next(
-    [&]
-    {
-      return this->Processes.Do(
-        [&]
-        {
-          this->CollectOwn();
-          this->CollectBoundary();
-          return cdm::Status();
-        });
-    });
-  if (!this->Processes.IsAlone())
+    // Copies on the surface are what its pieces share.
+    return this->Input.Distribute(this->Surface.Exists() ? this->Input.GetFirstMeshPoint() : 0,
+      this->OwnPoints, this->NumberOfUnusedMeshPoints);
+  };
+  const auto collect = [&]
   {
-    next([&] { return this->AddGhosts(); });
-  }
-  next(
-    [&] { return this->Input.FetchData(this->Points, this->NumberOfOwnPoints, this->FindUsed()); });
+    this->CollectOwn();
+    this->CollectBoundary();
+    return cdm::Status();
+  };
+  cdm::Status status =
+    this->Processes.Do(read)
+      .Then([&] { return this->Input.Number(input, meshPoints); })
+      .Then([&] { return this->Surface.Gather(surface, this->Input.GetPiece(0)); })
+      .Then(checkSurface)
+      .Then(distribute)
+      .Then([&] { return this->MakePart(); })
+      .Then([&] { return this->Tetrahedralize(); })
+      .Then([&] { return this->Surface.Exists() ? this->FindRegions() : cdm::Status(); })
+      .Then([&] { return this->Processes.Do(collect); })
+      .Then([&] { return this->Processes.IsAlone() ? cdm::Status() : this->AddGhosts(); })
+      .Then([&]
+        { return this->Input.FetchData(this->Points, this->NumberOfOwnPoints, this->FindUsed()); });
   this->NumberOfUnusedMeshPoints = this->Processes.Sum(this->NumberOfUnusedMeshPoints);
   return status;
 }

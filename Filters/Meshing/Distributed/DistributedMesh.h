@@ -21,11 +21,17 @@
 
 #include <vtkType.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
+namespace cdm
+{
+class PartRegions;
+}
 class vtkPointSet;
 class vtkPolyData;
 class vtkUnstructuredGrid;
@@ -60,10 +66,21 @@ private:
     cdm::Id Region;
   };
 
+  using Numbers = std::array<std::int64_t, 4>;
+  /** A tetrahedron with the numbers of its points, ascending. */
+  using KeyedTetrahedron = std::pair<Numbers, cdm::Id>;
+  class GhostLevels;
+
   cdm::Status MakePart();
   cdm::Status FindSimplex(std::vector<cdm::NumberedPoint>& simplex);
   cdm::Status Tetrahedralize();
+  cdm::Status UpdateTetrahedra(const cdm::ExecutionContext& context, bool& isFinal);
   cdm::Status FindRegions();
+  cdm::Status ExchangeRegions(const std::vector<KeyedTetrahedron>& shared,
+    const std::vector<cdm::Id>& news, cdm::PartRegions& regions);
+  Numbers GetKey(cdm::Id tetrahedron) const;
+  std::vector<KeyedTetrahedron> CollectShared() const;
+  std::vector<cdm::TriangleIds> CollectPartTriangles();
   void FindSurfacePlaces();
   void CollectOwn();
   cdm::Status AddGhosts();

@@ -46,15 +46,10 @@ cdm::Status DistributedPoints::Read(vtkPointSet* input, const char* name, int po
 //--------------------------------------------------------------------------------------------------
 cdm::Status DistributedPoints::Number(vtkPointSet* input, vtkPointSet* meshPoints)
 {
-  cdm::Status status = this->Processes.Agree(this->NumberPoints(input, 0));
-  if (status.IsOk())
-  {
-    status = this->Processes.Agree(this->NumberPoints(meshPoints, 1));
-  }
-  if (status.IsOk() && this->HasGlobalIds)
-  {
-    status = this->CheckNumbers();
-  }
+  cdm::Status status =
+    this->Processes.Agree(this->NumberPoints(input, 0))
+      .Then([&] { return this->Processes.Agree(this->NumberPoints(meshPoints, 1)); })
+      .Then([&] { return this->HasGlobalIds ? this->CheckNumbers() : cdm::Status(); });
   if (status.IsOk())
   {
     this->ChooseArrays(input, meshPoints);
@@ -216,28 +211,23 @@ cdm::Status DistributedPoints::Distribute(
       rowsOfPart[part].push_back(static_cast<vtkIdType>(i));
     }
     std::vector<ProcessGroup::Bytes> tables(count);
-    cdm::Status status = this->Processes.Do(
-      [&]
+    const auto pack = [&]
+    {
+      for (std::size_t part = 0; part < count; ++part)
       {
-        for (std::size_t part = 0; part < count; ++part)
+        if (!rowsOfPart[part].empty() && piece.Data->GetNumberOfArrays() > 0)
         {
-          if (!rowsOfPart[part].empty() && piece.Data->GetNumberOfArrays() > 0)
-          {
-            tables[part] = Pack(Select(piece.Data, rowsOfPart[part]));
-          }
+          tables[part] = Pack(Select(piece.Data, rowsOfPart[part]));
         }
-        return cdm::Status();
-      });
+      }
+      return cdm::Status();
+    };
     std::vector<std::vector<cdm::NumberedPoint>> points;
     std::vector<ProcessGroup::Bytes> receivedTables;
-    if (status.IsOk())
-    {
-      status = this->Processes.Exchange(messages, points);
-    }
-    if (status.IsOk())
-    {
-      status = this->Processes.Exchange(std::move(tables), receivedTables);
-    }
+    cdm::Status status =
+      this->Processes.Do(pack)
+        .Then([&] { return this->Processes.Exchange(messages, points); })
+        .Then([&] { return this->Processes.Exchange(std::move(tables), receivedTables); });
     if (!status.IsOk())
     {
       return status;
@@ -300,37 +290,32 @@ cdm::Status DistributedPoints::FetchData(const std::vector<cdm::NumberedPoint>& 
     }
   }
   std::vector<std::vector<std::int64_t>> asked;
-  cdm::Status status = this->Processes.Exchange(requests, asked);
   std::vector<ProcessGroup::Bytes> answers(count);
-  if (status.IsOk())
+  const auto answer = [&]
   {
-    status = this->Processes.Do(
-      [&]
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      std::vector<Row> rows;
+      for (std::int64_t number : asked[i])
       {
-        for (std::size_t i = 0; i < count; ++i)
-        {
-          std::vector<Row> rows;
-          for (std::int64_t number : asked[i])
-          {
-            const auto place = std::lower_bound(points.begin(), points.begin() + numberOfOwnPoints,
-              cdm::NumberedPoint{ {}, number }, IsLessByNumber);
-            rows.push_back(this->Rows[place - points.begin()]);
-          }
-          if (!rows.empty())
-          {
-            vtkNew<vtkTable> table;
-            Merge(this->Tables, rows, table->GetRowData());
-            answers[i] = Pack(table);
-          }
-        }
-        return cdm::Status();
-      });
-  }
+        const auto place = std::lower_bound(points.begin(), points.begin() + numberOfOwnPoints,
+          cdm::NumberedPoint{ {}, number }, IsLessByNumber);
+        rows.push_back(this->Rows[place - points.begin()]);
+      }
+      if (!rows.empty())
+      {
+        vtkNew<vtkTable> table;
+        Merge(this->Tables, rows, table->GetRowData());
+        answers[i] = Pack(table);
+      }
+    }
+    return cdm::Status();
+  };
   std::vector<ProcessGroup::Bytes> received;
-  if (status.IsOk())
-  {
-    status = this->Processes.Exchange(std::move(answers), received);
-  }
+  cdm::Status status =
+    this->Processes.Exchange(requests, asked)
+      .Then([&] { return this->Processes.Do(answer); })
+      .Then([&] { return this->Processes.Exchange(std::move(answers), received); });
   for (const ProcessGroup::Bytes& bytes : received)
   {
     this->Tables.emplace_back(Unpack(bytes));

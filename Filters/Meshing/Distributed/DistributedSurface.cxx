@@ -36,6 +36,56 @@ struct SurfaceTriangle
   cdm::RegionPair Labels;
   std::int64_t Cell;
 };
+
+/** A point of the surface, and its place among the points of all processes. */
+struct SurfacePoint
+{
+  cdm::NumberedPoint Point;
+  std::size_t Place;
+};
+
+/**
+ * Merges points at the same position into one, which has their lowest number. Returns the index of
+ * each place among the positions, which are in the order of the numbers; NoId for unused places.
+ */
+std::vector<cdm::Id> MergePoints(std::vector<SurfacePoint> points, const std::vector<char>& isUsed,
+  std::vector<cdm::Vec3>& positions)
+{
+  std::sort(points.begin(), points.end(),
+    [](const SurfacePoint& p, const SurfacePoint& q)
+    {
+      return p.Point.Position != q.Point.Position ? p.Point.Position < q.Point.Position
+                                                  : p.Point.Number < q.Point.Number;
+    });
+  std::vector<std::pair<cdm::NumberedPoint, std::vector<std::size_t>>> used;
+  for (auto begin = points.begin(), end = begin; begin != points.end(); begin = end)
+  {
+    std::vector<std::size_t> places;
+    for (; end != points.end() && end->Point.Position == begin->Point.Position; ++end)
+    {
+      if (isUsed[end->Place])
+      {
+        places.push_back(end->Place);
+      }
+    }
+    if (!places.empty())
+    {
+      used.emplace_back(begin->Point, std::move(places));
+    }
+  }
+  std::sort(used.begin(), used.end(),
+    [](const auto& p, const auto& q) { return p.first.Number < q.first.Number; });
+  std::vector<cdm::Id> ids(isUsed.size(), cdm::NoId);
+  for (const auto& [point, places] : used)
+  {
+    for (std::size_t place : places)
+    {
+      ids[place] = static_cast<cdm::Id>(positions.size());
+    }
+    positions.push_back(point.Position);
+  }
+  return ids;
+}
 } // namespace
 
 //--------------------------------------------------------------------------------------------------
@@ -90,65 +140,56 @@ cdm::Status DistributedSurface::Gather(
     return cdm::Status::InvalidInput(
       "Only some processes have the cell array BoundaryLabels on their surface.");
   }
+  std::vector<Row> rows;
+  cdm::Status status = this->GatherTriangles(points, withLabels > 0, rows);
+  const std::vector<vtkSmartPointer<vtkTable>> tables = this->GatherCellData(input);
+  if (status.IsOk())
+  {
+    status = this->RemoveCopiedTriangles(rows);
+    this->CellData = vtkSmartPointer<vtkTable>::New();
+    Merge(tables, rows, this->CellData->GetRowData());
+  }
+  return status;
+}
+
+//--------------------------------------------------------------------------------------------------
+/** rows: for each triangle its process, and its number among the triangles of that one. */
+cdm::Status DistributedSurface::GatherTriangles(
+  const std::vector<cdm::NumberedPoint>& points, bool hasLabels, std::vector<Row>& rows)
+{
   std::vector<SurfaceTriangle> own;
   for (std::size_t t = 0; t < this->Mesh.Triangles.size(); ++t)
   {
     own.push_back({ this->Mesh.Triangles[t], hasLabels ? this->Mesh.Labels[t] : cdm::RegionPair(),
       this->OwnCells[t] });
   }
-  const std::vector<ProcessGroup::Bytes> triangles =
-    this->Processes.Gather(ProcessGroup::Pack(own));
-  const std::vector<ProcessGroup::Bytes> allPoints =
-    this->Processes.Gather(ProcessGroup::Pack(points));
-  const std::set<std::string> arrays = Intersect(this->Processes,
-    hasTriangles ? GetSignatures(input->GetCellData()) : std::set<std::string>(), hasTriangles);
-  std::vector<ProcessGroup::Bytes> tables;
-  if (!arrays.empty())
+  std::vector<std::vector<SurfaceTriangle>> pieces;
+  std::size_t numberOfTriangles = 0;
+  for (const ProcessGroup::Bytes& bytes : this->Processes.Gather(ProcessGroup::Pack(own)))
   {
-    vtkNew<vtkDataSetAttributes> data;
-    if (hasTriangles)
-    {
-      PassArrays(input->GetCellData(), arrays, data);
-    }
-    tables = this->Processes.Gather(
-      hasTriangles ? Pack(Select(data, this->OwnCells)) : ProcessGroup::Bytes());
+    pieces.push_back(ProcessGroup::Unpack<SurfaceTriangle>(bytes));
+    numberOfTriangles += pieces.back().size();
   }
-
-  // Points at the same place are one, which has their lowest number.
-  struct Entry
-  {
-    cdm::NumberedPoint Point;
-    std::size_t Place;
-  };
-  std::vector<Entry> entries;
+  std::vector<SurfacePoint> all;
   std::vector<std::size_t> starts;
-  for (const ProcessGroup::Bytes& bytes : allPoints)
+  for (const ProcessGroup::Bytes& bytes : this->Processes.Gather(ProcessGroup::Pack(points)))
   {
-    starts.push_back(entries.size());
+    starts.push_back(all.size());
     for (const cdm::NumberedPoint& point : ProcessGroup::Unpack<cdm::NumberedPoint>(bytes))
     {
-      entries.push_back({ point, entries.size() });
+      all.push_back({ point, all.size() });
     }
   }
-  std::size_t numberOfTriangles = 0;
-  for (const ProcessGroup::Bytes& bytes : triangles)
+  cdm::Status status = cdm::CheckIdRange(all.size(), "points of the surface")
+                         .Then([&] { return cdm::CheckNumberOfTriangles(numberOfTriangles); });
+  if (!status.IsOk())
   {
-    numberOfTriangles += bytes.size() / sizeof(SurfaceTriangle);
+    return status;
   }
-  for (const cdm::Status& status : { cdm::CheckIdRange(entries.size(), "points of the surface"),
-         cdm::CheckNumberOfTriangles(numberOfTriangles) })
+  std::vector<char> isUsed(all.size(), 0);
+  for (std::size_t rank = 0; rank < pieces.size(); ++rank)
   {
-    if (!status.IsOk())
-    {
-      return status;
-    }
-  }
-  std::vector<char> isUsed(entries.size(), 0);
-  std::vector<std::vector<SurfaceTriangle>> pieces;
-  for (std::size_t rank = 0; rank < triangles.size(); ++rank)
-  {
-    pieces.push_back(ProcessGroup::Unpack<SurfaceTriangle>(triangles[rank]));
-    for (const SurfaceTriangle& triangle : pieces.back())
+    for (const SurfaceTriangle& triangle : pieces[rank])
     {
       for (cdm::Id point : triangle.Points)
       {
@@ -156,41 +197,8 @@ cdm::Status DistributedSurface::Gather(
       }
     }
   }
-  std::sort(entries.begin(), entries.end(),
-    [](const Entry& p, const Entry& q)
-    {
-      return p.Point.Position != q.Point.Position ? p.Point.Position < q.Point.Position
-                                                  : p.Point.Number < q.Point.Number;
-    });
-  std::vector<std::pair<cdm::NumberedPoint, std::vector<std::size_t>>> used;
-  for (auto begin = entries.begin(), end = begin; begin != entries.end(); begin = end)
-  {
-    std::vector<std::size_t> places;
-    for (; end != entries.end() && end->Point.Position == begin->Point.Position; ++end)
-    {
-      if (isUsed[end->Place])
-      {
-        places.push_back(end->Place);
-      }
-    }
-    if (!places.empty())
-    {
-      used.emplace_back(begin->Point, std::move(places));
-    }
-  }
-  std::sort(used.begin(), used.end(),
-    [](const auto& p, const auto& q) { return p.first.Number < q.first.Number; });
-  std::vector<cdm::Id> ids(entries.size(), cdm::NoId);
   this->Mesh = cdm::TriangleMesh();
-  for (const auto& [point, places] : used)
-  {
-    for (std::size_t place : places)
-    {
-      ids[place] = static_cast<cdm::Id>(this->Mesh.Points.size());
-    }
-    this->Mesh.Points.push_back(point.Position);
-  }
-  std::vector<Row> rows;
+  const std::vector<cdm::Id> ids = MergePoints(std::move(all), isUsed, this->Mesh.Points);
   for (std::size_t rank = 0; rank < pieces.size(); ++rank)
   {
     for (std::size_t t = 0; t < pieces[rank].size(); ++t)
@@ -201,7 +209,7 @@ cdm::Status DistributedSurface::Gather(
         point = ids[starts[rank] + point];
       }
       this->Mesh.Triangles.push_back(triangle);
-      if (withLabels > 0)
+      if (hasLabels)
       {
         this->Mesh.Labels.push_back(pieces[rank][t].Labels);
       }
@@ -209,15 +217,32 @@ cdm::Status DistributedSurface::Gather(
       rows.emplace_back(rank, static_cast<vtkIdType>(t));
     }
   }
-  const cdm::Status status = this->RemoveCopiedTriangles(rows);
-  this->CellData = vtkSmartPointer<vtkTable>::New();
-  std::vector<vtkSmartPointer<vtkTable>> parts;
-  for (const ProcessGroup::Bytes& bytes : tables)
-  {
-    parts.emplace_back(Unpack(bytes));
-  }
-  Merge(parts, rows, this->CellData->GetRowData());
   return status;
+}
+
+//--------------------------------------------------------------------------------------------------
+/** The cell arrays that all processes with triangles have: a table for each process, or none. */
+std::vector<vtkSmartPointer<vtkTable>> DistributedSurface::GatherCellData(vtkPolyData* input) const
+{
+  const bool hasTriangles = !this->OwnCells.empty();
+  const std::set<std::string> arrays = Intersect(this->Processes,
+    hasTriangles ? GetSignatures(input->GetCellData()) : std::set<std::string>(), hasTriangles);
+  std::vector<vtkSmartPointer<vtkTable>> tables;
+  if (arrays.empty())
+  {
+    return tables;
+  }
+  vtkNew<vtkDataSetAttributes> data;
+  if (hasTriangles)
+  {
+    PassArrays(input->GetCellData(), arrays, data);
+  }
+  for (const ProcessGroup::Bytes& bytes : this->Processes.Gather(
+         hasTriangles ? Pack(Select(data, this->OwnCells)) : ProcessGroup::Bytes()))
+  {
+    tables.emplace_back(Unpack(bytes));
+  }
+  return tables;
 }
 
 //--------------------------------------------------------------------------------------------------

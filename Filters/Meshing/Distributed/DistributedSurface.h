@@ -58,6 +58,9 @@ public:
   void NameTriangles(cdm::Status& status) const;
 
 private:
+  cdm::Status GatherTriangles(
+    const std::vector<cdm::NumberedPoint>& points, bool hasLabels, std::vector<Row>& rows);
+  std::vector<vtkSmartPointer<vtkTable>> GatherCellData(vtkPolyData* input) const;
   cdm::Status RemoveCopiedTriangles(std::vector<Row>& rows);
 
   const ProcessGroup& Processes;

@@ -3,6 +3,7 @@
 
 #include "CoreBridge/ArrayNames.h"
 #include "CoreBridge/Inputs.h"
+#include "CoreBridge/Texts.h"
 
 #include "Core/Basics/SortedIds.h"
 
@@ -12,7 +13,6 @@
 #include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPolyData.h>
-#include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
@@ -29,15 +29,13 @@ namespace
 {
 constexpr cdm::Id OtherSide = 6;
 
-/** The name of an item in a field array of strings, or <prefix><id>. */
+/** The name of an item in a field array of texts, or <prefix><id>. */
 std::string GetName(vtkDataObject* data, const char* arrayName, const char* prefix, cdm::Id id)
 {
-  auto names = vtkStringArray::SafeDownCast(data->GetFieldData()->GetAbstractArray(arrayName));
-  if (names && id < names->GetNumberOfValues() && !names->GetValue(id).empty())
-  {
-    return MakeWord(names->GetValue(id));
-  }
-  return prefix + std::to_string(id);
+  const std::vector<std::string> names = vtkCoreBridge::GetTexts(arrayName, data->GetFieldData());
+  const auto index = static_cast<std::size_t>(id);
+  return index < names.size() && !names[index].empty() ? MakeWord(names[index])
+                                                       : prefix + std::to_string(id);
 }
 
 class Collector
@@ -313,7 +311,7 @@ void Collector::NameGroups()
     "_outside" };
   std::set<std::string> taken;
   const auto getRegion = [this](cdm::Id region)
-  { return GetName(this->Grid, "RegionNames", "region_", region); };
+  { return GetName(this->Grid, vtkCoreBridge::RegionNamesName, "region_", region); };
   const auto makeName = [&](const PhysicalGroup& group)
   {
     switch (group.Kind)
@@ -323,7 +321,7 @@ void Collector::NameGroups()
       case PhysicalGroup::Interface:
         return getRegion(group.First) + "_" + getRegion(group.Second);
       case PhysicalGroup::Contact:
-        return GetName(this->Contacts, "ContactNames", "contact_", group.First) +
+        return GetName(this->Contacts, vtkCoreBridge::ContactNamesName, "contact_", group.First) +
           (!this->RegionsOfContact.at(group.First).empty() ? "" : "_" + getRegion(group.Second));
       default:
         return getRegion(group.First) + Sides[group.Second];

@@ -14,7 +14,7 @@ give VTK's data sets where VTK is installed.
 
 For pipelines of VTK there are filters under the names of the C++ classes, such as
 vtkConformingDelaunayMesher: the wrapped classes in ParaView and in Debian's packages, filters in
-Python, for any version of VTK, in the wheel. They make the same meshes.
+Python, for VTK 9.1 and later, in the wheel. They make the same meshes.
 """
 
 from __future__ import annotations
@@ -43,6 +43,7 @@ from .meshing import (
     tetrahedralize,
     triangulate_boundary,
 )
+from .texts import get_texts
 
 try:
     from .cdmMeshing import *  # type: ignore # noqa: F401,F403

@@ -191,11 +191,16 @@ def _get(owner: _Arrays, name: bytes) -> Any:
     return np.asarray(_View(owner, address, kind.value, shape))
 
 
+def to_snake_case(name: str) -> str:
+    """The name in Python of a property or an option of C++: MaximumArea becomes maximum_area."""
+    return re.sub("(?<!^)([A-Z])", r"_\1", name).lower()
+
+
 def _spell(text: str, inputs: Mapping[str, Any]) -> str:
     """Options by the names that they have in Python: the engine says MaximumGapEdges."""
 
     def replace(match: Any) -> str:
-        name = re.sub("(?<!^)([A-Z])", r"_\1", match.group()).lower()
+        name = to_snake_case(match.group())
         return name if name in inputs else match.group()
 
     return re.sub(r"\b(?:[A-Z][a-z]+){2,}\b", replace, text)

@@ -131,7 +131,8 @@ class Certificate:
         smallest_dihedral_angle: degrees.
         largest_dihedral_angle: degrees.
         flat_tetrahedra: by bound (5, 10 and 15 degrees) how many have a smaller dihedral angle, and
-            how many of these have all points on boundaries: the shape of the input causes them.
+            how many of these are at sharp angles of the input, and how many of the others have all
+            points on boundaries: there the layer is one tetrahedron thick.
         region_volumes: by region, cubic model units.
         volume_error: largest relative difference to the volume that the boundary encloses.
         smallest_dihedral_angles: of each tetrahedron, degrees; from certify() only.
@@ -144,7 +145,7 @@ class Certificate:
     faults: Dict[str, int]
     smallest_dihedral_angle: float
     largest_dihedral_angle: float
-    flat_tetrahedra: Dict[int, Tuple[int, int]]
+    flat_tetrahedra: Dict[int, Tuple[int, int, int]]
     region_volumes: Dict[int, float]
     volume_error: float
     smallest_dihedral_angles: np.ndarray
@@ -180,7 +181,7 @@ class Certificate:
             dict(zip(FAULTS, arrays["fault_counts"].tolist())),
             float(arrays["smallest_dihedral_angle"][0]),
             float(arrays["largest_dihedral_angle"][0]),
-            {bound: (row[0], row[1]) for bound, row in zip((5, 10, 15), flat)},
+            {bound: (row[0], row[1], row[2]) for bound, row in zip((5, 10, 15), flat)},
             dict(zip(arrays["region_ids"].tolist(), arrays["region_volumes"].tolist())),
             float(arrays["volume_error"][0]),
             arrays.get("smallest_dihedral_angles", none),

@@ -29,6 +29,7 @@ from . import _devsim_device, files, groups
 from ._devsim_device import Device
 from .data import Mesh
 from .meshing import MeshingWarning, control_volumes
+from .texts import get_texts
 
 if TYPE_CHECKING:
     from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
@@ -155,7 +156,7 @@ def _read(mesh: Any) -> Tuple[Mesh, List[str]]:
         return mesh, list(getattr(mesh, "region_names", None) or [])
     from . import vtk_data
 
-    return vtk_data.to_mesh(mesh), _get_texts(mesh, "RegionNames")
+    return vtk_data.to_mesh(mesh), get_texts(mesh, "RegionNames")
 
 
 def _point_values(source: Any, mesh: Mesh, values: Any) -> Dict[str, List[float]]:
@@ -175,11 +176,6 @@ def _point_values(source: Any, mesh: Mesh, values: Any) -> Dict[str, List[float]
     }
 
 
-def _get_texts(data: Any, name: str) -> List[str]:
-    array = data.GetFieldData().GetAbstractArray(name)
-    return [] if array is None else [array.GetValue(i) for i in range(array.GetNumberOfValues())]
-
-
 def _contacts_of_surface(surface: Any, mesh: Mesh) -> Dict[str, np.ndarray]:
     """The triangles of a vtkPolyData by its ContactId, on the points of the mesh."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -191,7 +187,7 @@ def _contacts_of_surface(surface: Any, mesh: Mesh) -> Dict[str, np.ndarray]:
         surface.GetPolys().GetMaxCellSize() != 3
     ):
         raise ValueError("The contacts have cells that are no triangles.")
-    names = _get_texts(surface, "ContactNames")
+    names = get_texts(surface, "ContactNames")
     places = {point: i for i, point in enumerate(map(tuple, mesh.points.tolist()))}
     corners = vtk_to_numpy(surface.GetPoints().GetData()).astype(np.float64).tolist()
     points = np.array([places.get(tuple(corner), -1) for corner in corners], np.int64)

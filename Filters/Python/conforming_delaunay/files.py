@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import base64
 import os
-from typing import TYPE_CHECKING, Any, Union
-from xml.sax.saxutils import escape
+from typing import TYPE_CHECKING, Any, List, Sequence, Union
 
 import numpy as np
+
+from .texts import encode
 
 if TYPE_CHECKING:
     from .data import Mesh, Surface
@@ -125,18 +126,21 @@ def write_mesh(path: Path, mesh: "Mesh") -> None:
 
 
 def write_vtu(path: Path, mesh: "Mesh") -> None:
-    """Writes a VTU file that ParaView, PyVista and meshio read, the certificate as a comment."""
+    """Writes a VTU file that ParaView, PyVista and meshio read."""
     count = len(mesh.tetrahedra)
     cell_data = [("RegionId", mesh.regions)]
     if len(mesh.faults):
         cell_data.append(("RefinementFault", mesh.faults))
     point_data = [("FreePoint", mesh.is_free)] if len(mesh.is_free) else []
+    texts = [("Certificate", mesh.certificate.text.splitlines())] if mesh.certificate else []
     lines = [
         '<?xml version="1.0"?>',
-        "<!-- " + escape(str(mesh.certificate or "not certified")).replace("--", "- -") + " -->",
         '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" '
         'header_type="UInt64">',
         "<UnstructuredGrid>",
+        "<FieldData>",
+        *(_texts(name, lines) for name, lines in texts),
+        "</FieldData>",
         f'<Piece NumberOfPoints="{len(mesh.points)}" NumberOfCells="{count}">',
         "<PointData>",
         *(_data_array(name, values) for name, values in point_data),
@@ -160,14 +164,21 @@ def write_vtu(path: Path, mesh: "Mesh") -> None:
         file.write("\n".join(lines) + "\n")
 
 
-def _data_array(name: str, values: Any) -> str:
+def _texts(name: str, lines: List[str]) -> str:
+    return _data_array(name, np.arange(len(lines), dtype=np.int32).reshape(1, -1), lines)
+
+
+def _data_array(name: str, values: Any, component_names: Sequence[str] = ()) -> str:
     kinds = {"f8": "Float64", "i4": "Int32", "i8": "Int64", "u1": "UInt8"}
     array = np.asarray(values)
     kind = array.dtype.str[1:]
     content = np.ascontiguousarray(array, "<" + kind).tobytes()
     components = array.shape[1] if array.ndim == 2 else 1
     encoded = base64.b64encode(len(content).to_bytes(8, "little") + content).decode()
+    names = [f'ComponentName{i}="{encode(text)}" ' for i, text in enumerate(component_names)]
+    # Of field data all rows count, of others those of the points or cells.
+    rows = f'NumberOfTuples="{len(array)}" ' if component_names else ""
     return (
         f'<DataArray type="{kinds[kind]}" Name="{name}" NumberOfComponents="{components}" '
-        f'format="binary">{encoded}</DataArray>'
+        f'{"".join(names)}{rows}format="binary">{encoded}</DataArray>'
     )

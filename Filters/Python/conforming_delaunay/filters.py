@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The stages as VTK filters written in Python, for any version of VTK since 9.0.
+"""The stages as VTK filters written in Python, for VTK 9.1 and later.
 
 Each has the name, the ports and the main properties of the C++ class: SetCriterion(1),
 GetMaximumEdgeLength(), AddSteinerPointsOn(). Point and cell data of the input other than
@@ -18,7 +18,7 @@ from vtkmodules.vtkCommonCore import vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 
 from . import meshing, vtk_data
-from ._engine import MeshingError
+from ._engine import MeshingError, to_snake_case
 from .data import Surface
 
 __all__ = [
@@ -32,10 +32,6 @@ __all__ = [
     "vtkSteinerPointRefiner",
     "vtkStructuralEdgeExtractor",
 ]
-
-
-def _snake(name: str) -> str:
-    return "".join("_" + c.lower() if c.isupper() else c for c in name).lstrip("_")
 
 
 def _add_properties(cls: type, properties: Dict[str, Any]) -> None:
@@ -105,7 +101,7 @@ class _Stage(VTKPythonAlgorithmBase):
         return not self.GetAbortExecute()
 
     def RequestData(self, request: Any, inputs: Any, outputs: Any) -> int:
-        options = {_snake(name): value for name, value in self.options.items()}
+        options = {to_snake_case(name): value for name, value in self.options.items()}
         options["threads"] = self.NumberOfThreads
         options["progress"] = self._progress
         targets = [vtkDataObject.GetData(outputs, i) for i in range(len(self.outputs))]
@@ -144,7 +140,7 @@ def _sized(data: Any) -> Any:
 
 
 def _point_array(data: Any) -> Any:
-    return None if data is None else vtk_data._points(data)
+    return None if data is None else vtk_data.get_points(data)
 
 
 _BOUNDARY = {
@@ -201,12 +197,12 @@ class vtkBoundaryTriangulator(_Stage):
 
 def _edges_to_vtk(points: Any, edges: Any) -> vtkPolyData:
     lines = vtkPolyData()
-    lines.SetPoints(vtk_data._make_points(points))
+    lines.SetPoints(vtk_data.make_points(points))
     count = len(edges.edges)
-    lines.SetLines(vtk_data._make_cells(np.arange(0, 2 * count + 1, 2), edges.edges.reshape(-1)))
-    vtk_data._add(lines.GetCellData(), "Kind", edges.kinds)
-    vtk_data._add(lines.GetCellData(), "ChainId", edges.chains)
-    vtk_data._add(lines.GetCellData(), "DihedralAngle", edges.angles)
+    lines.SetLines(vtk_data.make_cells(np.arange(0, 2 * count + 1, 2), edges.edges.reshape(-1)))
+    vtk_data.add_array(lines.GetCellData(), "Kind", edges.kinds)
+    vtk_data.add_array(lines.GetCellData(), "ChainId", edges.chains)
+    vtk_data.add_array(lines.GetCellData(), "DihedralAngle", edges.angles)
     return lines
 
 
@@ -244,8 +240,8 @@ class vtkDelaunaySurfaceRefiner(_Stage):
 
 def _vertices(points: Any) -> vtkPolyData:
     data = vtkPolyData()
-    data.SetPoints(vtk_data._make_points(np.ascontiguousarray(points)))
-    data.SetVerts(vtk_data._make_cells(np.arange(len(points) + 1), np.arange(len(points))))
+    data.SetPoints(vtk_data.make_points(np.ascontiguousarray(points)))
+    data.SetVerts(vtk_data.make_cells(np.arange(len(points) + 1), np.arange(len(points))))
     return data
 
 
@@ -331,6 +327,6 @@ class vtkDelaunayMeshCriteria(_Stage):
         mesh.certificate = certificate
         result = mesh.to_vtk()
         cells = result.GetCellData()
-        vtk_data._add(cells, "SmallestDihedralAngle", certificate.smallest_dihedral_angles)
-        vtk_data._add(cells, "RadiusEdgeRatio", certificate.radius_edge_ratios)
+        vtk_data.add_array(cells, "SmallestDihedralAngle", certificate.smallest_dihedral_angles)
+        vtk_data.add_array(cells, "RadiusEdgeRatio", certificate.radius_edge_ratios)
         return [result]

@@ -52,8 +52,15 @@ def _spacing(value: Any) -> Any:
     return None if value is None else np.broadcast_to(np.asarray(value, np.float64), 3)
 
 
-def _layers(value: Any) -> Any:
+def _reals(value: Any) -> Optional[np.ndarray]:
     return None if value is None else np.asarray(value, np.float64)
+
+
+def _polygons(surface: SurfaceLike, labels: Any) -> Surface:
+    polygons = Surface.from_any(surface)
+    if labels is not None:
+        polygons = dataclasses.replace(polygons, labels=np.asarray(labels))
+    return polygons
 
 
 def _warn(arrays: Dict[str, Any]) -> List[str]:
@@ -61,7 +68,6 @@ def _warn(arrays: Dict[str, Any]) -> List[str]:
     for line in lines:
         warnings.warn(line, MeshingWarning, stacklevel=3)
     return lines
-
 
 
 def mesh(
@@ -129,9 +135,7 @@ def mesh(
     Raises:
         MeshingError: and its subclasses; code, cells and points say what is wrong with the input.
     """
-    polygons = Surface.from_any(surface)
-    if labels is not None:
-        polygons = dataclasses.replace(polygons, labels=np.asarray(labels))
+    polygons = _polygons(surface, labels)
     arrays, function = sizing_inputs(sizing)
     result = _engine.run(
         "mesh_polygons",
@@ -145,11 +149,11 @@ def mesh(
             "dihedral_angle_target": float(dihedral_angle_target),
             "maximum_volume": float(maximum_volume),
             "remove_slivers": bool(remove_slivers),
-            "mesh_points": None if mesh_points is None else np.asarray(mesh_points, np.float64),
+            "mesh_points": _reals(mesh_points),
             "generate_mesh_points": bool(generate_mesh_points),
             "placement": _number("placement", placement, PLACEMENTS),
             "spacing": _spacing(spacing),
-            "layers": _layers(layers),
+            "layers": _reals(layers),
             "minimum_angle": float(minimum_angle),
             "maximum_area": float(maximum_area),
             "accuracy_angle": float(accuracy_angle),
@@ -199,10 +203,7 @@ def triangulate_boundary(
 
     Options as for mesh(). With refuse_self_intersections off the surface is made all the same.
     """
-    polygons = Surface.from_any(surface)
-    if labels is not None:
-        polygons = dataclasses.replace(polygons, labels=np.asarray(labels))
-    inputs = polygon_inputs(polygons)
+    inputs = polygon_inputs(_polygons(surface, labels))
     del inputs["facets"]
     result = _engine.run(
         "triangulate_boundary",
@@ -290,7 +291,7 @@ def refine_surface(
     """
     triangles = Surface.from_any(surface)
     arrays, function = sizing_inputs(sizing)
-    points = None if mesh_points is None else np.asarray(mesh_points, np.float64)
+    points = _reals(mesh_points)
     result = _engine.run(
         "refine_surface",
         {
@@ -342,7 +343,7 @@ def generate_mesh_points(
             "spacing": _spacing(spacing),
             "placement": _number("placement", placement, PLACEMENTS),
             "template": _number("template", template, TEMPLATES),
-            "layers": _layers(layers),
+            "layers": _reals(layers),
             "maximum_level_difference": int(maximum_level_difference),
             "smoothing_iterations": int(smoothing_iterations),
             "seed": int(seed),
@@ -371,7 +372,7 @@ def tetrahedralize(
         "tetrahedralize",
         {
             **triangle_inputs(Surface.from_any(surface)),
-            "mesh_points": None if mesh_points is None else np.asarray(mesh_points, np.float64),
+            "mesh_points": _reals(mesh_points),
             "close_open_boundary": bool(close_open_boundary),
             "maximum_number_of_tetrahedra": int(maximum_number_of_tetrahedra),
         },
@@ -453,7 +454,7 @@ def refine_mesh(
             "is_free": mesh.is_free if len(mesh.is_free) else None,
             "is_removed": None if is_removed is None else np.asarray(is_removed, bool),
             "free_interior_points": bool(free_interior_points),
-            "new_points": None if new_points is None else np.asarray(new_points, np.float64),
+            "new_points": _reals(new_points),
             "criterion": _number("criterion", criterion, CRITERIA),
             "radius_edge_ratio": float(radius_edge_ratio),
             "dihedral_angle_target": float(dihedral_angle_target),

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK's data sets as NumPy arrays and back, with any version of VTK since 9.0."""
+"""VTK's data sets as NumPy arrays and back, with VTK 9.1 and later."""
 
 from __future__ import annotations
 
 import os
 import warnings
-from typing import TYPE_CHECKING, Any, Tuple
+from typing import TYPE_CHECKING, Any, List, Tuple
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
+from vtkmodules.vtkCommonCore import vtkIntArray, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkUnstructuredGrid
+
+from .texts import encode
 
 if TYPE_CHECKING:
     from .data import Mesh, Surface
@@ -18,7 +20,8 @@ if TYPE_CHECKING:
 _TETRAHEDRON = 10
 
 
-def _points(data: Any) -> np.ndarray:
+def get_points(data: Any) -> np.ndarray:
+    """(n, 3) float64, the points of a vtkPointSet."""
     points = data.GetPoints()
     if points is None:
         return np.empty((0, 3))
@@ -41,7 +44,7 @@ def to_surface(data: "vtkPolyData") -> "Surface":
         warnings.warn(f"{first} vertices and lines of the input are no polygons, and not used.")
     cells = data.GetPolys()
     return Surface(
-        _points(data),
+        get_points(data),
         vtk_to_numpy(cells.GetConnectivityArray()),
         vtk_to_numpy(cells.GetOffsetsArray()),
         _cell_rows(data, "BoundaryLabels", first, data.GetNumberOfPolys()),
@@ -63,9 +66,9 @@ def to_sizing(data: Any) -> Tuple[np.ndarray, ...]:
         simplices.Update()
         grid = simplices.GetOutput()
         lengths = vtk_to_numpy(grid.GetPointData().GetArray("Sizing"))
-        return _points(grid), lengths, _tetrahedra(grid)
+        return get_points(grid), lengths, _tetrahedra(grid)
     if hasattr(data, "GetPoints"):
-        return _points(data), vtk_to_numpy(lengths)
+        return get_points(data), vtk_to_numpy(lengths)
     points = np.array([data.GetPoint(i) for i in range(data.GetNumberOfPoints())])
     return points, vtk_to_numpy(lengths)
 
@@ -86,7 +89,7 @@ def to_mesh(grid: "vtkUnstructuredGrid") -> "Mesh":
     regions = grid.GetCellData().GetArray("RegionId")
     free = grid.GetPointData().GetArray("FreePoint")
     return Mesh(
-        _points(grid),
+        get_points(grid),
         tetrahedra,
         np.zeros(len(tetrahedra), np.int32) if regions is None else vtk_to_numpy(regions),
         is_free=np.empty(0, np.uint8) if free is None else vtk_to_numpy(free),
@@ -96,13 +99,15 @@ def to_mesh(grid: "vtkUnstructuredGrid") -> "Mesh":
 # Arrays are copied: VTK shares buffers between arrays without knowing that NumPy owns the memory.
 
 
-def _make_points(points: np.ndarray) -> vtkPoints:
+def make_points(points: np.ndarray) -> vtkPoints:
+    """From (n, 3) coordinates."""
     result = vtkPoints()
     result.SetData(numpy_to_vtk(points, deep=True))
     return result
 
 
-def _make_cells(offsets: np.ndarray, connectivity: np.ndarray) -> vtkCellArray:
+def make_cells(offsets: np.ndarray, connectivity: np.ndarray) -> vtkCellArray:
+    """Cell i has the points connectivity[offsets[i]:offsets[i + 1]]."""
     cells = vtkCellArray()
     cells.SetData(
         numpy_to_vtk(np.ascontiguousarray(offsets, np.int32), deep=True),
@@ -111,40 +116,50 @@ def _make_cells(offsets: np.ndarray, connectivity: np.ndarray) -> vtkCellArray:
     return cells
 
 
-def _add(attributes: Any, name: str, values: Any) -> None:
+def add_array(attributes: Any, name: str, values: Any) -> None:
+    """Adds an array of numbers to point, cell or field data."""
     array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
     array.SetName(name)
     attributes.AddArray(array)
 
 
+def add_texts(data: Any, name: str, lines: List[str]) -> None:
+    """Adds texts to the field data, see texts.py."""
+    array = vtkIntArray()
+    array.SetName(name)
+    array.SetNumberOfComponents(len(lines))
+    array.SetNumberOfTuples(1)
+    for i, line in enumerate(lines):
+        array.SetValue(i, i)
+        array.SetComponentName(i, encode(line))
+    data.GetFieldData().AddArray(array)
+
+
 def from_surface(surface: "Surface") -> "vtkPolyData":
     """See Surface.to_vtk()."""
     data = vtkPolyData()
-    data.SetPoints(_make_points(surface.points))
-    data.SetPolys(_make_cells(surface.offsets, surface.connectivity))
+    data.SetPoints(make_points(surface.points))
+    data.SetPolys(make_cells(surface.offsets, surface.connectivity))
     if surface.labels is not None:
-        _add(data.GetCellData(), "BoundaryLabels", surface.labels)
+        add_array(data.GetCellData(), "BoundaryLabels", surface.labels)
     if surface.facets is not None:
-        _add(data.GetCellData(), "StructuralFacetId", surface.facets)
+        add_array(data.GetCellData(), "StructuralFacetId", surface.facets)
     return data
 
 
 def from_mesh(mesh: "Mesh") -> "vtkUnstructuredGrid":
     """See Mesh.to_vtk()."""
     grid = vtkUnstructuredGrid()
-    grid.SetPoints(_make_points(mesh.points))
+    grid.SetPoints(make_points(mesh.points))
     offsets = np.arange(0, 4 * len(mesh.tetrahedra) + 1, 4, dtype=np.int32)
-    grid.SetCells(_TETRAHEDRON, _make_cells(offsets, mesh.tetrahedra.reshape(-1)))
-    _add(grid.GetCellData(), "RegionId", mesh.regions)
+    grid.SetCells(_TETRAHEDRON, make_cells(offsets, mesh.tetrahedra.reshape(-1)))
+    add_array(grid.GetCellData(), "RegionId", mesh.regions)
     if len(mesh.faults):
-        _add(grid.GetCellData(), "RefinementFault", mesh.faults)
+        add_array(grid.GetCellData(), "RefinementFault", mesh.faults)
     if len(mesh.is_free):
-        _add(grid.GetPointData(), "FreePoint", mesh.is_free)
+        add_array(grid.GetPointData(), "FreePoint", mesh.is_free)
     if mesh.certificate:
-        certificate = vtkStringArray()
-        certificate.SetName("Certificate")
-        certificate.InsertNextValue(mesh.certificate.text)
-        grid.GetFieldData().AddArray(certificate)
+        add_texts(grid, "Certificate", mesh.certificate.text.splitlines())
     return grid
 
 

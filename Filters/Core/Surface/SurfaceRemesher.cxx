@@ -1,0 +1,627 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Surface/SurfaceRemesher.h"
+
+#include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Surface/ChangeableSurface.h"
+#include "Core/Surface/FeatureChains.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <queue>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+constexpr Id StepsBetweenChecks = 256;
+constexpr int NumberOfRounds = 6;
+/** Edges are split above and collapse below these ratios of the wanted length. */
+constexpr double SplitRatio = 4.0 / 3.0;
+constexpr double CollapseRatio = 4.0 / 5.0;
+/** Moves below this ratio of the wanted length are not worth their cost. */
+constexpr double SmallestMoveRatio = 0.05;
+/** Cosine of the largest turn of a chain at a point that is no corner: 40 degrees. */
+constexpr double SmallestChainCosine = 0.766;
+/** Cosine of an angle of a triangle that is small enough to be avoided: 20 degrees. */
+constexpr double SmallAngleCosine = 0.94;
+
+/** Cosine of the smallest angle of a triangle. */
+double GetSmallestAngleCosine(const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  double largest = -1.0;
+  const Vec3 corners[3] = { a, b, c };
+  for (int i = 0; i < 3; ++i)
+  {
+    const Vec3 first = corners[(i + 1) % 3] - corners[i];
+    const Vec3 second = corners[(i + 2) % 3] - corners[i];
+    largest =
+      std::max(largest, Dot(first, second) / std::sqrt(SquaredNorm(first) * SquaredNorm(second)));
+  }
+  return largest;
+}
+
+double GetWantedLength(
+  const SurfaceRemesherInput& input, const SurfaceRemesherOptions& options, const Vec3& position)
+{
+  double length = options.EdgeLength;
+  if (input.Sizing)
+  {
+    const double wanted = input.Sizing(position).GetLargest();
+    length = length > 0.0 ? std::min(length, wanted) : wanted;
+  }
+  return length;
+}
+
+class Remesher
+{
+public:
+  Remesher(const SurfaceRemesherInput& input, const SurfaceRemesherOptions& options,
+    std::vector<double> lengths, const std::vector<Id>& facets,
+    const std::vector<StructuralEdge>& edges)
+    : Input(input), Options(options),
+      Surface(*input.Surface, facets, edges, options.MaximumDeviation), Lengths(std::move(lengths))
+  {
+    this->FindFixedPoints();
+  }
+
+  /** False if aborted. */
+  bool Run(const ExecutionContext& context)
+  {
+    for (int round = 0; round < NumberOfRounds; ++round)
+    {
+      // Most is done in the first round.
+      const double begin = round == 0 ? 0.0 : 0.5 + 0.5 * (round - 1) / (NumberOfRounds - 1);
+      const double end = 0.5 + 0.5 * round / (NumberOfRounds - 1);
+      const ExecutionContext part = context.Part(begin, end);
+      if (!this->Split(part.Part(0.0, 0.1)) || !this->Collapse(part.Part(0.1, 0.7)) ||
+        !this->Flip(part.Part(0.7, 0.75)) || !this->Smooth(part.Part(0.75, 0.95)) ||
+        !this->Flip(part.Part(0.95, 1.0)))
+      {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  void MakeOutput(SurfaceRemesherOutput& output) const;
+
+private:
+  double GetLengthAt(const Vec3& position) const
+  {
+    return GetWantedLength(this->Input, this->Options, position);
+  }
+  const Vec3& GetPoint(Id point) const { return this->Surface.GetPoints()[point]; }
+  /** Length of an edge, 1 as wanted. */
+  double GetRatio(Id a, Id b) const
+  {
+    return Distance(this->GetPoint(a), this->GetPoint(b)) /
+      std::min(this->Lengths[a], this->Lengths[b]);
+  }
+
+  void FindFixedPoints();
+  bool IsRegular(Id point) const;
+  std::vector<EdgeIds> ListEdges() const;
+  bool Split(const ExecutionContext& context);
+  void SplitEdge(const EdgeIds& edge);
+  bool Collapse(const ExecutionContext& context);
+  bool CollapseEdge(Id point, Id target);
+  bool Flip(const ExecutionContext& context);
+  void FlipEdge(const EdgeIds& edge);
+  bool Smooth(const ExecutionContext& context);
+  bool FindBetterPlace(Id point, Vec3& place) const;
+  bool Move(Id point, const Vec3& place);
+  double GetWorstAngleCosine(
+    const std::vector<NewTriangle>& triangles, Id point, const Vec3& place) const;
+
+  const SurfaceRemesherInput& Input;
+  const SurfaceRemesherOptions& Options;
+  ChangeableSurface Surface;
+  /** Wanted length of edges at each point. */
+  std::vector<double> Lengths;
+  std::vector<char> IsFixed;
+};
+
+/** Whether triangles at a point are one disk, or pages that all end in the same two chain edges. */
+bool Remesher::IsRegular(Id point) const
+{
+  std::vector<Id> left = this->Surface.GetUses(point);
+  const std::vector<Id>& edges = this->Surface.GetEdges(point);
+  std::vector<Id> ends;
+  for (const Id edge : edges)
+  {
+    ends.push_back(this->Surface.GetOtherEnd(edge, point));
+  }
+  int pages = 0;
+  while (!left.empty())
+  {
+    ++pages;
+    std::vector<Id> page{ left.back() };
+    left.pop_back();
+    std::vector<Id> met;
+    for (std::size_t i = 0; i < page.size(); ++i)
+    {
+      for (const Id id : this->Surface.GetTriangle(page[i]))
+      {
+        if (id == point)
+        {
+          continue;
+        }
+        if (Contains(ends, id))
+        {
+          met.push_back(id);
+          continue;
+        }
+        const auto follows = [&](Id t) { return this->Surface.Has(t, id); };
+        const auto next = std::find_if(left.begin(), left.end(), follows);
+        if (next != left.end())
+        {
+          page.push_back(*next);
+          left.erase(next);
+        }
+      }
+    }
+    SortUnique(met);
+    if (met.size() != ends.size())
+    {
+      return false;
+    }
+  }
+  return edges.empty() ? pages == 1 : edges.size() == 2;
+}
+
+void Remesher::FindFixedPoints()
+{
+  for (Id point = 0; point < this->Surface.GetNewPoint(); ++point)
+  {
+    const std::vector<Id>& edges = this->Surface.GetEdges(point);
+    bool isFixed = this->Surface.GetUses(point).empty() || !this->IsRegular(point);
+    if (!isFixed && edges.size() == 2)
+    {
+      const Vec3 before =
+        this->GetPoint(point) - this->GetPoint(this->Surface.GetOtherEnd(edges[0], point));
+      const Vec3 after =
+        this->GetPoint(this->Surface.GetOtherEnd(edges[1], point)) - this->GetPoint(point);
+      isFixed = Dot(before, after) < SmallestChainCosine * Norm(before) * Norm(after);
+    }
+    this->IsFixed.push_back(isFixed);
+  }
+}
+
+std::vector<EdgeIds> Remesher::ListEdges() const
+{
+  std::vector<EdgeIds> edges;
+  for (Id t = 0; t < this->Surface.GetNumberOfTriangles(); ++t)
+  {
+    if (this->Surface.IsTriangle(t))
+    {
+      const TriangleIds& ids = this->Surface.GetTriangle(t);
+      for (int i = 0; i < 3; ++i)
+      {
+        edges.push_back(MakeEdge(ids[i], ids[(i + 1) % 3]));
+      }
+    }
+  }
+  SortUnique(edges);
+  return edges;
+}
+
+bool Remesher::Split(const ExecutionContext& context)
+{
+  using Entry = std::pair<double, EdgeIds>;
+  std::priority_queue<Entry> queue;
+  const auto enqueue = [&](const EdgeIds& edge)
+  {
+    const double ratio = this->GetRatio(edge[0], edge[1]);
+    if (ratio > SplitRatio)
+    {
+      queue.emplace(ratio, edge);
+    }
+  };
+  for (const EdgeIds& edge : this->ListEdges())
+  {
+    enqueue(edge);
+  }
+  for (Id step = 1; !queue.empty(); ++step)
+  {
+    if (step % StepsBetweenChecks == 0 && !context.Continue(0.0, "Splitting long edges"))
+    {
+      return false;
+    }
+    const EdgeIds edge = queue.top().second;
+    queue.pop();
+    const Id point = this->Surface.GetNewPoint();
+    this->SplitEdge(edge);
+    if (this->Surface.GetNewPoint() > point)
+    {
+      for (const Id neighbor : this->Surface.GetNeighbors(point))
+      {
+        enqueue(MakeEdge(point, neighbor));
+      }
+    }
+  }
+  return true;
+}
+
+void Remesher::SplitEdge(const EdgeIds& edge)
+{
+  SurfaceChange change;
+  change.Point = this->Surface.GetNewPoint();
+  change.Position = 0.5 * (this->GetPoint(edge[0]) + this->GetPoint(edge[1]));
+  change.Removed = this->Surface.GetUses(edge);
+  for (const Id t : change.Removed)
+  {
+    for (const Id end : edge)
+    {
+      TriangleIds ids = this->Surface.GetTriangle(t);
+      std::replace(ids.begin(), ids.end(), end, change.Point);
+      change.Added.push_back({ ids, t });
+    }
+  }
+  const Id structural = this->Surface.FindEdge(edge);
+  if (structural != NoId)
+  {
+    change.RemovedEdges = { structural };
+    change.AddedEdges = { MakeEdge(edge[0], change.Point), MakeEdge(edge[1], change.Point) };
+  }
+  if (!change.Removed.empty() && this->Surface.TryChange(change))
+  {
+    this->Lengths.push_back(this->GetLengthAt(change.Position));
+    this->IsFixed.push_back(0);
+  }
+}
+
+bool Remesher::Collapse(const ExecutionContext& context)
+{
+  using Entry = std::pair<double, EdgeIds>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+  const auto enqueue = [&](const EdgeIds& edge)
+  {
+    const double ratio = this->GetRatio(edge[0], edge[1]);
+    if (ratio < CollapseRatio)
+    {
+      queue.emplace(ratio, edge);
+    }
+  };
+  for (const EdgeIds& edge : this->ListEdges())
+  {
+    enqueue(edge);
+  }
+  const double total = static_cast<double>(std::max<std::size_t>(1, queue.size()));
+  for (Id step = 1; !queue.empty(); ++step)
+  {
+    if (step % StepsBetweenChecks == 0 &&
+      !context.Continue(1.0 - static_cast<double>(queue.size()) / total, "Collapsing short edges"))
+    {
+      return false;
+    }
+    const EdgeIds edge = queue.top().second;
+    queue.pop();
+    if (this->Surface.GetUses(edge).empty())
+    {
+      continue;
+    }
+    for (const auto& [point, target] : { std::pair(edge[1], edge[0]), std::pair(edge[0], edge[1]) })
+    {
+      if (this->CollapseEdge(point, target))
+      {
+        for (const Id neighbor : this->Surface.GetNeighbors(target))
+        {
+          enqueue(MakeEdge(target, neighbor));
+        }
+        break;
+      }
+    }
+  }
+  return true;
+}
+
+bool Remesher::CollapseEdge(Id point, Id target)
+{
+  const std::vector<Id>& edges = this->Surface.GetEdges(point);
+  if (this->IsFixed[point])
+  {
+    return false;
+  }
+  SurfaceChange change;
+  if (!edges.empty())
+  {
+    const Id first = this->Surface.GetOtherEnd(edges[0], point);
+    const Id second = this->Surface.GetOtherEnd(edges[1], point);
+    const Id end = first == target ? second : first;
+    if ((first != target && second != target) ||
+      this->Surface.FindEdge(MakeEdge(target, end)) != NoId)
+    {
+      return false;
+    }
+    change.RemovedEdges = edges;
+    change.AddedEdges = { MakeEdge(target, end) };
+  }
+  const double old = GetWorstAngleCosine({}, point, this->GetPoint(point));
+  for (const Id t : this->Surface.GetUses(point))
+  {
+    change.Removed.push_back(t);
+    if (this->Surface.Has(t, target))
+    {
+      continue;
+    }
+    TriangleIds ids = this->Surface.GetTriangle(t);
+    std::replace(ids.begin(), ids.end(), point, target);
+    change.Added.push_back({ ids, t });
+    std::array<Vec3, 4> swept{ this->GetPoint(point) };
+    for (int i = 0; i < 3; ++i)
+    {
+      swept[i + 1] = this->GetPoint(ids[i]);
+      if (ids[i] != target && this->GetRatio(ids[i], target) > SplitRatio)
+      {
+        return false;
+      }
+    }
+    change.Swept.push_back(swept);
+  }
+  return this->GetWorstAngleCosine(change.Added, NoId, {}) <= std::max(old, SmallAngleCosine) &&
+    this->Surface.KeepsTopology(point, target) && this->Surface.TryChange(change);
+}
+
+/** Of some triangles, or of those at a point if it were at a place. */
+double Remesher::GetWorstAngleCosine(
+  const std::vector<NewTriangle>& triangles, Id point, const Vec3& place) const
+{
+  double worst = -1.0;
+  const auto add = [&](const TriangleIds& ids)
+  {
+    const auto get = [&](Id id) { return id == point ? place : this->GetPoint(id); };
+    worst = std::max(worst, GetSmallestAngleCosine(get(ids[0]), get(ids[1]), get(ids[2])));
+  };
+  for (const NewTriangle& triangle : triangles)
+  {
+    add(triangle.Points);
+  }
+  if (point != NoId)
+  {
+    for (const Id t : this->Surface.GetUses(point))
+    {
+      add(this->Surface.GetTriangle(t));
+    }
+  }
+  return worst;
+}
+
+bool Remesher::Flip(const ExecutionContext& context)
+{
+  Id step = 0;
+  for (const EdgeIds& edge : this->ListEdges())
+  {
+    if (++step % StepsBetweenChecks == 0 && !context.Continue(0.0, "Flipping edges"))
+    {
+      return false;
+    }
+    this->FlipEdge(edge);
+  }
+  return true;
+}
+
+void Remesher::FlipEdge(const EdgeIds& edge)
+{
+  const std::vector<Id> uses = this->Surface.GetUses(edge);
+  if (uses.size() != 2 || this->Surface.FindEdge(edge) != NoId)
+  {
+    return;
+  }
+  TriangleIds first = this->Surface.GetTriangle(uses[0]);
+  TriangleIds second = this->Surface.GetTriangle(uses[1]);
+  const Id a = edge[0];
+  const Id b = edge[1];
+  const Id c = first[0] + first[1] + first[2] - a - b;
+  const Id d = second[0] + second[1] + second[2] - a - b;
+  const auto get = [this](const TriangleIds& ids)
+  {
+    return GetSmallestAngleCosine(
+      this->GetPoint(ids[0]), this->GetPoint(ids[1]), this->GetPoint(ids[2]));
+  };
+  const double old = std::max(get(first), get(second));
+  std::replace(first.begin(), first.end(), b, d);
+  std::replace(second.begin(), second.end(), a, c);
+  if (std::max(get(first), get(second)) > old - 1e-6 ||
+    !this->Surface.GetUses(MakeEdge(c, d)).empty())
+  {
+    return;
+  }
+  SurfaceChange change;
+  change.Removed = uses;
+  change.Added = { { first, uses[0] }, { second, uses[1] } };
+  change.Swept = { { this->GetPoint(a), this->GetPoint(b), this->GetPoint(c), this->GetPoint(d) } };
+  this->Surface.TryChange(change);
+}
+
+bool Remesher::Smooth(const ExecutionContext& context)
+{
+  for (Id point = 0; point < this->Surface.GetNewPoint(); ++point)
+  {
+    if (point % StepsBetweenChecks == 0 &&
+      !context.Continue(
+        static_cast<double>(point) / this->Surface.GetNewPoint(), "Moving points of the surface"))
+    {
+      return false;
+    }
+    Vec3 place;
+    if (!this->IsFixed[point] && !this->Surface.GetUses(point).empty() &&
+      this->FindBetterPlace(point, place) && !this->Move(point, place))
+    {
+      place = 0.5 * (place + this->GetPoint(point));
+      this->Move(point, place);
+    }
+  }
+  return true;
+}
+
+bool Remesher::FindBetterPlace(Id point, Vec3& place) const
+{
+  const Vec3& old = this->GetPoint(point);
+  Vec3 target;
+  const std::vector<Id>& edges = this->Surface.GetEdges(point);
+  if (!edges.empty())
+  {
+    target = 0.5 *
+      (this->GetPoint(this->Surface.GetOtherEnd(edges[0], point)) +
+        this->GetPoint(this->Surface.GetOtherEnd(edges[1], point)));
+  }
+  else
+  {
+    double sum = 0.0;
+    Vec3 offset;
+    for (const Id t : this->Surface.GetUses(point))
+    {
+      const TriangleIds& ids = this->Surface.GetTriangle(t);
+      const Vec3& a = this->GetPoint(ids[0]);
+      const Vec3& b = this->GetPoint(ids[1]);
+      const Vec3& c = this->GetPoint(ids[2]);
+      const double area = GetTriangleArea(a, b, c);
+      sum += area;
+      offset = offset + (area / 3.0) * ((a - old) + (b - old) + (c - old));
+    }
+    target = old + (1.0 / sum) * offset;
+  }
+  const double reach = 2.0 * this->Options.MaximumDeviation + 0.5 * Distance(target, old);
+  return this->Surface.FindNearestOriginal(point, target, reach, place) &&
+    Distance(place, old) > SmallestMoveRatio * this->Lengths[point];
+}
+
+bool Remesher::Move(Id point, const Vec3& place)
+{
+  const double old = this->GetWorstAngleCosine({}, point, this->GetPoint(point));
+  if (this->GetWorstAngleCosine({}, point, place) > std::max(old, SmallAngleCosine))
+  {
+    return false;
+  }
+  SurfaceChange change;
+  change.Point = point;
+  change.Position = place;
+  change.Removed = this->Surface.GetUses(point);
+  for (const Id t : change.Removed)
+  {
+    const TriangleIds& ids = this->Surface.GetTriangle(t);
+    change.Added.push_back({ ids, t });
+    change.Swept.push_back(
+      { place, this->GetPoint(ids[0]), this->GetPoint(ids[1]), this->GetPoint(ids[2]) });
+  }
+  change.RemovedEdges = this->Surface.GetEdges(point);
+  for (const Id edge : change.RemovedEdges)
+  {
+    change.AddedEdges.push_back(this->Surface.GetEdge(edge));
+  }
+  if (!this->Surface.TryChange(change))
+  {
+    return false;
+  }
+  this->Lengths[point] = this->GetLengthAt(place);
+  return true;
+}
+
+void Remesher::MakeOutput(SurfaceRemesherOutput& output) const
+{
+  const TriangleMesh& input = *this->Input.Surface;
+  const Id numberOfPoints = this->Surface.GetNewPoint();
+  std::vector<Id> newIds(numberOfPoints, NoId);
+  const auto isKept = [&](Id point)
+  {
+    return static_cast<std::size_t>(point) < input.Points.size() &&
+      input.Points[point] == this->GetPoint(point);
+  };
+  for (const bool keeps : { true, false })
+  {
+    for (Id point = 0; point < numberOfPoints; ++point)
+    {
+      if (this->Surface.GetUses(point).empty() || isKept(point) != keeps)
+      {
+        continue;
+      }
+      newIds[point] = static_cast<Id>(output.Surface.Points.size());
+      output.Surface.Points.push_back(this->GetPoint(point));
+      if (keeps)
+      {
+        output.PointSources.push_back(point);
+        continue;
+      }
+      Vec3 nearest;
+      const Id triangle =
+        this->Surface.FindOriginalTriangle(point, 1.001 * this->Options.MaximumDeviation, nearest);
+      PointParents parents;
+      parents.Ids = input.Triangles[triangle];
+      const TriangleIds& ids = parents.Ids;
+      const Vec3 weights = GetBarycentricWeights(
+        nearest, input.Points[ids[0]], input.Points[ids[1]], input.Points[ids[2]]);
+      parents.Weights = { weights.X, weights.Y, weights.Z };
+      output.NewPoints.push_back(parents);
+    }
+  }
+  for (Id t = 0; t < this->Surface.GetNumberOfTriangles(); ++t)
+  {
+    if (!this->Surface.IsTriangle(t))
+    {
+      continue;
+    }
+    TriangleIds ids = this->Surface.GetTriangle(t);
+    for (Id& id : ids)
+    {
+      id = newIds[id];
+    }
+    output.Surface.Triangles.push_back(ids);
+    const Id source = this->Surface.GetSource(t);
+    output.Surface.SourceCells.push_back(source);
+    if (!input.Labels.empty())
+    {
+      output.Surface.Labels.push_back(input.Labels[source]);
+    }
+  }
+}
+
+Status RunRemeshSurface(const SurfaceRemesherInput& input, const SurfaceRemesherOptions& options,
+  const ExecutionContext& context, SurfaceRemesherOutput& output)
+{
+  if (!(options.MaximumDeviation > 0.0) || (!(options.EdgeLength > 0.0) && !input.Sizing))
+  {
+    return Status::Failure(StatusCode::InvalidOption,
+      "The deviation and the length of edges have to be positive to make a surface coarser.");
+  }
+  StructuralEdgeOptions edgeOptions;
+  edgeOptions.AccuracyAngle = options.FeatureAngle;
+  edgeOptions.Facets = input.Facets;
+  std::vector<double> lengths;
+  for (const Vec3& point : input.Surface->Points)
+  {
+    lengths.push_back(GetWantedLength(input, options, point));
+  }
+  std::vector<StructuralEdge> edges;
+  Status status =
+    FindFeatureChains(*input.Surface, edgeOptions, lengths, context.Part(0.0, 0.05), edges);
+  if (!status.IsOk() || input.Surface->Triangles.empty())
+  {
+    return status;
+  }
+  const std::vector<Id> facets =
+    NumberFacets(SortEdgeUses(input.Surface->Triangles, input.Surface->Points.size()), edges);
+  Remesher remesher(input, options, std::move(lengths), facets, edges);
+  if (!remesher.Run(context.Part(0.05, 1.0)))
+  {
+    return Status::Aborted();
+  }
+  remesher.MakeOutput(output);
+  return {};
+}
+} // namespace
+
+Status RemeshSurface(const SurfaceRemesherInput& input, const SurfaceRemesherOptions& options,
+  const ExecutionContext& context, SurfaceRemesherOutput& output)
+{
+  output = {};
+  Status status = RunGuarded([&] { return RunRemeshSurface(input, options, context, output); });
+  if (!status.IsOk())
+  {
+    output = {};
+  }
+  return status;
+}
+} // namespace cdm
