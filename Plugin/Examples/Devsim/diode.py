@@ -16,11 +16,11 @@ import numpy as np
 import simulation as sim
 from conforming_delaunay import devsim as cd_devsim
 
-LENGTH, WIDTH = 2.0, 0.1
+LENGTH, WIDTH = 2.0, 0.05
 #: Acceptors on the left, donors on the right, and the width of the transition in micrometers.
 ACCEPTORS, DONORS, TRANSITION = 1e17, 5e17, 0.02
 AREA = (WIDTH * sim.MICROMETER) ** 2
-SHORTEST, LONGEST = 0.015, 0.1
+SHORTEST, LONGEST = 0.012, 0.1
 VOLTAGES = (-1.0, -0.5, 0.2, 0.4, 0.5, 0.6, 0.7, 0.8)
 
 

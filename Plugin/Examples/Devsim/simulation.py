@@ -71,15 +71,13 @@ def make_structure(rectangles, steps, region_names, contacts):
     return extruder.GetOutput()
 
 
-def make_mesh(structure, longest, sizing=None, layers=()):
+def make_mesh(structure, longest, sizing=None):
     """Tetrahedra and their boundary, for control volumes that close."""
     mesher = vtkConformingDelaunayMesher()
     mesher.SetInputData(structure)
     mesher.SetCriterion(2)
-    mesher.SetGenerateMeshPoints(True)
+    mesher.SetAddSteinerPoints(True)
     mesher.SetMaximumEdgeLength(longest)
-    for row in layers:
-        mesher.AddLayers(*row)
     if sizing is not None:
         mesher.SetInputData(2, sizing)
     mesher.Update()
