@@ -13,7 +13,10 @@
 #include <vtkSMProxy.h>
 #include <vtkSMSettings.h>
 
+#include <QByteArray>
+#include <QMap>
 #include <QPointer>
+#include <QStringList>
 #include <QTimer>
 #include <QUrl>
 
@@ -77,18 +80,28 @@ vtkSMProxy* GetColors(pqDataRepresentation* representation)
     : nullptr;
 }
 
-/** Those of a list of texts: names of components in outputs of the filters, or strings. */
-int GetNumberOfTexts(vtkPVArrayInformation* texts)
+/** A list of texts: strings, or names of components, see Filters/Meshing/CoreBridge/Texts.h. */
+QStringList GetTexts(vtkPVArrayInformation* array)
 {
-  return texts->GetDataType() == VTK_STRING ? texts->GetNumberOfStringValues()
-                                            : texts->GetNumberOfComponents();
-}
-
-QString GetText(vtkPVArrayInformation* texts, int index)
-{
-  return texts->GetDataType() == VTK_STRING
-    ? QString::fromUtf8(texts->GetStringValue(index))
-    : QUrl::fromPercentEncoding(texts->GetComponentName(index));
+  QStringList texts;
+  if (array->GetDataType() == VTK_STRING)
+  {
+    for (int i = 0; i < array->GetNumberOfStringValues(); ++i)
+    {
+      texts.append(QString::fromUtf8(array->GetStringValue(i)));
+    }
+    return texts;
+  }
+  QMap<int, QByteArray> encoded;
+  for (int i = 0; i < array->GetNumberOfComponents(); ++i)
+  {
+    encoded[static_cast<int>(array->GetComponentRange(i)[0])] += array->GetComponentName(i);
+  }
+  for (const QByteArray& text : encoded)
+  {
+    texts.append(QUrl::fromPercentEncoding(text));
+  }
+  return texts;
 }
 
 /** Names of the regions of what is shown; false if there are too many. */
@@ -103,14 +116,13 @@ bool AddTexts(pqDataRepresentation* representation, QMap<int, QString>& texts)
   {
     return true;
   }
-  vtkPVArrayInformation* names =
+  vtkPVArrayInformation* array =
     information->GetArrayInformation("RegionNames", vtkDataObject::FIELD);
-  const int numberOfNames = names ? GetNumberOfTexts(names) : 0;
-  const double last = std::max(regions->GetComponentRange(0)[1], numberOfNames - 1.0);
+  const QStringList names = array ? GetTexts(array) : QStringList();
+  const double last = std::max(regions->GetComponentRange(0)[1], names.size() - 1.0);
   for (int region = 0; region <= last && region <= MaximumNumberOfRegions; ++region)
   {
-    texts[region] =
-      region < numberOfNames ? GetText(names, region) : QString("Region %1").arg(region);
+    texts[region] = region < names.size() ? names[region] : QString("Region %1").arg(region);
   }
   return last < MaximumNumberOfRegions;
 }
