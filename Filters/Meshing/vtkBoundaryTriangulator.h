@@ -64,7 +64,7 @@ public:
   /** Values of the cell array ProblemKind of output port 1. */
   enum ProblemKinds
   {
-    /** Two triangles cross, overlap or touch; the segment says where. */
+    /** Where two triangles cross, overlap or touch: segments and points. */
     SelfIntersection = 0,
     /** A polygon without area, dropped. */
     DegeneratePolygon,
@@ -79,7 +79,9 @@ public:
     /** An open edge that was left as it is. */
     OpenEdge,
     /** A polygon against the orientation of the others; its triangles were turned over. */
-    ReversedPolygon
+    ReversedPolygon,
+    /** A polygon of a self-intersection. */
+    IntersectingPolygon
   };
 
   ///@{

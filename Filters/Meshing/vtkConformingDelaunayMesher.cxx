@@ -346,6 +346,12 @@ cdm::Status vtkConformingDelaunayMesher::MakeOptions(cdm::ConformingMesherOption
   options.CloseOpenBoundary = this->CloseOpenBoundary;
   options.MaximumVolume = this->MaximumVolume;
   return this->MakeChoices(options.Choices)
+    .Then(
+      [&]
+      {
+        return ToChoice(
+          "MaximumDeviation", this->MaximumDeviation, VTK_DOUBLE_MAX, options.MaximumDeviation);
+      })
     .Then([&] { return vtkCoreBridge::ToLayers(this->Layers, options.MeshPoints.Layers); });
 }
 
@@ -368,6 +374,12 @@ cdm::Status vtkConformingDelaunayMesher::MeshPolygons(const std::string& prefix,
       return this->MakeOptions(options)
         .Then([&] { return vtkCoreBridge::ToPolygonSoup(input, soup, cells); })
         .Then([&] { return vtkCoreBridge::ToFacets(input, cells, engineInput.Facets); })
+        .Then(
+          [&]
+          {
+            engineInput.CellGroups = vtkCoreBridge::ToCellGroups(input, cells);
+            return cdm::Status();
+          })
         .Then(
           [&]
           {
@@ -427,6 +439,7 @@ void vtkConformingDelaunayMesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MinimumAngle: " << this->MinimumAngle << "\n";
   os << indent << "MaximumArea: " << this->MaximumArea << "\n";
   os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
+  os << indent << "MaximumDeviation: " << this->MaximumDeviation << "\n";
   os << indent << "GenerateMeshPoints: " << this->GenerateMeshPoints << "\n";
   os << indent << "Placement: " << this->Placement << "\n";
   os << indent << "Spacing: " << this->Spacing[0] << ", " << this->Spacing[1] << ", "

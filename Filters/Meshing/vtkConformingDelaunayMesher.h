@@ -211,6 +211,21 @@ public:
 
   ///@{
   /**
+   * How far the surface may be from that of the input, and the input's from it, where it is finer
+   * than edges are to be: it is then made coarser and evened out first, with structural edges
+   * (which bend by more than 40 degrees, or lie between different labels, facets or values of
+   * integer cell arrays that repeat), topology and labels kept. Points of the input then need not
+   * be points of the mesh. Model units; 0: it stays as it is; default AUTOMATIC: a tenth of
+   * MaximumEdgeLength, or of the smallest sizing, for surfaces of at least 500 polygons, all of
+   * them triangles, with half of the edges shorter than half of that size, otherwise 0. A warning
+   * says what was done. Range 0 and above, or AUTOMATIC.
+   */
+  vtkSetMacro(MaximumDeviation, double);
+  vtkGetMacro(MaximumDeviation, double);
+  ///@}
+
+  ///@{
+  /**
    * Whether to place mesh points inside of the regions by vtkMeshPointGenerator, as dense as the
    * sizing input asks for, or without it Spacing. Default off.
    */
@@ -335,6 +350,7 @@ protected:
   double MinimumAngle = 0.0;
   double MaximumArea = 0.0;
   double MaximumEdgeLength = AUTOMATIC;
+  double MaximumDeviation = AUTOMATIC;
   bool GenerateMeshPoints = false;
   int Placement = vtkMeshPointGenerator::OCTREE;
   double Spacing[3] = { 0.0, 0.0, 0.0 };

@@ -124,9 +124,15 @@ void AddRectangle(double margin, cdm::PolygonSoup& polygons)
   polygons.Offsets.push_back(static_cast<Id>(polygons.Connectivity.size()));
 }
 
-/** masks: of each polygon of the overlay. */
-cdm::LayeredStructure Stack(
-  const cdm::LayoutOverlay& overlay, const std::vector<Id>& masks, const std::vector<Step>& steps)
+struct Contact
+{
+  Id Mask;
+  /** Where its height is among those of the steps. */
+  Id Level;
+};
+
+/** All heights of steps, ascending. */
+std::vector<double> FindLevels(const std::vector<Step>& steps)
 {
   std::vector<double> levels;
   for (const Step& step : steps)
@@ -135,6 +141,61 @@ cdm::LayeredStructure Stack(
   }
   std::sort(levels.begin(), levels.end());
   levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  return levels;
+}
+
+cdm::Status CheckContacts(const std::vector<std::array<double, 2>>& rows,
+  const std::vector<Id>& masks, const std::vector<double>& levels, std::vector<Contact>& contacts)
+{
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    const auto& [mask, height] = rows[i];
+    Contact contact{ cdm::NoId, cdm::NoId };
+    const auto level = std::find(levels.begin(), levels.end(), height);
+    contact.Level = static_cast<Id>(level - levels.begin());
+    std::ostringstream problem;
+    if (!ToId(mask, contact.Mask))
+    {
+      problem << "the mask has to be a whole number from -1 on.";
+    }
+    else if (contact.Mask != NoMask &&
+      std::find(masks.begin(), masks.end(), contact.Mask) == masks.end())
+    {
+      problem << "no polygon is of mask " << contact.Mask << ".";
+    }
+    else if (level == levels.end())
+    {
+      problem << "no step begins or ends at the height " << height << ".";
+    }
+    if (!problem.str().empty())
+    {
+      return cdm::Status::InvalidInput("Contact " + std::to_string(i) + ": " + problem.str());
+    }
+    contacts.push_back(contact);
+  }
+  return {};
+}
+
+/** Each contact has to have some polygon. */
+cdm::Status CheckContactIds(std::size_t count, const std::vector<Id>& contactIds)
+{
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    if (std::find(contactIds.begin(), contactIds.end(), static_cast<Id>(i)) == contactIds.end())
+    {
+      return cdm::Status::InvalidInput("Contact " + std::to_string(i) +
+        ": there is no boundary and no interface at its height over its mask, or later contacts "
+        "take all of it.");
+    }
+  }
+  return {};
+}
+
+/** masks: of each polygon of the overlay. */
+cdm::LayeredStructure Stack(const cdm::LayoutOverlay& overlay, const std::vector<Id>& masks,
+  const std::vector<Step>& steps, const std::vector<Contact>& contacts)
+{
+  const std::vector<double> levels = FindLevels(steps);
   cdm::LayeredStructure structure(2, levels.front());
   for (const cdm::Vec3& point : overlay.Points)
   {
@@ -160,6 +221,23 @@ cdm::LayeredStructure Stack(
       regions.push_back(region);
     }
     structure.AddLayer(levels[layer + 1], std::move(regions));
+  }
+  for (std::size_t level = 0; level < levels.size(); ++level)
+  {
+    std::vector<Id> ids(overlay.Polygons.size(), cdm::NoId);
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+    {
+      for (std::size_t piece = 0; piece < ids.size() && contacts[i].Level == static_cast<Id>(level);
+           ++piece)
+      {
+        const std::vector<Id>& polygons = overlay.Polygons[piece];
+        const bool isThere = contacts[i].Mask == NoMask ||
+          std::any_of(polygons.begin(), polygons.end(),
+            [&](Id polygon) { return masks[polygon] == contacts[i].Mask; });
+        ids[piece] = isThere ? static_cast<Id>(i) : ids[piece];
+      }
+    }
+    structure.SetContacts(static_cast<Id>(level), std::move(ids));
   }
   return structure;
 }
@@ -197,6 +275,34 @@ void vtkLayoutExtruder::RemoveAllRegionNames()
 }
 
 //--------------------------------------------------------------------------------------------------
+void vtkLayoutExtruder::AddContact(double mask, double height)
+{
+  this->Contacts.push_back({ mask, height });
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkLayoutExtruder::RemoveAllContacts()
+{
+  this->Contacts.clear();
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkLayoutExtruder::AddContactName(const char* name)
+{
+  this->ContactNames.emplace_back(name ? name : "");
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkLayoutExtruder::RemoveAllContactNames()
+{
+  this->ContactNames.clear();
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
 int vtkLayoutExtruder::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -207,6 +313,7 @@ int vtkLayoutExtruder::RequestData(
   }
   cdm::PolygonSoup boundary;
   std::vector<Id> facetIds;
+  std::vector<Id> contactIds;
   const cdm::Status status = cdm::RunGuarded(
     [&]
     {
@@ -214,6 +321,7 @@ int vtkLayoutExtruder::RequestData(
       std::vector<vtkIdType> cells;
       std::vector<Id> masks;
       std::vector<Step> steps;
+      std::vector<Contact> contacts;
       cdm::LayoutOverlay overlay;
       cdm::Status step = vtkCoreBridge::ToPolygonSoup(input, polygons, cells);
       if (step.IsOk() && polygons.GetNumberOfPolygons() == 0)
@@ -227,6 +335,10 @@ int vtkLayoutExtruder::RequestData(
       if (step.IsOk())
       {
         step = CheckSteps(this->Steps, masks, steps);
+      }
+      if (step.IsOk())
+      {
+        step = CheckContacts(this->Contacts, masks, FindLevels(steps), contacts);
       }
       const bool isMaskless =
         std::any_of(steps.begin(), steps.end(), [](const Step& row) { return row.Mask == NoMask; });
@@ -248,11 +360,15 @@ int vtkLayoutExtruder::RequestData(
         {
           return cdm::Status::Aborted();
         }
-        boundary = Stack(overlay, masks, steps).MakeBoundary(facetIds);
+        boundary = Stack(overlay, masks, steps, contacts).MakeBoundary(facetIds, contactIds);
       }
       if (step.IsOk() && boundary.GetNumberOfPolygons() == 0)
       {
         step = cdm::Status::InvalidInput("The process steps leave nothing.");
+      }
+      if (step.IsOk())
+      {
+        step = CheckContactIds(contacts.size(), contactIds);
       }
       vtkCoreBridge::MapCells(step.Cells, cells);
       return step;
@@ -265,6 +381,12 @@ int vtkLayoutExtruder::RequestData(
   vtkStructureOutput::SetPolygons(boundary, facetIds, output);
   vtkCoreBridge::SetTexts(
     vtkCoreBridge::RegionNamesName, this->RegionNames, output->GetFieldData());
+  if (!this->Contacts.empty())
+  {
+    vtkStructureOutput::AddIds("ContactId", contactIds, output);
+    vtkCoreBridge::SetTexts(
+      vtkCoreBridge::ContactNamesName, this->ContactNames, output->GetFieldData());
+  }
   return 1;
 }
 
@@ -280,6 +402,14 @@ void vtkLayoutExtruder::PrintSelf(ostream& os, vtkIndent indent)
   for (const std::string& name : this->RegionNames)
   {
     os << indent << "RegionName: " << name << "\n";
+  }
+  for (const std::array<double, 2>& row : this->Contacts)
+  {
+    os << indent << "Contact: mask " << row[0] << ", height " << row[1] << "\n";
+  }
+  for (const std::string& name : this->ContactNames)
+  {
+    os << indent << "ContactName: " << name << "\n";
   }
   os << indent << "Margin: " << this->Margin << "\n";
 }

@@ -23,8 +23,10 @@
  * Outputs: port 0: vtkPolyData, coordinates in double precision, polygons of any number of
  * vertices. Cell arrays BoundaryLabels (int, components front and back): the region ids on the side
  * that the normal points to and on the other one, -1 outside; FacetId (int): equal for the pieces
- * of one connected planar interface. Field array RegionNames (string) if names were given.
- * vtkGmshMeshWriter names interfaces and outer sides after them.
+ * of one connected planar interface, cut at contacts. Field array RegionNames (string) if names were
+ * given. vtkGmshMeshWriter names interfaces and outer sides after them. With contacts: cell array
+ * ContactId (int; -1: none) and field array ContactNames (string), which the mesher hands on to its
+ * boundary, where vtkGmshMeshWriter takes them.
  *
  * Guarantees: each interface polygon is there once, and exactly planar; no two points coincide; no
  * point lies on an edge or in a polygon that it is no vertex of. Vertices of the layout keep their
@@ -32,7 +34,7 @@
  *
  * Failure: an error that names the cells or steps, and an empty output, for a layout without
  * polygons, an outline that crosses itself, points that are not finite, no steps, a mask without
- * polygons, heights that do not ascend, steps that leave nothing. An aborted run has an empty
+ * polygons, heights that do not ascend, steps that leave nothing, contacts where nothing is. An aborted run has an empty
  * output.
  *
  * Cost: that of the overlay, which grows with the crossings of masks: 3 s for 200 rectangles of a
@@ -77,6 +79,22 @@ public:
 
   ///@{
   /**
+   * A contact: everything at a height, one of those of the steps, over a mask (-1: over all of the
+   * layout) that is an outer boundary or an interface. Where contacts overlap the last one counts.
+   * Height in model units. Default: none.
+   */
+  void AddContact(double mask, double height);
+  void RemoveAllContacts();
+  ///@}
+
+  ///@{
+  /** The names of the contacts, beginning with the first one. Default: none. */
+  void AddContactName(const char* name);
+  void RemoveAllContactNames();
+  ///@}
+
+  ///@{
+  /**
    * By how much the structure is larger than the layout on all four sides, for steps without a
    * mask. Model units; default 0; range 0 and above.
    */
@@ -92,6 +110,8 @@ protected:
 
   std::vector<std::array<double, 4>> Steps;
   std::vector<std::string> RegionNames;
+  std::vector<std::array<double, 2>> Contacts;
+  std::vector<std::string> ContactNames;
   double Margin = 0.0;
 
 private:

@@ -2,6 +2,7 @@
 #include "AbortBehavior.h"
 
 #include "Compatibility.h"
+#include "OwnSources.h"
 
 #include <pqApplicationCore.h>
 #include <pqPipelineSource.h>
@@ -13,7 +14,6 @@
 #include <vtkDataObject.h>
 #include <vtkInformation.h>
 #include <vtkInformationIntegerKey.h>
-#include <vtkPVXMLElement.h>
 #include <vtkSMProxy.h>
 
 #include <QAbstractButton>
@@ -28,14 +28,7 @@
 
 namespace
 {
-//--------------------------------------------------------------------------------------------------
-bool IsOurs(pqPipelineSource* source)
-{
-  vtkPVXMLElement* hints = source->getHints();
-  vtkPVXMLElement* menu = hints ? hints->FindNestedElementByName("ShowInMenu") : nullptr;
-  const char* category = menu ? menu->GetAttribute("category") : nullptr;
-  return category && QString(category) == "Conforming Delaunay";
-}
+constexpr const char* AbortedText = "Aborted. Apply runs it again.";
 } // namespace
 
 //--------------------------------------------------------------------------------------------------
@@ -73,7 +66,7 @@ void AbortBehavior::Watch(pqPipelineSource* source)
 {
   // There is none on the client's side if the server is another process.
   vtkObject* algorithm = vtkObject::SafeDownCast(source->getProxy()->GetClientSideObject());
-  if (!algorithm || !IsOurs(source))
+  if (!algorithm || !OwnSources::IsOurs(source))
   {
     return;
   }
@@ -93,6 +86,11 @@ void AbortBehavior::OnStart(vtkObject* algorithm, unsigned long, void*)
     {
       this->Button = button;
     }
+  }
+  QStatusBar* bar = this->FindStatusBar();
+  if (bar && bar->currentMessage() == AbortedText)
+  {
+    bar->clearMessage();
   }
   this->Running = vtkAlgorithm::SafeDownCast(algorithm);
   this->Pressed = false;
@@ -155,14 +153,20 @@ void AbortBehavior::OnEnd(vtkObject* algorithm, unsigned long, void*)
 }
 
 //--------------------------------------------------------------------------------------------------
+QStatusBar* AbortBehavior::FindStatusBar() const
+{
+  QMainWindow* window = this->Button ? qobject_cast<QMainWindow*>(this->Button->window()) : nullptr;
+  return window ? window->statusBar() : nullptr;
+}
+
+//--------------------------------------------------------------------------------------------------
 void AbortBehavior::OfferAgain(pqPipelineSource* source, vtkAlgorithm* algorithm)
 {
   // No warning: the window of those would lie upon the button in the next run.
-  if (QMainWindow* window =
-        this->Button ? qobject_cast<QMainWindow*>(this->Button->window()) : nullptr)
+  if (QStatusBar* bar = this->FindStatusBar())
   {
     // There is room for no more.
-    window->statusBar()->showMessage("Aborted. Apply runs it again.");
+    bar->showMessage(AbortedText);
   }
   source->setModifiedState(pqProxy::MODIFIED);
   const auto applied = std::make_shared<QMetaObject::Connection>();

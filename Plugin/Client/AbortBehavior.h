@@ -13,7 +13,8 @@
  *     arrived. Of the user's input only that for the button gets through, and no timer goes off:
  *     nothing else may change or draw the pipeline that is at work;
  *  3. a press sets the filter's flag AbortExecute. The run ends soon; then the flag is taken back,
- *     a message says what happened, and Apply can be pressed: it runs the filter again.
+ *     a message says what happened until the next run, and Apply can be pressed: it runs the
+ *     filter again.
  */
 #ifndef AbortBehavior_h
 #define AbortBehavior_h
@@ -25,6 +26,7 @@
 
 #include <vtkSmartPointer.h>
 
+class QStatusBar;
 class QWidget;
 class pqPipelineSource;
 class vtkAlgorithm;
@@ -49,6 +51,9 @@ private:
    * Says that the run was aborted, and lets Apply run the filter again, its options as they are.
    */
   void OfferAgain(pqPipelineSource* source, vtkAlgorithm* algorithm);
+
+  /** That of the window with the button; null without one. */
+  QStatusBar* FindStatusBar() const;
 
   QMap<vtkObject*, QPointer<pqPipelineSource>> Sources;
   vtkSmartPointer<vtkAlgorithm> Running;

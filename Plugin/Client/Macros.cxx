@@ -5,12 +5,15 @@
 
 #include <vtkPVPluginTracker.h>
 
+#include <QAction>
 #include <QDir>
 #include <QFileInfo>
 #include <QMetaObject>
 #include <QObject>
+#include <QPointer>
 #include <QString>
 #include <QTimer>
+#include <QVariant>
 
 #include <cstring>
 
@@ -32,6 +35,9 @@ QString FindFolder()
   return {};
 }
 
+/** Adds them again when ParaView makes its list anew of the user's folder, as after an import. */
+void KeepMacros(QObject* supervisor, const QString& folder);
+
 void AddMacros(QObject* supervisor)
 {
   const QString folder = FindFolder();
@@ -47,6 +53,32 @@ void AddMacros(QObject* supervisor)
     name[0] = name[0].toUpper();
     QMetaObject::invokeMethod(
       supervisor, "addMacro", Q_ARG(QString, name), Q_ARG(QString, script.absoluteFilePath()));
+  }
+  KeepMacros(supervisor, folder);
+}
+
+void KeepMacros(QObject* supervisor, const QString& folder)
+{
+  const QPointer<QObject> list = supervisor;
+  for (QAction* action : supervisor->findChildren<QAction*>())
+  {
+    if (action->data().toString().startsWith(folder))
+    {
+      // One of them is enough: they go together.
+      QObject::connect(action, &QObject::destroyed, pqApplicationCore::instance(),
+        [list]
+        {
+          QTimer::singleShot(0, pqApplicationCore::instance(),
+            [list]
+            {
+              if (list)
+              {
+                AddMacros(list);
+              }
+            });
+        });
+      return;
+    }
   }
 }
 } // namespace

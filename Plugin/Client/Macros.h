@@ -4,7 +4,7 @@
  * @brief The part of the plugin for the ParaView GUI alone: its macros are in the menu Macros.
  *
  * Method: the scripts in the folder Macros beside the plugin are given to ParaView's list of macros
- * once its window is there. Nothing is copied into the user's folder, so that a newer plugin brings
+ * once its window is there, and again whenever it makes the list anew. Nothing is copied into the user's folder, so that a newer plugin brings
  * newer macros. A name is that of the script, "Region cut" for region_cut.py.
  */
 #ifndef Macros_h

@@ -3,15 +3,22 @@
 
 #include <pqApplicationCore.h>
 #include <pqDataRepresentation.h>
+#include <pqOutputPort.h>
+#include <pqPipelineFilter.h>
 #include <pqServerManagerModel.h>
 
+#include <vtkAbstractArray.h>
 #include <vtkDataObject.h>
+#include <vtkNew.h>
 #include <vtkPVArrayInformation.h>
 #include <vtkPVDataInformation.h>
+#include <vtkPVProminentValuesInformation.h>
 #include <vtkSMPVRepresentationProxy.h>
 #include <vtkSMPropertyHelper.h>
 #include <vtkSMProxy.h>
 #include <vtkSMSettings.h>
+#include <vtkSmartPointer.h>
+#include <vtkVariant.h>
 
 #include <QByteArray>
 #include <QMap>
@@ -20,8 +27,8 @@
 #include <QTimer>
 #include <QUrl>
 
-#include <algorithm>
 #include <cstring>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -30,10 +37,6 @@ namespace
 constexpr const char* RegionIdName = "RegionId";
 /** Settings of ParaView. The colors of regions are those of Macros/region_cut.py. */
 constexpr const char* ColorMaps = R"({
-  "standard_presets" : {
-    "ProblemKind" : "Brewer Qualitative Set3",
-    "RefinementFault" : "Brewer Qualitative Set3"
-  },
   "array_lookup_tables" : {
     "RegionId" : {
       "PVLookupTable" : {
@@ -47,15 +50,42 @@ constexpr const char* ColorMaps = R"({
     },
     "ProblemKind" : {
       "PVLookupTable" : {
+        "IndexedLookup" : 1,
+        "IndexedColors" : [
+          0.86, 0.08, 0.10, 0.95, 0.60, 0.15, 0.55, 0.34, 0.68, 0.65, 0.34, 0.16,
+          0.20, 0.48, 0.78, 0.30, 0.68, 0.33, 0.93, 0.25, 0.62, 0.25, 0.70, 0.75,
+          0.93, 0.87, 0.80
+        ],
         "Annotations" : [
           "0", "Self-intersection", "1", "Degenerate polygon", "2", "Duplicate polygon",
           "3", "Invalid outline", "4", "T-junction", "5", "Patched gap", "6", "Open edge",
-          "7", "Reversed polygon"
+          "7", "Reversed polygon", "8", "Intersecting polygon"
+        ]
+      }
+    },
+    "Fault" : {
+      "PVLookupTable" : {
+        "IndexedLookup" : 1,
+        "IndexedColors" : [
+          0.86, 0.08, 0.10, 0.93, 0.25, 0.62, 0.65, 0.34, 0.16, 0.95, 0.60, 0.15,
+          0.96, 0.80, 0.25, 0.20, 0.48, 0.78, 0.45, 0.70, 0.90, 0.30, 0.68, 0.33,
+          0.55, 0.34, 0.68, 0.75, 0.75, 0.78
+        ],
+        "Annotations" : [
+          "0", "Inverted tetrahedron", "1", "Flat tetrahedron", "2", "Overfull facet",
+          "3", "Non-Delaunay tetrahedron", "4", "Non-Delaunay facet", "5", "Filled facet sphere",
+          "6", "Filled edge sphere", "7", "Open control volume", "8", "Negative coupling",
+          "9", "Negative cotangent sum"
         ]
       }
     },
     "RefinementFault" : {
       "PVLookupTable" : {
+        "IndexedLookup" : 1,
+        "IndexedColors" : [
+          0.80, 0.82, 0.85, 0.20, 0.48, 0.78, 0.95, 0.60, 0.15, 0.86, 0.08, 0.10,
+          0.55, 0.34, 0.68
+        ],
         "Annotations" : [
           "0", "None", "1", "Too large", "2", "Radius-edge ratio", "3", "Dihedral angle",
           "4", "Inevitable"
@@ -64,8 +94,8 @@ constexpr const char* ColorMaps = R"({
     }
   }
 })";
-/** More regions than that are not told apart by colors and names. */
-constexpr int MaximumNumberOfRegions = 64;
+/** A legend of more regions than that does not fit on the screen. */
+constexpr int MaximumNumberOfRegions = 30;
 
 /** The map of categories by which regions are colored; null: they are not. */
 vtkSMProxy* GetColors(pqDataRepresentation* representation)
@@ -78,6 +108,55 @@ vtkSMProxy* GetColors(pqDataRepresentation* representation)
       vtkSMPropertyHelper(colors, "IndexedLookup").GetAsInt()
     ? colors
     : nullptr;
+}
+
+/** The regions of some data by an array; null if they have none. */
+vtkPVArrayInformation* FindRegions(pqOutputPort* port, int association)
+{
+  vtkPVDataInformation* information = port->getDataInformation();
+  vtkPVArrayInformation* regions =
+    information ? information->GetArrayInformation(RegionIdName, association) : nullptr;
+  return regions && regions->GetNumberOfTuples() > 0 && regions->GetNumberOfComponents() == 1
+    ? regions
+    : nullptr;
+}
+
+/** The first data upstream with these regions: filters that cut them open leave some out. */
+pqOutputPort* FindOrigin(pqOutputPort* port, int association)
+{
+  for (;;)
+  {
+    auto* filter = qobject_cast<pqPipelineFilter*>(port->getSource());
+    pqOutputPort* input = filter ? filter->getAnyInput() : nullptr;
+    if (!input || !FindRegions(input, association))
+    {
+      return port;
+    }
+    port = input;
+  }
+}
+
+/** All ids of regions, ascending. */
+std::vector<int> FindIds(pqOutputPort* port, int association)
+{
+  vtkNew<vtkPVProminentValuesInformation> values;
+  values->SetPortNumber(port->getPortNumber());
+  values->SetFieldAssociation(vtkDataObject::GetAssociationTypeAsString(association));
+  values->SetFieldName(RegionIdName);
+  values->SetNumberOfComponents(1);
+  // Every value, however rare, and however many there are.
+  values->SetFraction(0.0);
+  values->SetUncertainty(0.0);
+  values->SetForce(true);
+  port->getSource()->getProxy()->GatherInformation(values);
+  std::vector<int> ids;
+  const auto found =
+    vtkSmartPointer<vtkAbstractArray>::Take(values->GetProminentComponentValues(0));
+  for (vtkIdType i = 0; found && i < found->GetNumberOfValues(); ++i)
+  {
+    ids.push_back(found->GetVariantValue(i).ToInt());
+  }
+  return ids;
 }
 
 /** A list of texts: strings, or names of components, see Filters/Meshing/CoreBridge/Texts.h. */
@@ -104,27 +183,32 @@ QStringList GetTexts(vtkPVArrayInformation* array)
   return texts;
 }
 
-/** Names of the regions of what is shown; false if there are too many. */
-bool AddTexts(pqDataRepresentation* representation, QMap<int, QString>& texts)
+/** Adds the names of the regions of what is shown: all that have a name, or all that are there. */
+void AddTexts(pqDataRepresentation* representation, QMap<int, QString>& texts)
 {
   const int association =
     vtkSMPropertyHelper(representation->getProxy(), "ColorArrayName").GetInputArrayAssociation();
-  vtkPVDataInformation* information = representation->getInputDataInformation();
-  vtkPVArrayInformation* regions =
-    information ? information->GetArrayInformation(RegionIdName, association) : nullptr;
-  if (!regions || regions->GetNumberOfTuples() == 0)
+  pqOutputPort* port = representation->getOutputPortFromInput();
+  if (!port || !FindRegions(port, association))
   {
-    return true;
+    return;
   }
+  port = FindOrigin(port, association);
   vtkPVArrayInformation* array =
-    information->GetArrayInformation("RegionNames", vtkDataObject::FIELD);
+    port->getDataInformation()->GetArrayInformation("RegionNames", vtkDataObject::FIELD);
   const QStringList names = array ? GetTexts(array) : QStringList();
-  const double last = std::max(regions->GetComponentRange(0)[1], names.size() - 1.0);
-  for (int region = 0; region <= last && region <= MaximumNumberOfRegions; ++region)
+  const int numberOfNames = static_cast<int>(names.size());
+  std::vector<int> ids(numberOfNames);
+  std::iota(ids.begin(), ids.end(), 0);
+  if (FindRegions(port, association)->GetComponentRange(0)[1] >= numberOfNames)
   {
-    texts[region] = region < names.size() ? names[region] : QString("Region %1").arg(region);
+    ids = FindIds(port, association);
   }
-  return last < MaximumNumberOfRegions;
+  for (const int region : ids)
+  {
+    const QString name = region < numberOfNames && region >= 0 ? names[region] : QString();
+    texts[region] = name.isEmpty() ? QString("Region %1").arg(region) : name;
+  }
 }
 } // namespace
 
@@ -184,13 +268,15 @@ void RegionColors::Update(pqDataRepresentation* representation)
     return;
   }
   QMap<int, QString> texts;
-  bool isLegible = true;
   for (pqDataRepresentation* other :
     pqApplicationCore::instance()->getServerManagerModel()->findItems<pqDataRepresentation*>())
   {
-    isLegible = (GetColors(other) != colors || AddTexts(other, texts)) && isLegible;
+    if (GetColors(other) == colors)
+    {
+      AddTexts(other, texts);
+    }
   }
-  if (!isLegible)
+  if (texts.size() > MaximumNumberOfRegions)
   {
     vtkSMPropertyHelper(colors, "IndexedLookup").Set(0);
     colors->UpdateVTKObjects();

@@ -4,7 +4,7 @@
  * @brief The part of the plugin for the ParaView GUI alone: regions have colors and names.
  *
  * ParaView takes the cell array RegionId for a quantity: it spreads a color map over its range,
- * which is empty if there is one region. The same goes for the arrays ProblemKind and
+ * which is empty if there is one region. The same goes for the arrays ProblemKind, Fault and
  * RefinementFault.
  *
  * Method:
@@ -12,10 +12,10 @@
  *     problems and faults have their names. Color maps in states and in the user's own settings
  *     stay as they are;
  *  2. whenever visible data that are colored by it change, the legend is brought up to date: an
- *     entry for each region, from 0 on, so that cutting data keeps their colors; its text is the
- *     region's name in the field array RegionNames, or its number. Entries with other texts are the
- *     user's;
- *  3. of very many regions none gets an entry, and the color map is spread over their range.
+ *     entry for each region that has a name in the field array RegionNames or, if some have none,
+ *     for each region that is there. These are the regions of the first data upstream, so that
+ *     cutting data keeps their colors. Entries with other texts are the user's;
+ *  3. of more than 30 regions none gets an entry, and the color map is spread over their range.
  */
 #ifndef RegionColors_h
 #define RegionColors_h

@@ -254,7 +254,7 @@ TEST(ConformingMesher, ArithmeticOfTheCallerDoesNotMatter)
 {
   const PolygonSoup soup = MakeCube();
   ConformingMesherOptions options;
-  options.Surface.MaximumEdgeLength = 0.3;
+  options.Choices.MaximumEdgeLength = 0.3;
   options.Choices.AddsSteinerPoints = true;
   const ConformingMesherOutput expected = Mesh(soup, options);
   const auto check = [&](const char* what)

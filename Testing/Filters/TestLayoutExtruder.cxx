@@ -8,6 +8,7 @@
 #include <vtkLayoutExtruder.h>
 #include <vtkMath.h>
 #include <vtkTechnologyStructureSource.h>
+#include <vtkTriangle.h>
 
 #include <algorithm>
 #include <cmath>
@@ -342,3 +343,69 @@ TEST(LayoutExtruder, ReportsProgressAndEndsWhenAborted)
   ExpectEmptyOutputs(extruder);
 }
 } // namespace
+
+// The end of a contact lies within a plane: no triangle of the mesh may cross it.
+TEST(LayoutExtruder, ContactsReachTheMesh)
+{
+  LayoutBuilder layout;
+  layout.AddRectangle(0, 0.0, 2.0, 0.0, 1.0);
+  layout.AddRectangle(1, 0.0, 0.3, 0.0, 1.0);
+  layout.AddPolygon(2, { { 1.2, 0.5 }, { 1.5, 0.2 }, { 1.8, 0.5 }, { 1.5, 0.8 } });
+  vtkNew<vtkLayoutExtruder> extruder;
+  extruder->SetInputData(layout.Build());
+  extruder->AddStep(0.0, 0.0, 0.5, 0.0);
+  extruder->AddStep(1.0, 0.5, 0.75, 1.0);
+  extruder->AddContact(-1.0, 0.0);
+  extruder->AddContact(1.0, 0.5);
+  extruder->AddContact(2.0, 0.5);
+  extruder->AddContactName("substrate");
+  extruder->AddContactName("metal");
+  extruder->AddContactName("drain");
+  vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetInputConnection(extruder->GetOutputPort());
+  mesher->SetMaximumEdgeLength(0.2);
+  mesher->Update();
+  const auto names = vtkStringArray::SafeDownCast(
+    extruder->GetOutput()->GetFieldData()->GetAbstractArray("ContactNames"));
+  ASSERT_TRUE(names);
+  EXPECT_EQ("drain", names->GetValue(2));
+
+  auto boundary = vtkPolyData::SafeDownCast(mesher->GetOutputDataObject(1));
+  vtkDataArray* ids = boundary->GetCellData()->GetArray("ContactId");
+  vtkDataArray* labels = boundary->GetCellData()->GetArray("BoundaryLabels");
+  ASSERT_TRUE(ids && labels);
+  std::map<double, double> areas;
+  for (vtkIdType i = 0; i < boundary->GetNumberOfCells(); ++i)
+  {
+    double x[3][3];
+    for (int j = 0; j < 3; ++j)
+    {
+      boundary->GetPoint(boundary->GetCell(i)->GetPointId(j), x[j]);
+    }
+    areas[ids->GetComponent(i, 0)] += vtkTriangle::TriangleArea(x[0], x[1], x[2]);
+    if (ids->GetComponent(i, 0) == 1.0)
+    {
+      EXPECT_EQ(0.0, labels->GetComponent(i, 0)) << "an interface";
+      EXPECT_EQ(1.0, labels->GetComponent(i, 1));
+    }
+  }
+  EXPECT_NEAR(2.0, areas[0.0], 1e-12);
+  EXPECT_NEAR(0.3, areas[1.0], 1e-12);
+  EXPECT_NEAR(0.18, areas[2.0], 1e-12);
+
+  // Where nothing is, and where nothing can be.
+  const auto expectError = [&](double mask, double height, const char* text)
+  {
+    extruder->RemoveAllContacts();
+    extruder->AddContact(mask, height);
+    vtkNew<EventRecorder> recorder;
+    recorder->Watch(extruder);
+    extruder->Update();
+    EXPECT_TRUE(Contains(recorder->Errors, text)) << recorder->Errors;
+    EXPECT_EQ(0, extruder->GetOutput()->GetNumberOfCells());
+  };
+  expectError(2.0, 0.75, "Contact 0: there is no boundary");
+  expectError(2.0, 0.6, "Contact 0: no step begins or ends at the height 0.6.");
+  expectError(7.0, 0.5, "Contact 0: no polygon is of mask 7.");
+  expectError(0.5, 0.5, "Contact 0: the mask has to be a whole number");
+}

@@ -6,7 +6,7 @@ has a help text, real numbers with their unit, each class has a proxy, each opti
 property with the same default, and output ports have names. What groups and decorators of the
 panels speak of is there. Angles have their unit in the label, lengths in that of their group, and no
 label changes the name that an option has in Python. ParaView's help file, if it was built, has a page and a picture for each
-proxy.
+proxy, and the page index.html, which ParaView opens first.
 """
 
 import glob
@@ -136,6 +136,7 @@ if os.environ.get("CDM_HELP_FILE"):
     # A Qt help file is a database.
     with sqlite3.connect(os.environ["CDM_HELP_FILE"]) as database:
         files = {row[0] for row in database.execute("SELECT Name FROM FileNameTable")}
+    Check("index.html" in files, "the help file has no index.html")
     for path in sorted(glob.glob(os.path.join(os.environ["CDM_PLUGIN_XML_DIR"], "*.xml"))):
         for group in ElementTree.parse(path).getroot().iter("ProxyGroup"):
             for proxy in group:

@@ -54,7 +54,7 @@ class NumPyAlone(unittest.TestCase):
         self.assertTrue(mesh.certificate.is_delaunay)
         self.assertFalse(mesh.certificate.is_clean)
         self.assertAlmostEqual(mesh.certificate.region_volumes[0], 1.0, 12)
-        self.assertEqual(mesh.certificate.flat_tetrahedra, {5: (0, 0), 10: (0, 0), 15: (0, 0)})
+        self.assertEqual(mesh.certificate.flat_tetrahedra, {5: (0, 0, 0), 10: (0, 0, 0), 15: (0, 0, 0)})
         self.assertEqual(sum(mesh.certificate.faults.values()), 0)
         self.assertAlmostEqual(mesh.certificate.smallest_dihedral_angle, 45.0, 9)
         self.assertEqual(len(mesh.boundary.triangles), 12)
@@ -225,7 +225,7 @@ class NumPyAlone(unittest.TestCase):
             mesh = cd.mesh((CUBE_POINTS, CUBE_QUADS), mesh_for=purpose, edge_length=0.5)
             self.assertIn(purpose, mesh.certificate.settings)
             self.assertLessEqual(lengths(mesh).max(), 0.5)
-            self.assertEqual(mesh.certificate.flat_tetrahedra[10], (0, 0))
+            self.assertEqual(mesh.certificate.flat_tetrahedra[10], (0, 0, 0))
 
     def test_help_lists_what_there_is(self):
         for name in cd.__all__:

@@ -119,6 +119,7 @@ void ReadOptions(InputReader& reader, ConformingMesherOptions& options)
   ReadChoice(reader, "dihedral_angle_target", choices.DihedralAngleTarget, 0.0, 70.0);
   ReadChoice(reader, "radius_edge_ratio", choices.RadiusEdgeRatio, 0.0, Infinity);
   ReadChoice(reader, "maximum_edge_length", choices.MaximumEdgeLength, 0.0, Infinity);
+  ReadChoice(reader, "maximum_deviation", options.MaximumDeviation, 0.0, Infinity);
   reader.Read("generate_mesh_points", options.GeneratesMeshPoints);
   reader.Read("close_open_boundary", options.CloseOpenBoundary);
   reader.Read("maximum_volume", options.MaximumVolume, 0.0, Infinity);
@@ -289,11 +290,12 @@ void Write(OutputWriter& writer, const MeshCertificate& certificate)
   writer.Write("volume_error", certificate.LargestVolumeError);
   writer.Write(
     "fault_counts", std::vector<Id>(certificate.Faults.begin(), certificate.Faults.end()));
-  std::vector<EdgeIds> flat;
+  writer.Write("smallest_volume_ratio", certificate.SmallestVolumeRatio);
+  std::vector<TriangleIds> flat;
   for (const FlatterTetrahedra& under :
     { certificate.Under5Degrees, certificate.Under10Degrees, certificate.Under15Degrees })
   {
-    flat.push_back({ under.Count, under.BetweenBoundaries });
+    flat.push_back({ under.Count, under.AtSharpAngles, under.AcrossLayers });
   }
   writer.Write("flat_tetrahedra", std::move(flat));
   std::vector<Id> regions;
@@ -319,6 +321,9 @@ Status MeshPolygonsStage(InputReader& reader, const SizingField& function,
   ConformingMesherInput input;
   input.Polygons = &polygons;
   input.Facets = ReadFacets(reader, static_cast<std::size_t>(polygons.GetNumberOfPolygons()));
+  reader.Read("cell_groups", input.CellGroups);
+  reader.Match("cell_groups", input.CellGroups.size(),
+    static_cast<std::size_t>(polygons.GetNumberOfPolygons()));
   reader.Read("mesh_points", meshPoints);
   input.MeshPoints = &meshPoints;
   reader.Read("mesh_points_free", input.AreMeshPointsFree);

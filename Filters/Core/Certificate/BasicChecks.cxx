@@ -5,6 +5,7 @@
 #include "Core/Basics/ParallelLoop.h"
 #include "Core/Basics/ParallelSort.h"
 #include "Core/Basics/SortedIds.h"
+#include "Core/Certificate/FlatTetrahedra.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Meshes/MeshInvariants.h"
@@ -143,7 +144,7 @@ private:
   bool CheckFacets(const ExecutionContext& context);
   bool CheckSpheres(const SphereCriteria& criteria, const ExecutionContext& context);
   void CollectBorderEdges();
-  void CountFlatter();
+  void CompareVolumes(const std::vector<long double>& volumes);
   bool CheckBoundarySpheres(const SphereCriteria& criteria, const ExecutionContext& context);
   void CountByInterface(const std::vector<char>& isEmpty);
   void FinishVolumes();
@@ -194,7 +195,7 @@ Status Checker::Run(const SphereCriteria& criteria, const ExecutionContext& cont
   {
     return Status::Aborted();
   }
-  this->CountFlatter();
+  CountFlatTetrahedra(this->Mesh, this->SmallestAngles, this->Findings, this->Report);
   return {};
 }
 
@@ -342,7 +343,28 @@ bool Checker::CheckTetrahedra(const ExecutionContext& context)
     ++region.Tetrahedra;
     region.Volume.Add(volumes[i]);
   }
+  this->CompareVolumes(volumes);
   return true;
+}
+
+/** The smallest one with the median. */
+void Checker::CompareVolumes(const std::vector<long double>& volumes)
+{
+  std::vector<double> sizes;
+  sizes.reserve(volumes.size());
+  for (const long double volume : volumes)
+  {
+    sizes.push_back(static_cast<double>(std::abs(volume)));
+  }
+  if (sizes.empty())
+  {
+    return;
+  }
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  const double median = *middle;
+  const double smallest = *std::min_element(sizes.begin(), middle + 1);
+  this->Report.SmallestVolumeRatio = median > 0.0 ? smallest / median : 0.0;
 }
 
 Id Checker::FindMeshPoint(Id boundaryPoint) const
@@ -686,35 +708,6 @@ bool Checker::CheckBoundarySpheres(const SphereCriteria& criteria, const Executi
     "Checking structural edges", this->Findings.HasEmptySphere);
   this->Report.GetCount(MeshFault::EdgeSphere) = countFilled(this->Findings.HasEmptySphere);
   return isDone;
-}
-
-/** How many tetrahedra are flatter than bounds, and which of them have no point inside. */
-void Checker::CountFlatter()
-{
-  std::vector<char> isOnBorder(this->Mesh.Points.size(), 0);
-  for (const BorderFacet& facet : this->Findings.BorderFacets)
-  {
-    for (const Id point : facet.Points)
-    {
-      isOnBorder[point] = 1;
-    }
-  }
-  for (std::size_t i = 0; i < this->SmallestAngles.size(); ++i)
-  {
-    const TetrahedronIds& ids = this->Mesh.Tetrahedra[i];
-    const auto count = [&](double bound, FlatterTetrahedra& flatter)
-    {
-      if (this->SmallestAngles[i] < bound)
-      {
-        ++flatter.Count;
-        flatter.BetweenBoundaries +=
-          std::all_of(ids.begin(), ids.end(), [&](Id point) { return isOnBorder[point] != 0; });
-      }
-    };
-    count(5.0, this->Report.Under5Degrees);
-    count(10.0, this->Report.Under10Degrees);
-    count(15.0, this->Report.Under15Degrees);
-  }
 }
 
 void Checker::CountByInterface(const std::vector<char>& isEmpty)

@@ -52,15 +52,15 @@ public:
   std::string Text;
 };
 
-/** "2 under 5 (1 between boundaries)". */
+/** "3 under 5 (2 at sharp angles, 1 across layers)". */
 std::string FormatFlatter(const FlatterTetrahedra& flatter, const char* bound)
 {
-  std::string text = std::to_string(flatter.Count) + " under " + bound;
-  if (flatter.Count > 0)
-  {
-    text += " (" + std::to_string(flatter.BetweenBoundaries) + " with all points on boundaries)";
-  }
-  return text;
+  List reasons;
+  reasons.Add(flatter.AtSharpAngles, "at sharp angles", "at sharp angles");
+  reasons.Add(flatter.AcrossLayers, "across layers", "across layers");
+  reasons.Add(flatter.GetOthers(), "elsewhere", "elsewhere");
+  return std::to_string(flatter.Count) + " under " + bound +
+    (flatter.Count > 0 ? " (" + reasons.Text + ")" : "");
 }
 
 std::string ListFaults(const MeshCertificate& c, double volumeTolerance)
@@ -192,6 +192,31 @@ const char* MeshCertificate::GetVerdictName() const
   return names[static_cast<int>(this->GetVerdict())];
 }
 
+std::string MeshCertificate::DescribeFlatTetrahedra() const
+{
+  const FlatterTetrahedra& first = this->Under5Degrees;
+  const FlatterTetrahedra& second = this->Under15Degrees;
+  if (second.Count == 0)
+  {
+    return {};
+  }
+  List reasons;
+  const auto add = [&](Id count, Id all, const char* reason)
+  {
+    if (all != 0)
+    {
+      reasons.Add(std::to_string(count) + " and " + std::to_string(all) + " " + reason);
+    }
+  };
+  add(first.AtSharpAngles, second.AtSharpAngles, "at sharp angles of the input");
+  add(first.AcrossLayers, second.AcrossLayers,
+    "across layers that are one tetrahedron thick, with all points on boundaries");
+  add(first.GetOthers(), second.GetOthers(), "elsewhere");
+  return Count(first.Count, "tetrahedron has", "tetrahedra have") +
+    " a dihedral angle below 5 degrees, and " + std::to_string(second.Count) +
+    " below 15 degrees: " + reasons.Text + ".";
+}
+
 std::string MeshCertificate::GetReasons() const
 {
   switch (this->GetVerdict())
@@ -232,8 +257,14 @@ std::string MeshCertificate::GetReasons() const
 
 std::string MeshCertificate::GetText() const
 {
-  return std::string(this->GetVerdictName()) + "\n" + this->GetReasons() + "\n" +
-    GetNumbers(*this) + (this->Settings.empty() ? "" : "\n" + this->Settings);
+  const bool isTiny =
+    this->Level == CertificateLevel::Full && this->SmallestVolumeRatio < TinyVolumeRatio;
+  return std::string(this->GetVerdictName()) +
+    (isTiny ? ", but the smallest tetrahedron has " + Format("%.1g", this->SmallestVolumeRatio) +
+          " of the median volume"
+            : "") +
+    "\n" + this->GetReasons() + "\n" + GetNumbers(*this) +
+    (this->Settings.empty() ? "" : "\n" + this->Settings);
 }
 
 Status CertifyMesh(const TetMesh& mesh, const TriangleMesh* boundary,

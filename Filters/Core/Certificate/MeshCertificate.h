@@ -158,14 +158,16 @@ struct InterfaceSpheres
   Id Violations = 0;
 };
 
-/** Tetrahedra with a dihedral angle below a bound. */
+/** Tetrahedra with a dihedral angle below a bound, and why (FlatTetrahedra.h). */
 struct FlatterTetrahedra
 {
   Id Count = 0;
-  /**
-   * Tetrahedra with all points on outer and interface facets: the shape of the input causes them.
-   */
-  Id BetweenBoundaries = 0;
+  /** At sharp angles of the input. */
+  Id AtSharpAngles = 0;
+  /** Others with all points on outer and interface facets. */
+  Id AcrossLayers = 0;
+
+  Id GetOthers() const { return this->Count - this->AtSharpAngles - this->AcrossLayers; }
 };
 
 enum class CertificateLevel
@@ -195,6 +197,8 @@ constexpr CertificateOptions FullCertificate{ CertificateLevel::Full, BoundaryUs
 
 struct MeshCertificate
 {
+  /** Solvers lose digits where a volume is smaller than this ratio of the median. */
+  static constexpr double TinyVolumeRatio = 1e-10;
   /** The volumes may differ by this ratio. */
   static constexpr double VolumeTolerance = 1e-12;
 
@@ -228,6 +232,8 @@ struct MeshCertificate
   FlatterTetrahedra Under5Degrees;
   FlatterTetrahedra Under10Degrees;
   FlatterTetrahedra Under15Degrees;
+  /** The smallest volume of a tetrahedron as a ratio of their median; 1 if there are none. */
+  double SmallestVolumeRatio = 1.0;
   /** Ascending by region. */
   std::vector<RegionVolume> Regions;
   /** Largest |Volume - EnclosedVolume| / EnclosedVolume over the regions. */
@@ -262,9 +268,16 @@ struct MeshCertificate
 
   /** The verdict as it begins the text: "INVALID", "NOT DELAUNAY", "DELAUNAY", "CLEAN FOR ...". */
   const char* GetVerdictName() const;
+  /**
+   * A sentence: how many tetrahedra are flatter than 5 and 15 degrees, and why; empty if none is.
+   */
+  std::string DescribeFlatTetrahedra() const;
   /** A line: why the verdict is not better, or what it means. */
   std::string GetReasons() const;
-  /** Three lines: verdict, reasons, numbers; and a fourth if Settings are known. */
+  /**
+   * Three lines: verdict, reasons, numbers; and a fourth if Settings are known. At the full level
+   * the first one says so if the smallest volume is tiny.
+   */
   std::string GetText() const;
 };
 

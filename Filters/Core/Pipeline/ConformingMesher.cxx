@@ -6,6 +6,7 @@
 #include "Core/Improvement/SliverRemover.h"
 #include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/MeshBoundary.h"
+#include "Core/Pipeline/SurfaceCoarsener.h"
 #include "Core/Sizing/DefaultSize.h"
 #include "Core/Surface/StructuralEdges.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
@@ -67,11 +68,13 @@ public:
 private:
   Status TriangulateSurface();
   void ChooseSettings();
+  Status Coarsen();
   Status PlaceMeshPoints();
   Status RefineSurface();
   Status Tetrahedralize();
   Status AddSteinerPoints();
   Status RemoveFlatTetrahedra();
+  void WarnOfFlatTetrahedra();
   Status Check();
   Status CheckPeeled(const CertificateOptions& options, const ExecutionContext& context);
 
@@ -139,7 +142,7 @@ Status ConformingMesher::TriangulateSurface()
 {
   BoundaryTriangulatorOutput clean;
   Status status = TriangulateBoundary(*this->Input.Polygons, this->Options.Boundary,
-    this->GetPart("Boundary triangulation", 0.0, 0.1), clean);
+    this->GetPart("Boundary triangulation", 0.0, 0.05), clean);
   this->Output.Problems = std::move(clean.Problems);
   std::move(
     clean.Warnings.begin(), clean.Warnings.end(), std::back_inserter(this->Output.Warnings));
@@ -168,6 +171,14 @@ void ConformingMesher::ChooseSettings()
     this->Settings.MaximumEdgeLength = GetDefaultSize(this->Surface);
   }
   this->Output.Settings = this->Settings;
+}
+
+Status ConformingMesher::Coarsen()
+{
+  return this->Name(
+    CoarsenSurface(this->Input, this->Options.MaximumDeviation, this->Settings.MaximumEdgeLength,
+      this->GetPart("Surface coarsening", 0.05, 0.1), this->Surface, this->Output),
+    this->Surface.SourceCells);
 }
 
 Status ConformingMesher::PlaceMeshPoints()
@@ -396,6 +407,27 @@ Status ConformingMesher::CheckPeeled(
   return status;
 }
 
+/** With what could be done about them. */
+void ConformingMesher::WarnOfFlatTetrahedra()
+{
+  std::string text = this->Output.Certificate.DescribeFlatTetrahedra();
+  if (text.empty())
+  {
+    return;
+  }
+  const FlatterTetrahedra& flat = this->Output.Certificate.Under15Degrees;
+  if (!this->Settings.AddsSteinerPoints)
+  {
+    text += " Steiner points, which a mesh for finite volumes or finite elements has, make better "
+            "ones where the input allows it.";
+  }
+  else if (flat.AcrossLayers > 0)
+  {
+    text += " A maximum edge length below the thickness of the layers makes better ones there.";
+  }
+  this->Output.Warnings.push_back({ std::move(text) });
+}
+
 Status ConformingMesher::Check()
 {
   const ExecutionContext context = this->Context.Part(0.95, 1.0);
@@ -411,6 +443,7 @@ Status ConformingMesher::Check()
     this->Output.Warnings.push_back(
       { "The check finds fault with the mesh: " + this->Output.Certificate.GetReasons() });
   }
+  this->WarnOfFlatTetrahedra();
   this->Output.Certificate.Settings =
     DescribeSettings(this->Options.MeshFor, this->Options.Choices, this->Settings);
   this->Output.Facets = std::move(this->Facets);
@@ -427,6 +460,7 @@ Status ConformingMesher::Check()
 Status ConformingMesher::Run()
 {
   return this->TriangulateSurface()
+    .Then([this] { return this->Coarsen(); })
     .Then([this] { return this->PlaceMeshPoints(); })
     .Then([this] { return this->RefineSurface(); })
     .Then([this] { return this->Tetrahedralize(); })

@@ -4,8 +4,9 @@
  * @brief All stages in one run: polygons in, boundary-conforming Delaunay tetrahedra out.
  *
  * Method (thesis chapters 3, 5 and 6):
- *  1. BoundaryTriangulator.h: one clean triangulated surface; MeshPointGenerator.h, if points are
- *     to be generated;
+ *  1. BoundaryTriangulator.h: one clean triangulated surface; SurfaceCoarsener.h: as coarse as the
+ *     maximum deviation allows and the size asks for; MeshPointGenerator.h, if points are to be
+ *     generated;
  *  2. DelaunaySurfaceRefiner.h: flips and new points until the surface is part of its Delaunay
  *     mesh;
  *  3. AdvancingFrontTetrahedralizer.h: tetrahedra for every enclosed region;
@@ -36,6 +37,7 @@
 #include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 
+#include <optional>
 #include <vector>
 
 namespace cdm
@@ -50,6 +52,11 @@ struct ConformingMesherOptions
   BoundaryTriangulatorOptions Boundary;
   /** Limits of the surface; Criterion and MaximumEdgeLength are those of Choices. */
   DelaunaySurfaceRefinerOptions Surface;
+  /**
+   * How far the surface may be from that of the input where it is finer than edges are to be. Model
+   * units; 0: it stays as it is; not given: chosen for the surface, see SurfaceCoarsener.h.
+   */
+  std::optional<double> MaximumDeviation;
   bool GeneratesMeshPoints = false;
   /** Where they are. A Spacing of 0 is the maximum edge length, if there is one. */
   MeshPointGeneratorOptions MeshPoints;
@@ -64,6 +71,8 @@ struct ConformingMesherInput
   const PolygonSoup* Polygons = nullptr;
   /** Empty, or the structural facet of each polygon: edges between different ones are structural. */
   std::vector<Id> Facets;
+  /** Empty, or a number for each polygon: coarsening keeps edges between different ones. */
+  std::vector<Id> CellGroups;
   /** Given points for the inside; may be null. */
   const std::vector<Vec3>* MeshPoints = nullptr;
   /**
@@ -78,8 +87,8 @@ struct ConformingMesherInput
 /**
  * How the points of the mesh came about, stage by stage: what carries point data of the input
  * along.
- *  1. The clean surface has the input's points SurfaceSources, then SurfacePoints, whose parents
- *     are points of the input.
+ *  1. The clean surface, made coarser or not, has the input's points SurfaceSources, then
+ *     SurfacePoints, whose parents are points of the input.
  *  2. The refined surface has these, then RefinedPoints, whose parents are points of the refined
  *     surface itself.
  *  3. The first mesh has these, then mesh points: MeshPointSources counts the given ones, then the

@@ -435,6 +435,11 @@ bool ChangeableSurface::MeetsNothing(const SurfaceChange& change) const
 /** Whether a triangle that stays lies between the old and the new ones. */
 bool ChangeableSurface::IsPassedOver(Id triangle, const SurfaceChange& change) const
 {
+  const auto isIn = [&](const Vec3& p)
+  {
+    return std::any_of(change.Swept.begin(), change.Swept.end(),
+      [&p](const std::array<Vec3, 4>& corners) { return IsInTetrahedron(p, corners); });
+  };
   int common = 0;
   for (const Id id : this->Triangles[triangle])
   {
@@ -442,16 +447,15 @@ bool ChangeableSurface::IsPassedOver(Id triangle, const SurfaceChange& change) c
     if (std::any_of(change.Added.begin(), change.Added.end(), has))
     {
       ++common;
-      continue;
     }
-    const auto isIn = [&](const std::array<Vec3, 4>& corners)
-    { return IsInTetrahedron(this->Points[id], corners); };
-    if (std::any_of(change.Swept.begin(), change.Swept.end(), isIn))
+    else if (isIn(this->Points[id]))
     {
       return true;
     }
   }
-  return common == 3 && !change.Swept.empty();
+  // With all its points on the border it lies on one side, as a whole.
+  const std::array<Vec3, 3> corners = this->GetCorners(this->Triangles[triangle]);
+  return common == 3 && isIn((1.0 / 3.0) * (corners[0] + corners[1] + corners[2]));
 }
 
 /** Whether around edges of three or more triangles each space borders on itself only. */
@@ -492,50 +496,32 @@ bool ChangeableSurface::KeepsSpaces(const SurfaceChange& change) const
 
 bool ChangeableSurface::KeepsBound(const SurfaceChange& change)
 {
-  this->OfferedEdges.clear();
+  this->AddedEdges.clear();
   for (const EdgeIds& edge : change.AddedEdges)
   {
-    this->OfferedEdges.push_back(
+    this->AddedEdges.push_back(
       MakeSegment(this->Points, edge, this->Chains[change.RemovedEdges.front()]));
   }
-  this->OfferedTriangles.clear();
+  this->AddedTriangles.clear();
+  std::vector<Id> neighbors;
   for (const NewTriangle& added : change.Added)
   {
-    this->OfferedTriangles.push_back(
-      { this->GetCorners(added.Points), this->Facets[added.Source] });
+    this->AddedTriangles.push_back({ this->GetCorners(added.Points), this->Facets[added.Source] });
+    for (const Id point : added.Points)
+    {
+      neighbors.insert(neighbors.end(), this->Uses[point].begin(), this->Uses[point].end());
+    }
   }
   const auto isNear = [](const DeviationBound& bound)
   { return [&bound](const BoundSimplex& simplex) { return bound.IsNear(simplex); }; };
-  if (!std::all_of(
-        this->OfferedEdges.begin(), this->OfferedEdges.end(), isNear(this->ChainBound)) ||
-    !std::all_of(
-      this->OfferedTriangles.begin(), this->OfferedTriangles.end(), isNear(this->FacetBound)))
-  {
-    return false;
-  }
-  this->OtherTriangles.clear();
-  for (const NewTriangle& added : change.Added)
-  {
-    for (const Id point : added.Points)
-    {
-      this->OtherTriangles.insert(
-        this->OtherTriangles.end(), this->Uses[point].begin(), this->Uses[point].end());
-    }
-  }
-  SortUnique(this->OtherTriangles);
-  const auto goes = [&](Id t) { return Contains(change.Removed, t); };
-  this->OtherTriangles.erase(
-    std::remove_if(this->OtherTriangles.begin(), this->OtherTriangles.end(), goes),
-    this->OtherTriangles.end());
-  for (const Id t : this->OtherTriangles)
-  {
-    this->OfferedTriangles.push_back({ this->GetCorners(this->Triangles[t]), this->Facets[t] });
-  }
-  this->TriangleHandover.clear();
-  this->EdgeHandover.clear();
-  return this->ChainBound.FindWitnesses(
-           change.RemovedEdges, this->OfferedEdges, this->EdgeHandover) &&
-    this->FacetBound.FindWitnesses(change.Removed, this->OfferedTriangles, this->TriangleHandover);
+  this->EdgeProofs.clear();
+  this->TriangleProofs.clear();
+  return std::all_of(this->AddedEdges.begin(), this->AddedEdges.end(), isNear(this->ChainBound)) &&
+    std::all_of(
+      this->AddedTriangles.begin(), this->AddedTriangles.end(), isNear(this->FacetBound)) &&
+    this->ChainBound.FindWitnesses(change.RemovedEdges, this->AddedEdges, {}, this->EdgeProofs) &&
+    this->FacetBound.FindWitnesses(
+      change.Removed, this->AddedTriangles, neighbors, this->TriangleProofs);
 }
 
 void ChangeableSurface::Commit(const SurfaceChange& change)
@@ -590,8 +576,7 @@ void ChangeableSurface::Commit(const SurfaceChange& change)
     }
     ids.push_back(t);
   }
-  ids.insert(ids.end(), this->OtherTriangles.begin(), this->OtherTriangles.end());
-  this->FacetBound.Replace(change.Removed, this->OfferedTriangles, ids, this->TriangleHandover);
+  this->FacetBound.Replace(change.Removed, this->AddedTriangles, ids, this->TriangleProofs);
   this->CommitEdges(change);
 }
 
@@ -625,6 +610,6 @@ void ChangeableSurface::CommitEdges(const SurfaceChange& change)
       this->EdgesAt[point].push_back(ids.back());
     }
   }
-  this->ChainBound.Replace(change.RemovedEdges, this->OfferedEdges, ids, this->EdgeHandover);
+  this->ChainBound.Replace(change.RemovedEdges, this->AddedEdges, ids, this->EdgeProofs);
 }
 } // namespace cdm

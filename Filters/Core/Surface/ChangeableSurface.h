@@ -143,12 +143,11 @@ private:
   BoxOctree Boxes;
   DeviationBound FacetBound;
   DeviationBound ChainBound;
-  /** What may be witnesses after a change, new simplices first, and what they are given. */
-  std::vector<BoundSimplex> OfferedTriangles;
-  std::vector<Id> OtherTriangles;
-  DeviationBound::Handover TriangleHandover;
-  std::vector<BoundSimplex> OfferedEdges;
-  DeviationBound::Handover EdgeHandover;
+  /** New simplices of a change, and the proofs that KeepsBound() has found. */
+  std::vector<BoundSimplex> AddedTriangles;
+  std::vector<BoundSimplex> AddedEdges;
+  std::vector<DeviationBound::Proof> TriangleProofs;
+  std::vector<DeviationBound::Proof> EdgeProofs;
 };
 } // namespace cdm
 

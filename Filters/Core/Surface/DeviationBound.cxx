@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Surface/DeviationBound.h"
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Box.h"
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace cdm
 {
@@ -14,11 +16,8 @@ namespace
 constexpr double Slack = 1e-9;
 /** Pieces are not subdivided below this ratio of the bound. */
 constexpr double SmallestPieceRatio = 1.0 / 16.0;
-
-bool IsSegment(const std::array<Vec3, 3>& corners)
-{
-  return corners[1] == corners[2];
-}
+/** How far a corner may be from a plane that does not cut it off, as a ratio of the piece. */
+constexpr double CutTolerance = 1e-9;
 
 Vec3 FindNearestOnSegment(const Vec3& a, const Vec3& b, const Vec3& position)
 {
@@ -33,44 +32,180 @@ double GetSquaredDistance(const std::array<Vec3, 3>& corners, const Vec3& positi
   return SquaredNorm(FindNearestPoint(corners, position) - position);
 }
 
-/** Largest of the squared distances of a piece's corners; at most a little above the limit. */
-double GetLargestSquaredDistance(
-  const std::array<Vec3, 3>& corners, const std::array<Vec3, 3>& piece, double limit)
+/** A convex polygon, or a segment of two corners. */
+struct Piece
 {
-  double largest = 0.0;
-  const std::size_t count = IsSegment(piece) ? 2 : 3;
-  for (std::size_t i = 0; i < count && largest <= limit; ++i)
+  static constexpr int Capacity = 12;
+
+  explicit Piece(const std::array<Vec3, 3>& corners)
+    : Corners{ corners[0], corners[1], corners[2] }, Count(corners[1] == corners[2] ? 2 : 3)
   {
-    largest = std::max(largest, GetSquaredDistance(corners, piece[i]));
   }
-  return largest;
-}
+  Piece() = default;
 
-Vec3 GetCenter(const std::array<Vec3, 3>& piece)
-{
-  return IsSegment(piece) ? 0.5 * (piece[0] + piece[1])
-                          : (1.0 / 3.0) * (piece[0] + piece[1] + piece[2]);
-}
+  std::array<Vec3, Capacity> Corners;
+  int Count = 0;
+};
 
-double GetRadius(const std::array<Vec3, 3>& piece, const Vec3& center)
+/** Cuts a piece by a plane; false if it lies on one side, or would get too many corners. */
+bool Cut(const Piece& piece, const Vec3& origin, const Vec3& normal, double tolerance,
+  std::array<Piece, 2>& parts)
 {
-  return std::sqrt(std::max({ SquaredNorm(piece[0] - center), SquaredNorm(piece[1] - center),
-    SquaredNorm(piece[2] - center) }));
-}
-
-/** A segment in two, a triangle in four; calls visit until it returns false. */
-template <typename Visit>
-bool VisitParts(const std::array<Vec3, 3>& piece, const Visit& visit)
-{
-  const Vec3 ab = 0.5 * (piece[0] + piece[1]);
-  if (IsSegment(piece))
+  std::array<double, Piece::Capacity> heights;
+  bool isAbove = false;
+  bool isBelow = false;
+  for (int i = 0; i < piece.Count; ++i)
   {
-    return visit({ piece[0], ab, ab }) && visit({ ab, piece[1], piece[1] });
+    const double height = Dot(piece.Corners[i] - origin, normal);
+    heights[i] = std::abs(height) <= tolerance ? 0.0 : height;
+    isAbove = isAbove || heights[i] > 0.0;
+    isBelow = isBelow || heights[i] < 0.0;
   }
-  const Vec3 bc = 0.5 * (piece[1] + piece[2]);
-  const Vec3 ca = 0.5 * (piece[2] + piece[0]);
-  return visit({ ab, bc, ca }) && visit({ piece[0], ab, ca }) && visit({ piece[1], bc, ab }) &&
-    visit({ piece[2], ca, bc });
+  if (!isAbove || !isBelow)
+  {
+    return false;
+  }
+  parts = {};
+  bool fits = true;
+  const auto add = [&fits](Piece& part, const Vec3& corner)
+  {
+    fits = fits && part.Count < Piece::Capacity;
+    part.Corners[fits ? part.Count++ : 0] = corner;
+  };
+  for (int i = 0; i < piece.Count; ++i)
+  {
+    const int next = (i + 1) % piece.Count;
+    if (heights[i] >= 0.0)
+    {
+      add(parts[0], piece.Corners[i]);
+    }
+    if (heights[i] <= 0.0)
+    {
+      add(parts[1], piece.Corners[i]);
+    }
+    if (heights[i] * heights[next] < 0.0 && (piece.Count > 2 || i == 0))
+    {
+      const double place = heights[i] / (heights[i] - heights[next]);
+      const Vec3 corner = piece.Corners[i] + place * (piece.Corners[next] - piece.Corners[i]);
+      add(parts[0], corner);
+      add(parts[1], corner);
+    }
+  }
+  return fits;
+}
+
+/** Proves that a piece lies within a bound of some simplices, and remembers which. */
+class ProofSearch
+{
+public:
+  ProofSearch(const std::vector<BoundSimplex>& simplices, double bound)
+    : Used(simplices.size(), 0), Simplices(simplices), Bound(bound)
+  {
+  }
+
+  bool Prove(const Piece& piece, const std::vector<Id>& candidates);
+
+  std::vector<char> Used;
+
+private:
+  bool IsAllNear(const Piece& piece, Id candidate) const;
+  bool CutAt(const Piece& piece, Id candidate, double tolerance, std::array<Piece, 2>& parts) const;
+
+  const std::vector<BoundSimplex>& Simplices;
+  const double Bound;
+};
+
+bool ProofSearch::IsAllNear(const Piece& piece, Id candidate) const
+{
+  for (int i = 0; i < piece.Count; ++i)
+  {
+    if (GetSquaredDistance(this->Simplices[candidate].Corners, piece.Corners[i]) >
+      this->Bound * this->Bound)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/** Cuts where the piece leaves what is above, below or, of a segment, around the candidate. */
+bool ProofSearch::CutAt(
+  const Piece& piece, Id candidate, double tolerance, std::array<Piece, 2>& parts) const
+{
+  const auto& [a, b, c] = this->Simplices[candidate].Corners;
+  if (b == c)
+  {
+    const Vec3 direction = (1.0 / Distance(a, b)) * (b - a);
+    return Cut(piece, a, direction, tolerance, parts) || Cut(piece, b, direction, tolerance, parts);
+  }
+  const Vec3 normal = Cross(b - a, c - a);
+  for (const auto& [begin, end] : { std::pair(a, b), std::pair(b, c), std::pair(c, a) })
+  {
+    const Vec3 side = Cross(normal, end - begin);
+    const double length = Norm(side);
+    if (length > 0.0 && Cut(piece, begin, (1.0 / length) * side, tolerance, parts))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool ProofSearch::Prove(const Piece& piece, const std::vector<Id>& candidates)
+{
+  Vec3 center;
+  for (int i = 0; i < piece.Count; ++i)
+  {
+    center = center + (1.0 / piece.Count) * piece.Corners[i];
+  }
+  double radius = 0.0;
+  Vec3 farthest;
+  for (int i = 0; i < piece.Count; ++i)
+  {
+    const double distance = Distance(piece.Corners[i], center);
+    farthest = distance > radius ? piece.Corners[i] - center : farthest;
+    radius = std::max(radius, distance);
+  }
+  const double reach = (this->Bound + radius) * (this->Bound + radius);
+  std::vector<Id> near;
+  double smallest = std::numeric_limits<double>::infinity();
+  Id nearest = NoId;
+  for (const Id candidate : candidates)
+  {
+    const double square = GetSquaredDistance(this->Simplices[candidate].Corners, center);
+    if (square < smallest)
+    {
+      smallest = square;
+      nearest = candidate;
+    }
+    if (square <= reach)
+    {
+      near.push_back(candidate);
+    }
+  }
+  const double distance = std::sqrt(smallest);
+  if (distance > this->Bound)
+  {
+    return false;
+  }
+  const auto isAllNear = [&](Id candidate) { return this->IsAllNear(piece, candidate); };
+  const auto witness = distance + radius <= this->Bound || isAllNear(nearest)
+    ? std::find(near.begin(), near.end(), nearest)
+    : std::find_if(near.begin(), near.end(), isAllNear);
+  if (witness != near.end())
+  {
+    this->Used[*witness] = 1;
+    return true;
+  }
+  if (radius <= SmallestPieceRatio * this->Bound)
+  {
+    return false;
+  }
+  const double tolerance = CutTolerance * radius;
+  std::array<Piece, 2> parts;
+  return ((radius > 2.0 * this->Bound && this->CutAt(piece, nearest, tolerance, parts)) ||
+           Cut(piece, center, (1.0 / radius) * farthest, tolerance, parts)) &&
+    this->Prove(parts[0], near) && this->Prove(parts[1], near);
 }
 
 Box GetBox(const std::array<Vec3, 3>& corners, double margin)
@@ -133,178 +268,158 @@ Vec3 FindNearestPoint(const std::array<Vec3, 3>& corners, const Vec3& position)
 }
 
 DeviationBound::DeviationBound(std::vector<BoundSimplex> original, double bound)
-  : Original(std::move(original)), Bound(bound * (1.0 - Slack)),
-    SquaredBound(this->Bound * this->Bound), SmallestPiece(SmallestPieceRatio * bound),
-    Tree(GetBoxes(this->Original)), Pieces(this->Original.size())
+  : Original(std::move(original)), Current(this->Original), Bound(bound * (1.0 - Slack)),
+    Tree(GetBoxes(this->Original))
 {
-  for (std::size_t i = 0; i < this->Original.size(); ++i)
+  for (Id i = 0; i < static_cast<Id>(this->Original.size()); ++i)
   {
-    this->Pieces[i].push_back(this->Original[i].Corners);
-    this->Groups.push_back(this->Original[i].Group);
+    this->Witnesses.push_back({ i });
+    this->Proven.push_back({ i });
   }
 }
 
 bool DeviationBound::IsNear(const BoundSimplex& simplex) const
 {
-  std::vector<Id> candidates;
+  std::vector<BoundSimplex> candidates;
+  std::vector<Id> all;
   this->Tree.VisitOverlaps(GetBox(simplex.Corners, this->Bound),
     [&](Id id)
     {
       if (this->Original[id].Group == simplex.Group)
       {
-        candidates.push_back(id);
+        all.push_back(static_cast<Id>(candidates.size()));
+        candidates.push_back(this->Original[id]);
       }
     });
-  return this->IsPieceNear(simplex.Corners, candidates);
-}
-
-bool DeviationBound::IsPieceNear(const Piece& piece, const std::vector<Id>& candidates) const
-{
-  const Vec3 center = GetCenter(piece);
-  const double radius = GetRadius(piece, center);
-  const double reach = (this->Bound + radius) * (this->Bound + radius);
-  std::vector<Id> near;
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Id id : candidates)
-  {
-    const double square = GetSquaredDistance(this->Original[id].Corners, center);
-    nearest = std::min(nearest, square);
-    if (square <= reach)
-    {
-      near.push_back(id);
-    }
-  }
-  if (nearest > this->SquaredBound)
-  {
-    return false;
-  }
-  if (std::sqrt(nearest) + radius <= this->Bound)
-  {
-    return true;
-  }
-  const auto isNear = [&](Id id)
-  {
-    return GetLargestSquaredDistance(this->Original[id].Corners, piece, this->SquaredBound) <=
-      this->SquaredBound;
-  };
-  if (std::any_of(near.begin(), near.end(), isNear))
-  {
-    return true;
-  }
-  return radius > this->SmallestPiece &&
-    VisitParts(piece, [&](const Piece& part) { return this->IsPieceNear(part, near); });
+  return ProofSearch(candidates, this->Bound).Prove(Piece(simplex.Corners), all);
 }
 
 bool DeviationBound::FindNearest(
   const Vec3& position, Id group, double reach, Vec3& nearest, Id& simplex) const
 {
   simplex = NoId;
-  double best = reach * reach;
-  this->Tree.VisitOverlaps(Box::MakeAround(position, reach),
-    [&](Id id)
+  // Most are near: a small box first.
+  for (double radius = std::min(this->Bound, reach); simplex == NoId; radius *= 2.0)
+  {
+    radius = std::min(radius, reach);
+    double best = radius * radius;
+    this->Tree.VisitOverlaps(Box::MakeAround(position, radius),
+      [&](Id id)
+      {
+        if (this->Original[id].Group != group)
+        {
+          return;
+        }
+        const Vec3 point = FindNearestPoint(this->Original[id].Corners, position);
+        const double square = SquaredNorm(point - position);
+        // Of equal distances the smallest id: whatever the order of the visits.
+        if (square < best || (square == best && id < simplex))
+        {
+          best = square;
+          nearest = point;
+          simplex = id;
+        }
+      });
+    if (radius >= reach)
     {
-      if (this->Original[id].Group != group)
-      {
-        return;
-      }
-      const Vec3 point = FindNearestPoint(this->Original[id].Corners, position);
-      const double square = SquaredNorm(point - position);
-      // Of equal distances the smallest id: whatever the order of the visits.
-      if (square < best || (square == best && id < simplex))
-      {
-        best = square;
-        nearest = point;
-        simplex = id;
-      }
-    });
+      break;
+    }
+  }
   return simplex != NoId;
 }
 
 bool DeviationBound::FindWitnesses(const std::vector<Id>& removed,
-  const std::vector<BoundSimplex>& offered, Handover& handover) const
+  const std::vector<BoundSimplex>& added, const std::vector<Id>& neighbors,
+  std::vector<Proof>& proofs) const
 {
+  std::vector<Id> affected;
   for (const Id id : removed)
   {
-    std::vector<std::size_t> candidates;
-    for (std::size_t i = 0; i < offered.size(); ++i)
+    affected.insert(affected.end(), this->Proven[id].begin(), this->Proven[id].end());
+  }
+  SortUnique(affected);
+  std::vector<BoundSimplex> offered = added;
+  std::vector<Id> numbers;
+  for (std::size_t i = 0; i < added.size(); ++i)
+  {
+    numbers.push_back(~static_cast<Id>(i));
+  }
+  std::vector<Id> others = neighbors;
+  for (const Id original : affected)
+  {
+    others.insert(others.end(), this->Witnesses[original].begin(), this->Witnesses[original].end());
+  }
+  SortUnique(others);
+  for (const Id other : others)
+  {
+    if (!Contains(removed, other))
     {
-      if (offered[i].Group == this->Groups[id])
+      offered.push_back(this->Current[other]);
+      numbers.push_back(other);
+    }
+  }
+  for (const Id original : affected)
+  {
+    std::vector<Id> candidates;
+    for (Id i = 0; i < static_cast<Id>(offered.size()); ++i)
+    {
+      if (offered[i].Group == this->Original[original].Group)
       {
         candidates.push_back(i);
       }
     }
-    for (const Piece& piece : this->Pieces[id])
+    ProofSearch search(offered, this->Bound);
+    if (!search.Prove(Piece(this->Original[original].Corners), candidates))
     {
-      if (!this->FindWitness(piece, offered, candidates, handover))
+      return false;
+    }
+    Proof proof{ original, {} };
+    for (std::size_t i = 0; i < offered.size(); ++i)
+    {
+      if (search.Used[i])
       {
-        return false;
+        proof.Witnesses.push_back(numbers[i]);
       }
     }
+    proofs.push_back(std::move(proof));
   }
   return true;
 }
 
-bool DeviationBound::FindWitness(const Piece& piece, const std::vector<BoundSimplex>& offered,
-  const std::vector<std::size_t>& candidates, Handover& handover) const
+void DeviationBound::Replace(const std::vector<Id>& removed, const std::vector<BoundSimplex>& added,
+  const std::vector<Id>& ids, const std::vector<Proof>& proofs)
 {
-  double best = this->SquaredBound;
-  std::size_t witness = offered.size();
-  for (const std::size_t i : candidates)
+  const auto drop = [](std::vector<Id>& from, Id id)
+  { from.erase(std::remove(from.begin(), from.end(), id), from.end()); };
+  for (const Proof& proof : proofs)
   {
-    const double square = GetLargestSquaredDistance(offered[i].Corners, piece, best);
-    if (square <= best && (square < best || witness == offered.size()))
+    for (const Id witness : this->Witnesses[proof.Original])
     {
-      best = square;
-      witness = i;
+      drop(this->Proven[witness], proof.Original);
     }
   }
-  if (witness != offered.size())
-  {
-    handover.emplace_back(witness, piece);
-    return true;
-  }
-  const Vec3 center = GetCenter(piece);
-  const double radius = GetRadius(piece, center);
-  if (radius <= this->SmallestPiece)
-  {
-    return false;
-  }
-  const double reach = (this->Bound + radius) * (this->Bound + radius);
-  std::vector<std::size_t> near;
-  bool isNear = false;
-  for (const std::size_t i : candidates)
-  {
-    const double square = GetSquaredDistance(offered[i].Corners, center);
-    isNear = isNear || square <= this->SquaredBound;
-    if (square <= reach)
-    {
-      near.push_back(i);
-    }
-  }
-  return isNear &&
-    VisitParts(
-      piece, [&](const Piece& part) { return this->FindWitness(part, offered, near, handover); });
-}
-
-void DeviationBound::Replace(const std::vector<Id>& removed,
-  const std::vector<BoundSimplex>& offered, const std::vector<Id>& ids, const Handover& handover)
-{
   for (const Id id : removed)
   {
-    this->Pieces[id].clear();
+    this->Proven[id].clear();
   }
   for (std::size_t i = 0; i < ids.size(); ++i)
   {
-    if (static_cast<std::size_t>(ids[i]) >= this->Groups.size())
+    if (static_cast<std::size_t>(ids[i]) >= this->Current.size())
     {
-      this->Groups.resize(ids[i] + 1, NoId);
-      this->Pieces.resize(this->Groups.size());
+      this->Current.resize(ids[i] + 1);
+      this->Proven.resize(this->Current.size());
     }
-    this->Groups[ids[i]] = offered[i].Group;
+    this->Current[ids[i]] = added[i];
   }
-  for (const auto& [place, piece] : handover)
+  for (const Proof& proof : proofs)
   {
-    this->Pieces[ids[place]].push_back(piece);
+    std::vector<Id>& witnesses = this->Witnesses[proof.Original];
+    witnesses = proof.Witnesses;
+    for (Id& witness : witnesses)
+    {
+      witness = witness < 0 ? ids[~witness] : witness;
+      this->Proven[witness].push_back(proof.Original);
+    }
   }
 }
 } // namespace cdm

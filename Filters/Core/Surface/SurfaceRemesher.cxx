@@ -3,6 +3,7 @@
 
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
+#include "Core/Search/PlaceSearch.h"
 #include "Core/Surface/ChangeableSurface.h"
 #include "Core/Surface/FeatureChains.h"
 
@@ -17,7 +18,10 @@ namespace cdm
 namespace
 {
 constexpr Id StepsBetweenChecks = 256;
-constexpr int NumberOfRounds = 6;
+/** Rounds end when they hardly make the surface coarser any more. */
+constexpr int MinimumRounds = 6;
+constexpr int MaximumRounds = 30;
+constexpr double SettledRatio = 0.98;
 /** Edges are split above and collapse below these ratios of the wanted length. */
 constexpr double SplitRatio = 4.0 / 3.0;
 constexpr double CollapseRatio = 4.0 / 5.0;
@@ -25,6 +29,13 @@ constexpr double CollapseRatio = 4.0 / 5.0;
 constexpr double SmallestMoveRatio = 0.05;
 /** Cosine of the largest turn of a chain at a point that is no corner: 40 degrees. */
 constexpr double SmallestChainCosine = 0.766;
+/** The same where edges are far too short, below this ratio of the wanted length: 3 degrees. */
+constexpr double TinyAngleCosine = 0.9986;
+constexpr double FarTooShortRatio = 0.4;
+/** Angles below this are enlarged where possible. Degrees. */
+constexpr double WantedAngle = 45.0;
+/** First step of a search for a place, of the wanted length or the shortest edge. */
+constexpr double FirstStepRatio = 0.2;
 /** Cosine of an angle of a triangle that is small enough to be avoided: 20 degrees. */
 constexpr double SmallAngleCosine = 0.94;
 
@@ -70,18 +81,29 @@ public:
   /** False if aborted. */
   bool Run(const ExecutionContext& context)
   {
-    for (int round = 0; round < NumberOfRounds; ++round)
+    Id before = this->CountTriangles();
+    for (int round = 0; round < MaximumRounds; ++round)
     {
       // Most is done in the first round.
-      const double begin = round == 0 ? 0.0 : 0.5 + 0.5 * (round - 1) / (NumberOfRounds - 1);
-      const double end = 0.5 + 0.5 * round / (NumberOfRounds - 1);
-      const ExecutionContext part = context.Part(begin, end);
+      const double begin = round == 0 ? 0.0 : 1.0 - std::pow(0.7, round);
+      const ExecutionContext part = context.Part(begin, 1.0 - std::pow(0.7, round + 1));
+      this->AcceptsSmallAngles = round % 2 == 1;
       if (!this->Split(part.Part(0.0, 0.1)) || !this->Collapse(part.Part(0.1, 0.7)) ||
-        !this->Flip(part.Part(0.7, 0.75)) || !this->Smooth(part.Part(0.75, 0.95)) ||
-        !this->Flip(part.Part(0.95, 1.0)))
+        !this->Flip(part.Part(0.7, 0.75)) || !this->Smooth(part.Part(0.75, 0.9)) ||
+        !this->EnlargeAngles(part.Part(0.9, 0.95)) || !this->Flip(part.Part(0.95, 1.0)))
       {
         return false;
       }
+      if (this->AcceptsSmallAngles)
+      {
+        continue;
+      }
+      const Id after = this->CountTriangles();
+      if (round >= MinimumRounds && after > SettledRatio * before)
+      {
+        break;
+      }
+      before = after;
     }
     return true;
   }
@@ -101,6 +123,7 @@ private:
       std::min(this->Lengths[a], this->Lengths[b]);
   }
 
+  Id CountTriangles() const;
   void FindFixedPoints();
   bool IsRegular(Id point) const;
   std::vector<EdgeIds> ListEdges() const;
@@ -111,6 +134,7 @@ private:
   bool Flip(const ExecutionContext& context);
   void FlipEdge(const EdgeIds& edge);
   bool Smooth(const ExecutionContext& context);
+  bool EnlargeAngles(const ExecutionContext& context);
   bool FindBetterPlace(Id point, Vec3& place) const;
   bool Move(Id point, const Vec3& place);
   double GetWorstAngleCosine(
@@ -122,7 +146,19 @@ private:
   /** Wanted length of edges at each point. */
   std::vector<double> Lengths;
   std::vector<char> IsFixed;
+  /** Every other round: the next one mends what that has made. */
+  bool AcceptsSmallAngles = false;
 };
+
+Id Remesher::CountTriangles() const
+{
+  Id count = 0;
+  for (Id t = 0; t < this->Surface.GetNumberOfTriangles(); ++t)
+  {
+    count += this->Surface.IsTriangle(t) ? 1 : 0;
+  }
+  return count;
+}
 
 /** Whether triangles at a point are one disk, or pages that all end in the same two chain edges. */
 bool Remesher::IsRegular(Id point) const
@@ -361,7 +397,10 @@ bool Remesher::CollapseEdge(Id point, Id target)
     }
     change.Swept.push_back(swept);
   }
-  return this->GetWorstAngleCosine(change.Added, NoId, {}) <= std::max(old, SmallAngleCosine) &&
+  const bool isFarTooShort =
+    this->AcceptsSmallAngles && this->GetRatio(point, target) < FarTooShortRatio;
+  const double limit = isFarTooShort ? TinyAngleCosine : SmallAngleCosine;
+  return this->GetWorstAngleCosine(change.Added, NoId, {}) <= std::max(old, limit) &&
     this->Surface.KeepsTopology(point, target) && this->Surface.TryChange(change);
 }
 
@@ -451,6 +490,51 @@ bool Remesher::Smooth(const ExecutionContext& context)
       this->FindBetterPlace(point, place) && !this->Move(point, place))
     {
       place = 0.5 * (place + this->GetPoint(point));
+      this->Move(point, place);
+    }
+  }
+  return true;
+}
+
+bool Remesher::EnlargeAngles(const ExecutionContext& context)
+{
+  const std::vector<Vec3> directions = MakeCubeDirections();
+  for (Id point = 0; point < this->Surface.GetNewPoint(); ++point)
+  {
+    if (point % StepsBetweenChecks == 0 &&
+      !context.Continue(
+        static_cast<double>(point) / this->Surface.GetNewPoint(), "Enlarging angles"))
+    {
+      return false;
+    }
+    if (this->IsFixed[point] || this->Surface.GetUses(point).empty())
+    {
+      continue;
+    }
+    const Vec3 old = this->GetPoint(point);
+    const auto getAngle = [&](const Vec3& place)
+    { return DegreesPerRadian * std::acos(this->GetWorstAngleCosine({}, point, place)); };
+    Place best;
+    best.Angle = getAngle(old) + SmallestGain;
+    double length = this->Lengths[point];
+    for (const Id neighbor : this->Surface.GetNeighbors(point))
+    {
+      length = std::min(length, Distance(old, this->GetPoint(neighbor)));
+    }
+    const double step = FirstStepRatio * length;
+    const auto rate = [&](const Vec3& position, double)
+    {
+      Vec3 nearest;
+      return this->Surface.FindNearestOriginal(point, position, step, nearest) ? getAngle(nearest)
+                                                                               : 0.0;
+    };
+    if (best.Angle < WantedAngle)
+    {
+      SearchPlace(old, step, directions, WantedAngle, rate, best);
+    }
+    Vec3 place;
+    if (best.IsFound && this->Surface.FindNearestOriginal(point, best.Position, step, place))
+    {
       this->Move(point, place);
     }
   }

@@ -12,6 +12,8 @@ namespace vtkCoreBridge
 constexpr const char* BoundaryLabelsName = "BoundaryLabels";
 /** Cell array of tetrahedra, point array of seeds. */
 constexpr const char* RegionIdName = "RegionId";
+/** Cell array of a surface: the contact that a polygon belongs to, or -1. */
+constexpr const char* ContactIdName = "ContactId";
 /** Point array of the sizing input: a length, one for each axis, or a tensor. */
 constexpr const char* SizingName = "Sizing";
 /** Cell array of refined surfaces: structural edges are between different ones. */

@@ -36,7 +36,9 @@ std::vector<std::pair<const char*, vtkIdType>> GetCounts(const cdm::MeshCertific
       { "Couplings", certificate.Couplings }, { "CoincidentPoints", certificate.CoincidentPoints },
       { "TetrahedraUnder5Degrees", certificate.Under5Degrees.Count },
       { "TetrahedraUnder10Degrees", certificate.Under10Degrees.Count },
-      { "TetrahedraUnder15Degrees", certificate.Under15Degrees.Count } });
+      { "TetrahedraUnder15Degrees", certificate.Under15Degrees.Count },
+      { "FlatTetrahedraAtSharpAngles", certificate.Under15Degrees.AtSharpAngles },
+      { "FlatTetrahedraAcrossLayers", certificate.Under15Degrees.AcrossLayers } });
   return counts;
 }
 
@@ -63,10 +65,11 @@ void AddCertificate(const cdm::MeshCertificate& certificate, vtkFieldData* data)
   {
     AddArray<vtkIdTypeArray>(data, count.first, 1, [&count](std::size_t) { return count.second; });
   }
-  const auto addAngle = [data](const char* name, double angle)
-  { AddArray<vtkDoubleArray>(data, name, 1, [angle](std::size_t) { return angle; }); };
-  addAngle("MeshSmallestDihedralAngle", certificate.SmallestDihedralAngle);
-  addAngle("MeshLargestDihedralAngle", certificate.LargestDihedralAngle);
+  const auto addNumber = [data](const char* name, double number)
+  { AddArray<vtkDoubleArray>(data, name, 1, [number](std::size_t) { return number; }); };
+  addNumber("MeshSmallestDihedralAngle", certificate.SmallestDihedralAngle);
+  addNumber("MeshLargestDihedralAngle", certificate.LargestDihedralAngle);
+  addNumber("SmallestVolumeRatio", certificate.SmallestVolumeRatio);
   const auto& regions = certificate.Regions;
   AddArray<vtkIntArray>(
     data, "RegionIds", regions.size(), [&](std::size_t i) { return regions[i].Region; });

@@ -27,7 +27,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 
 namespace
 {
@@ -441,29 +443,80 @@ cdm::Status ToFlags(vtkPointSet* input, const char* name, std::vector<char>& fla
 //--------------------------------------------------------------------------------------------------
 cdm::Status ToFacets(vtkPolyData* input, std::vector<cdm::Id>& facets)
 {
-  vtkDataArray* array = nullptr;
-  const cdm::Status status = FindScalars(
-    input->GetCellData(), StructuralFacetIdName, "cell", input->GetNumberOfCells(), array);
   const vtkIdType first = GetFirstPolygon(input);
-  for (vtkIdType i = 0; array && i < input->GetNumberOfPolys(); ++i)
+  std::vector<vtkIdType> cells;
+  for (vtkIdType i = 0; i < input->GetNumberOfPolys(); ++i)
   {
-    facets.push_back(static_cast<cdm::Id>(array->GetComponent(first + i, 0)));
+    cells.push_back(first + i);
   }
-  return status;
+  return ToFacets(input, cells, facets);
 }
 
 //--------------------------------------------------------------------------------------------------
 cdm::Status ToFacets(
   vtkPolyData* input, const std::vector<vtkIdType>& cells, std::vector<cdm::Id>& facets)
 {
-  vtkDataArray* array = nullptr;
-  const cdm::Status status = FindScalars(
-    input->GetCellData(), StructuralFacetIdName, "cell", input->GetNumberOfCells(), array);
-  for (std::size_t i = 0; array && i < cells.size(); ++i)
+  vtkDataArray* arrays[2] = { nullptr, nullptr };
+  constexpr const char* Names[2] = { StructuralFacetIdName, ContactIdName };
+  for (int i = 0; i < 2; ++i)
   {
-    facets.push_back(static_cast<cdm::Id>(array->GetComponent(cells[i], 0)));
+    const cdm::Status status =
+      FindScalars(input->GetCellData(), Names[i], "cell", input->GetNumberOfCells(), arrays[i]);
+    if (!status.IsOk())
+    {
+      return status;
+    }
   }
-  return status;
+  if (!arrays[1])
+  {
+    for (std::size_t i = 0; arrays[0] && i < cells.size(); ++i)
+    {
+      facets.push_back(static_cast<cdm::Id>(arrays[0]->GetComponent(cells[i], 0)));
+    }
+    return {};
+  }
+  // A number for each pair of both.
+  std::map<std::pair<double, double>, cdm::Id> numbers;
+  for (const vtkIdType cell : cells)
+  {
+    const double facet = arrays[0] ? arrays[0]->GetComponent(cell, 0) : 0.0;
+    const std::pair<double, double> pair{ facet, arrays[1]->GetComponent(cell, 0) };
+    facets.push_back(numbers.emplace(pair, static_cast<cdm::Id>(numbers.size())).first->second);
+  }
+  return {};
+}
+
+//--------------------------------------------------------------------------------------------------
+std::vector<cdm::Id> ToCellGroups(vtkPolyData* input, const std::vector<vtkIdType>& cells)
+{
+  std::vector<cdm::Id> groups;
+  vtkCellData* const data = input->GetCellData();
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* const array = data->GetArray(i);
+    if (!array || array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE ||
+      array == data->GetArray(BoundaryLabelsName) ||
+      array->GetNumberOfTuples() != input->GetNumberOfCells())
+    {
+      continue;
+    }
+    // The group so far and the tuple, as a key.
+    std::map<std::vector<double>, cdm::Id> numbers;
+    std::vector<cdm::Id> finer;
+    for (std::size_t cell = 0; cell < cells.size(); ++cell)
+    {
+      std::vector<double> key(array->GetNumberOfComponents() + 1);
+      array->GetTuple(cells[cell], key.data());
+      key.back() = groups.empty() ? 0 : groups[cell];
+      finer.push_back(numbers.emplace(key, static_cast<cdm::Id>(numbers.size())).first->second);
+    }
+    // Numbers of the cells themselves divide nothing.
+    if (2 * numbers.size() <= cells.size())
+    {
+      groups = std::move(finer);
+    }
+  }
+  return groups;
 }
 
 //--------------------------------------------------------------------------------------------------

@@ -35,12 +35,22 @@ cdm::Status ToPolygonSoup(
 /** All polygons must be triangles. */
 cdm::Status ToTriangleMesh(vtkPolyData* input, cdm::TriangleMesh& surface);
 
-/** Structural facet of each triangle, from the cell array; empty without the array. */
+/**
+ * Structural facet of each triangle, from the cell arrays StructuralFacetId and ContactId: contacts
+ * end at structural edges, also within a plane. Empty without both.
+ */
 cdm::Status ToFacets(vtkPolyData* input, std::vector<cdm::Id>& facets);
 
 /** The same for polygons, by their cells. */
 cdm::Status ToFacets(
   vtkPolyData* input, const std::vector<vtkIdType>& cells, std::vector<cdm::Id>& facets);
+
+/**
+ * A number for each polygon that says which others have the same cell data, in integer arrays other
+ * than BoundaryLabels whose values repeat: the values of at least half of the polygons are those of
+ * others, too. Empty without such arrays.
+ */
+std::vector<cdm::Id> ToCellGroups(vtkPolyData* input, const std::vector<vtkIdType>& cells);
 
 /** Rows of region, neighbor, number of layers, first distance and growth ratio. */
 cdm::Status ToLayers(

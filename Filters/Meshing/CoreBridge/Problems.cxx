@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CoreBridge/Problems.h"
 
+#include "vtkBoundaryTriangulator.h"
+
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkIdTypeArray.h>
@@ -29,19 +31,24 @@ public:
 
   void Add(const cdm::SurfaceProblem& problem)
   {
+    const int kind = static_cast<int>(problem.Kind);
     if (problem.SegmentBegin == problem.SegmentEnd)
     {
       const vtkIdType id = this->AddPoint(problem.SegmentBegin);
-      this->AddCell(this->Vertices, 1, &id, problem.Kind, problem.Cell, problem.OtherCell);
+      this->AddCell(this->Vertices, 1, &id, kind, problem.Cell, problem.OtherCell);
     }
     else
     {
       const vtkIdType ids[2] = { this->AddPoint(problem.SegmentBegin),
         this->AddPoint(problem.SegmentEnd) };
-      this->AddCell(this->Lines, 2, ids, problem.Kind, problem.Cell, problem.OtherCell);
+      this->AddCell(this->Lines, 2, ids, kind, problem.Cell, problem.OtherCell);
     }
-    this->AddPolygon(problem.Kind, problem.Cell, problem.OtherCell);
-    this->AddPolygon(problem.Kind, problem.OtherCell, problem.Cell);
+    // Self-intersections are lines on polygons, which would hide them in the same color.
+    const int polygonKind = problem.Kind == cdm::SurfaceProblemKind::SelfIntersection
+      ? vtkBoundaryTriangulator::IntersectingPolygon
+      : kind;
+    this->AddPolygon(polygonKind, problem.Cell, problem.OtherCell);
+    this->AddPolygon(polygonKind, problem.OtherCell, problem.Cell);
   }
 
   void Finish(vtkPolyData* output)
@@ -84,24 +91,23 @@ private:
     return this->Points->InsertNextPoint(point.X, point.Y, point.Z);
   }
 
-  Key MakeKey(cdm::SurfaceProblemKind kind, cdm::Id cell, cdm::Id otherCell) const
+  Key MakeKey(int kind, cdm::Id cell, cdm::Id otherCell) const
   {
-    return { static_cast<int>(kind), cell == cdm::NoId ? -1 : this->SourceCells[cell],
+    return { kind, cell == cdm::NoId ? -1 : this->SourceCells[cell],
       otherCell == cdm::NoId ? -1 : this->SourceCells[otherCell] };
   }
 
-  void AddCell(CellGroup& group, vtkIdType size, const vtkIdType* ids, cdm::SurfaceProblemKind kind,
-    cdm::Id cell, cdm::Id otherCell)
+  void AddCell(CellGroup& group, vtkIdType size, const vtkIdType* ids, int kind, cdm::Id cell,
+    cdm::Id otherCell)
   {
     group.Cells->InsertNextCell(size, ids);
     group.Keys.push_back(this->MakeKey(kind, cell, otherCell));
   }
 
-  void AddPolygon(cdm::SurfaceProblemKind kind, cdm::Id cell, cdm::Id otherCell)
+  void AddPolygon(int kind, cdm::Id cell, cdm::Id otherCell)
   {
     // A polygon has one cell for all the problems of a kind that it has with another one.
-    if (cell == cdm::NoId ||
-      !this->Known.insert({ static_cast<int>(kind), cell, otherCell }).second)
+    if (cell == cdm::NoId || !this->Known.insert({ kind, cell, otherCell }).second)
     {
       return;
     }

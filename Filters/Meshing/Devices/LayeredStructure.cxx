@@ -21,6 +21,7 @@ struct Polygon
 {
   Loop Outline;
   RegionPair Labels;
+  Id Contact = NoId;
 };
 
 Edge MakeEdge(Id a, Id b)
@@ -82,7 +83,7 @@ std::vector<LayoutEdge> FindLayoutEdges(const std::vector<Loop>& cells)
 }
 
 /** Outline as seen from the side of region front. Adds nothing inside of one region. */
-void AddPolygon(std::vector<Polygon>& polygons, Loop outline, RegionPair labels)
+void AddPolygon(std::vector<Polygon>& polygons, Loop outline, RegionPair labels, Id contact = NoId)
 {
   if (labels.Front == labels.Back)
   {
@@ -93,7 +94,7 @@ void AddPolygon(std::vector<Polygon>& polygons, Loop outline, RegionPair labels)
     std::swap(labels.Front, labels.Back);
     std::reverse(outline.begin(), outline.end());
   }
-  polygons.push_back({ std::move(outline), labels });
+  polygons.push_back({ std::move(outline), labels, contact });
 }
 
 using EdgeMap = std::map<Edge, std::vector<Id>>;
@@ -145,7 +146,8 @@ std::vector<SeamEdge> FindSeams(
     {
       const Polygon& p = polygons[incident[0]];
       const Polygon& q = polygons[incident[1]];
-      if (p.Labels == q.Labels && AreCoplanar(p.Outline, q.Outline, points))
+      if (p.Labels == q.Labels && p.Contact == q.Contact &&
+        AreCoplanar(p.Outline, q.Outline, points))
       {
         seams.push_back({ edge, incident[0], incident[1] });
       }
@@ -291,7 +293,7 @@ void JoinPolygons(std::vector<Polygon>& polygons, const std::vector<Vec3>& point
   {
     if (pieces.Find(static_cast<Id>(i)) == static_cast<Id>(i))
     {
-      joined.push_back({ outlines[i].GetLoop(), polygons[i].Labels });
+      joined.push_back({ outlines[i].GetLoop(), polygons[i].Labels, polygons[i].Contact });
     }
   }
   polygons = std::move(joined);
@@ -411,7 +413,19 @@ void LayeredStructure::AddLayer(std::vector<double> tops, std::vector<Id> region
   this->Regions.push_back(std::move(regions));
 }
 
+void LayeredStructure::SetContacts(Id level, std::vector<Id> contacts)
+{
+  this->Contacts[level] = std::move(contacts);
+}
+
 PolygonSoup LayeredStructure::MakeBoundary(std::vector<Id>& facetIds) const
+{
+  std::vector<Id> contactIds;
+  return this->MakeBoundary(facetIds, contactIds);
+}
+
+PolygonSoup LayeredStructure::MakeBoundary(
+  std::vector<Id>& facetIds, std::vector<Id>& contactIds) const
 {
   const Id numberOfVertices = static_cast<Id>(this->Vertices.size());
   const Id numberOfLayers = static_cast<Id>(this->Tops.size());
@@ -449,6 +463,7 @@ PolygonSoup LayeredStructure::MakeBoundary(std::vector<Id>& facetIds) const
   std::vector<Polygon> polygons;
   for (Id level = 0; level <= numberOfLayers; ++level)
   {
+    const auto contacts = this->Contacts.find(level);
     for (Id cell = 0; cell < static_cast<Id>(this->Cells.size()); ++cell)
     {
       if (level > 0 && isEmpty(level - 1, cell))
@@ -467,7 +482,8 @@ PolygonSoup LayeredStructure::MakeBoundary(std::vector<Id>& facetIds) const
       }
       AddPolygon(polygons, std::move(outline),
         { above == numberOfLayers ? OutsideRegion : getRegion(above, cell),
-          level == 0 ? OutsideRegion : getRegion(level - 1, cell) });
+          level == 0 ? OutsideRegion : getRegion(level - 1, cell) },
+        contacts == this->Contacts.end() ? NoId : contacts->second[cell]);
     }
   }
   const std::vector<LayoutEdge> edges = FindLayoutEdges(this->Cells);
@@ -501,6 +517,11 @@ PolygonSoup LayeredStructure::MakeBoundary(std::vector<Id>& facetIds) const
     }
   }
   facetIds = NumberFacets(polygons, points);
+  contactIds.clear();
+  for (const Polygon& polygon : polygons)
+  {
+    contactIds.push_back(polygon.Contact);
+  }
   return MakeSoup(polygons, points);
 }
 } // namespace cdm

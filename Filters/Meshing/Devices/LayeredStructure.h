@@ -13,13 +13,14 @@
  *  1. a plate for each level and cell, and a wall for each layer and edge of the layout, where the
  *     regions on both sides differ: a polygon complex without T-junctions, since all of it stands
  *     on the common layout. Where a layer has no thickness the layers around it touch;
- *  2. neighbours in one plane with the same regions are joined, as long as the union is a polygon
+ *  2. neighbours in one plane with the same regions and contact are joined, as long as the union is a polygon
  *     without a hole; whether they are in one plane is an exact sign;
  *  3. vertices at which nothing but one straight line passes are dropped from all polygons at once.
  *
  * Outputs: each polygon once, its normal pointing from the larger region id to the smaller one (so
  * out of the structure at its outside). Polygons with the same facet id are the pieces of one
- * connected planar interface; there are several only where it has holes.
+ * connected planar interface, or of the part of it in a contact; there are several only where it has
+ * holes.
  *
  * Guarantees: every point is used, no point is there twice, none lies on an edge or in a polygon
  * that it is no vertex of. Walls are planar exactly, since their vertices lie over two places of
@@ -34,6 +35,7 @@
 #include "Core/Meshes/PolygonSoup.h"
 
 #include <array>
+#include <map>
 #include <vector>
 
 namespace cdm
@@ -65,7 +67,14 @@ public:
   void AddLayer(double top, std::vector<Id> regions);
   void AddLayer(std::vector<double> tops, std::vector<Id> regions);
 
-  /** FacetIds: one for each polygon. */
+  /**
+   * Make what lies at a level (0: the first one) part of contacts: one id for each cell, NoId where
+   * it belongs to none.
+   */
+  void SetContacts(Id level, std::vector<Id> contacts);
+
+  /** FacetIds and ContactIds: one for each polygon; NoId: in no contact. */
+  PolygonSoup MakeBoundary(std::vector<Id>& facetIds, std::vector<Id>& contactIds) const;
   PolygonSoup MakeBoundary(std::vector<Id>& facetIds) const;
 
 private:
@@ -75,6 +84,7 @@ private:
   std::vector<std::vector<Id>> Cells;
   std::vector<std::vector<double>> Tops;
   std::vector<std::vector<Id>> Regions;
+  std::map<Id, std::vector<Id>> Contacts;
 };
 } // namespace cdm
 

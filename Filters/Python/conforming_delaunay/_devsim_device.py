@@ -17,12 +17,12 @@ import sys
 
 import devsim
 
-#: What DEVSIM integrates with, by its parameters: names of the models below.
+#: What DEVSIM integrates with, by its parameters: our models, and its own ones.
 INTEGRATION_MODELS = {
-    "edge_couple_model": "CouplingArea",
-    "node_volume_model": "BoxVolume",
-    "edge_node0_volume_model": "EdgeBoxVolume",
-    "edge_node1_volume_model": "EdgeBoxVolume",
+    "edge_couple_model": ("CouplingArea", "EdgeCouple"),
+    "node_volume_model": ("BoxVolume", "NodeVolume"),
+    "edge_node0_volume_model": ("EdgeBoxVolume", "EdgeNodeVolume"),
+    "edge_node1_volume_model": ("EdgeBoxVolume", "EdgeNodeVolume"),
 }
 
 
@@ -43,6 +43,12 @@ class Device:
         self.nodes = {}
         self.contacts = []
         self.interfaces = []
+
+    def set_integration(self, is_signed=True):
+        """Whether DEVSIM integrates with the signed boxes, or, to compare, with its own ones."""
+        for parameter, (signed, unsigned) in INTEGRATION_MODELS.items():
+            model = signed if is_signed else unsigned
+            devsim.set_parameter(device=self.name, name=parameter, value=model)
 
     def set_node_values(self, model, values, regions=None):
         """Makes a node solution of one value for each point of the mesh, in all or some regions."""
@@ -182,8 +188,7 @@ def build_device(
     devsim.create_device(mesh=name, device=name)
     for region in regions:
         device.nodes[region] = _set_integration(name, region, *control_volumes[region])
-    for parameter, model in INTEGRATION_MODELS.items():
-        devsim.set_parameter(device=name, name=parameter, value=model)
+    device.set_integration()
     return device
 
 

@@ -182,8 +182,9 @@ class Certificate:
     smallest_dihedral_angle, largest_dihedral_angle : float
         Degrees.
     flat_tetrahedra : dict of int to tuple of int
-        By bound (5, 10 and 15 degrees) how many have a smaller dihedral angle, and how many of these
-        have all points on boundaries: the shape of the input causes them.
+        By bound (5, 10 and 15 degrees) how many have a smaller dihedral angle, how many of these are at
+        sharp angles of the input, and how many of the others have all points on boundaries: there the
+        layer is one tetrahedron thick.
     region_volumes : dict of int to float
         By region, cubic model units.
     volume_error : float
@@ -201,7 +202,7 @@ class Certificate:
     faults: Dict[str, int]
     smallest_dihedral_angle: float
     largest_dihedral_angle: float
-    flat_tetrahedra: Dict[int, Tuple[int, int]]
+    flat_tetrahedra: Dict[int, Tuple[int, int, int]]
     region_volumes: Dict[int, float]
     volume_error: float
     smallest_dihedral_angles: np.ndarray
@@ -238,7 +239,7 @@ class Certificate:
             dict(zip(FAULTS, arrays["fault_counts"].tolist())),
             float(arrays["smallest_dihedral_angle"][0]),
             float(arrays["largest_dihedral_angle"][0]),
-            {bound: (row[0], row[1]) for bound, row in zip((5, 10, 15), flat)},
+            {bound: (row[0], row[1], row[2]) for bound, row in zip((5, 10, 15), flat)},
             dict(zip(arrays["region_ids"].tolist(), arrays["region_volumes"].tolist())),
             float(arrays["volume_error"][0]),
             arrays.get("smallest_dihedral_angles", none),

@@ -52,7 +52,7 @@ def create_device(
     regions: Optional[Sequence[str]] = None,
     contacts: Optional[Contacts] = None,
     materials: Optional[Mapping[str, str]] = None,
-    point_values: Optional[Mapping[str, PointValues]] = None,
+    point_values: Union[Mapping[str, PointValues], Sequence[str], None] = None,
     threads: int = 0,
 ) -> Device:
     """Makes a device in DEVSIM, ready for equations.
@@ -63,8 +63,8 @@ def create_device(
     and volumes are then multiplied by powers of the scale.
 
     Args:
-        mesh: a Mesh; a vtkUnstructuredGrid; or a file that Mesh.read() knows. Of a grid the field
-            array RegionNames and all point arrays with one component are taken, too.
+        mesh: a Mesh; a vtkUnstructuredGrid, of which the field array RegionNames is taken, too; or a
+            file that Mesh.read() knows.
         name: what DEVSIM will call the device, and the mesh.
         scale: centimeters in a unit of the model; 1e-4 for micrometers.
         region_names: by region; without them region_0, region_1, ...
@@ -73,7 +73,8 @@ def create_device(
         contacts: see Contacts. A contact belongs to one region: if several have all of it, to the
             first of them that the device has.
         materials: by name of the region; without one it is the name.
-        point_values: by name: node solutions to begin with, such as the doping.
+        point_values: by name: node solutions to begin with, such as the doping; or names of point
+            arrays of the grid.
         threads: for the control volumes; 0: one for each processor core.
 
     Raises:
@@ -81,9 +82,9 @@ def create_device(
         MeshingError: tetrahedra that are inverted or flat.
         ImportError: DEVSIM is not installed.
     """
-    found, names, values = _read(mesh)
+    found, names = _read(mesh)
     names = list(region_names) if region_names is not None else names
-    values.update(point_values or {})
+    values = _point_values(mesh, found, point_values or {})
     own_contacts, group_contacts = _split_contacts(found, contacts)
     physical = groups.physical_groups(found, names, own_contacts)
     region_of = {group.regions[0]: group.name for group in physical if group.kind == "region"}
@@ -106,9 +107,8 @@ def create_device(
         contacts=group_contacts or None,
         materials=materials,
     )
-    for model, what in values.items():
-        array = np.asarray(what(found.points) if callable(what) else what, np.float64)
-        device.set_node_values(groups.make_word(model), array.reshape(-1).tolist())
+    for model, array in values.items():
+        device.set_node_values(groups.make_word(model), array)
     return device
 
 
@@ -148,24 +148,32 @@ def add_solution(
         grid.GetPointData().AddArray(array)
 
 
-def _read(mesh: Any) -> Tuple[Mesh, List[str], Dict[str, Any]]:
-    """The mesh, the names of its regions, and its point arrays."""
+def _read(mesh: Any) -> Tuple[Mesh, List[str]]:
+    """The mesh and the names of its regions."""
     if isinstance(mesh, (str, os.PathLike)):
         mesh = files.read_mesh(mesh)
     if isinstance(mesh, Mesh):
-        return mesh, list(getattr(mesh, "region_names", None) or []), {}
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-
+        return mesh, list(getattr(mesh, "region_names", None) or [])
     from . import vtk_data
 
-    data = mesh.GetPointData()
-    arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())]
-    values = {
-        array.GetName(): vtk_to_numpy(array)
-        for array in arrays
-        if array is not None and array.GetName() and array.GetNumberOfComponents() == 1
+    return vtk_data.to_mesh(mesh), get_texts(mesh, "RegionNames")
+
+
+def _point_values(source: Any, mesh: Mesh, values: Any) -> Dict[str, List[float]]:
+    """One number for each point, by name."""
+    if not isinstance(values, Mapping):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+
+        names = [values] if isinstance(values, str) else values
+        arrays = {name: source.GetPointData().GetArray(name) for name in names}
+        for name, array in arrays.items():
+            if array is None or array.GetNumberOfComponents() != 1:
+                raise ValueError(f"The grid has no point array {name} with one component.")
+        values = {name: vtk_to_numpy(array) for name, array in arrays.items()}
+    return {
+        name: np.asarray(what(mesh.points) if callable(what) else what, np.float64).tolist()
+        for name, what in values.items()
     }
-    return vtk_data.to_mesh(mesh), get_texts(mesh, "RegionNames"), values
 
 
 def _contacts_of_surface(surface: Any, mesh: Mesh) -> Dict[str, np.ndarray]:

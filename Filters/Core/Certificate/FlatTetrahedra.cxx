@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Certificate/FlatTetrahedra.h"
+
+#include "Core/Geometry/Measures.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace cdm
+{
+namespace
+{
+/** Degrees. */
+constexpr double LargestBound = 15.0;
+constexpr double SharpWedge = 60.0;
+/** Cosine of 30 degrees. */
+constexpr double SharpPlaneCosine = 0.8660254037844387;
+
+/** Vertices of the edges of a tetrahedron, in the order of GetDihedralAngles(). */
+constexpr int EdgeVertices[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
+
+class FlatTetrahedra
+{
+public:
+  FlatTetrahedra(
+    const TetMesh& mesh, const std::vector<double>& smallestAngles, const BasicFindings& findings)
+    : Mesh(mesh)
+  {
+    this->MarkPoints(smallestAngles, findings);
+    this->ListEdges(findings.StructuralEdges);
+    this->FindSharpWedges();
+    this->FindSharpPlaneAngles();
+  }
+
+  bool IsAtSharpAngle(Id tetrahedron) const
+  {
+    const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
+    const Id region = this->Mesh.Regions[tetrahedron];
+    return std::any_of(ids.begin(), ids.end(),
+      [&](Id point)
+      {
+        return this->IsSharp[point] != 0 ||
+          std::binary_search(
+            this->SharpPoints.begin(), this->SharpPoints.end(), std::pair(point, region));
+      });
+  }
+  bool IsAcrossLayer(Id tetrahedron) const
+  {
+    const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
+    return std::all_of(
+      ids.begin(), ids.end(), [this](Id point) { return this->IsOnBorder[point] != 0; });
+  }
+
+private:
+  void MarkPoints(const std::vector<double>& smallestAngles, const BasicFindings& findings);
+  void ListEdges(const std::vector<EdgeIds>& structuralEdges);
+  void FindSharpWedges();
+  void FindSharpPlaneAngles();
+
+  const TetMesh& Mesh;
+  /** One for each point: of outer or interface facets; of these and of a flat tetrahedron. */
+  std::vector<char> IsOnBorder;
+  std::vector<char> IsOfFlat;
+  /** Structural edges with an end that a flat tetrahedron has, ascending; their ends. */
+  std::vector<EdgeIds> Edges;
+  std::vector<char> IsEnd;
+  /** One for each point: whether two structural edges meet there at a sharp angle. */
+  std::vector<char> IsSharp;
+  /** Points of sharp wedges with the region of the wedge, ascending. */
+  std::vector<std::pair<Id, Id>> SharpPoints;
+};
+
+void FlatTetrahedra::MarkPoints(
+  const std::vector<double>& smallestAngles, const BasicFindings& findings)
+{
+  this->IsOnBorder.assign(this->Mesh.Points.size(), 0);
+  this->IsOfFlat.assign(this->Mesh.Points.size(), 0);
+  this->IsEnd.assign(this->Mesh.Points.size(), 0);
+  this->IsSharp.assign(this->Mesh.Points.size(), 0);
+  for (const BorderFacet& facet : findings.BorderFacets)
+  {
+    for (const Id point : facet.Points)
+    {
+      this->IsOnBorder[point] = 1;
+    }
+  }
+  for (std::size_t i = 0; i < smallestAngles.size(); ++i)
+  {
+    if (smallestAngles[i] < LargestBound)
+    {
+      for (const Id point : this->Mesh.Tetrahedra[i])
+      {
+        this->IsOfFlat[point] = this->IsOnBorder[point];
+      }
+    }
+  }
+}
+
+void FlatTetrahedra::ListEdges(const std::vector<EdgeIds>& structuralEdges)
+{
+  for (const EdgeIds& edge : structuralEdges)
+  {
+    if (this->IsOfFlat[edge[0]] != 0 || this->IsOfFlat[edge[1]] != 0)
+    {
+      this->Edges.push_back(edge);
+      this->IsEnd[edge[0]] = this->IsEnd[edge[1]] = 1;
+    }
+  }
+}
+
+void FlatTetrahedra::FindSharpWedges()
+{
+  if (this->Edges.empty())
+  {
+    return;
+  }
+  /** The wedge of a region at an edge of the list: the sum of its angles. */
+  std::map<std::pair<std::size_t, Id>, double> wedges;
+  for (std::size_t i = 0; i < this->Mesh.Tetrahedra.size(); ++i)
+  {
+    const TetrahedronIds& ids = this->Mesh.Tetrahedra[i];
+    for (int edge = 0; edge < 6; ++edge)
+    {
+      const Id a = ids[EdgeVertices[edge][0]];
+      const Id b = ids[EdgeVertices[edge][1]];
+      if (this->IsEnd[a] == 0 || this->IsEnd[b] == 0)
+      {
+        continue;
+      }
+      const EdgeIds key{ std::min(a, b), std::max(a, b) };
+      const auto found = std::lower_bound(this->Edges.begin(), this->Edges.end(), key);
+      if (found != this->Edges.end() && *found == key)
+      {
+        const std::size_t number = static_cast<std::size_t>(found - this->Edges.begin());
+        wedges[{ number, this->Mesh.Regions[i] }] += GetDihedralAngles(this->Mesh.Points[ids[0]],
+          this->Mesh.Points[ids[1]], this->Mesh.Points[ids[2]], this->Mesh.Points[ids[3]])[edge];
+      }
+    }
+  }
+  for (const auto& [place, angle] : wedges)
+  {
+    if (angle < SharpWedge)
+    {
+      for (const Id point : this->Edges[place.first])
+      {
+        this->SharpPoints.emplace_back(point, place.second);
+      }
+    }
+  }
+  std::sort(this->SharpPoints.begin(), this->SharpPoints.end());
+}
+
+/** Among a few dozen edges at a point two are that close: no point takes long. */
+void FlatTetrahedra::FindSharpPlaneAngles()
+{
+  std::vector<std::pair<Id, Id>> neighbors;
+  for (const EdgeIds& edge : this->Edges)
+  {
+    neighbors.emplace_back(edge[0], edge[1]);
+    neighbors.emplace_back(edge[1], edge[0]);
+  }
+  std::sort(neighbors.begin(), neighbors.end());
+  std::vector<Vec3> directions;
+  for (auto begin = neighbors.cbegin(), end = begin; begin != neighbors.cend(); begin = end)
+  {
+    const Id point = begin->first;
+    end = std::find_if(
+      begin, neighbors.cend(), [&](const auto& other) { return other.first != point; });
+    directions.clear();
+    for (auto neighbor = begin; neighbor != end && this->IsSharp[point] == 0; ++neighbor)
+    {
+      const Vec3 offset = this->Mesh.Points[neighbor->second] - this->Mesh.Points[point];
+      const Vec3 direction = (1.0 / Norm(offset)) * offset;
+      this->IsSharp[point] = std::any_of(directions.begin(), directions.end(),
+        [&](const Vec3& other) { return Dot(direction, other) > SharpPlaneCosine; });
+      directions.push_back(direction);
+    }
+  }
+}
+} // namespace
+
+void CountFlatTetrahedra(const TetMesh& mesh, const std::vector<double>& smallestAngles,
+  const BasicFindings& findings, MeshCertificate& certificate)
+{
+  const FlatTetrahedra flat(mesh, smallestAngles, findings);
+  for (std::size_t i = 0; i < smallestAngles.size(); ++i)
+  {
+    if (!(smallestAngles[i] < LargestBound))
+    {
+      continue;
+    }
+    const Id tetrahedron = static_cast<Id>(i);
+    const bool isAtSharpAngle = flat.IsAtSharpAngle(tetrahedron);
+    const bool isAcrossLayer = !isAtSharpAngle && flat.IsAcrossLayer(tetrahedron);
+    const auto count = [&](double bound, FlatterTetrahedra& flatter)
+    {
+      if (smallestAngles[i] < bound)
+      {
+        ++flatter.Count;
+        flatter.AtSharpAngles += isAtSharpAngle ? 1 : 0;
+        flatter.AcrossLayers += isAcrossLayer ? 1 : 0;
+      }
+    };
+    count(5.0, certificate.Under5Degrees);
+    count(10.0, certificate.Under10Degrees);
+    count(LargestBound, certificate.Under15Degrees);
+  }
+}
+} // namespace cdm

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SurfaceCoarsener.h
+ * @brief Whether and how far the surface of a run is made coarser before it is meshed.
+ *
+ * A target size alone only refines. With a bound of the deviation the clean surface is remeshed
+ * (SurfaceRemesher.h) to three quarters of the maximum edge length or the sizing, so that few of
+ * its edges, which differ by a third, are longer than the maximum; without either as coarsely as the
+ * bound allows.
+ *
+ * The automatic bound is a tenth of that maximum, or of the smallest sizing on the surface. It is
+ * used for a surface of many small triangles: at least 500 polygons, all of them triangles, and
+ * half of the edges shorter than half of the maximum. Otherwise it is 0: polygons of devices stay
+ * as they are.
+ *
+ * What became of the surface is told in a warning.
+ */
+#ifndef cdmSurfaceCoarsener_h
+#define cdmSurfaceCoarsener_h
+
+#include "Core/Pipeline/ConformingMesher.h"
+
+namespace cdm
+{
+/**
+ * Makes the clean surface coarser, and says in the output where its points come from.
+ * maximumDeviation: as that of ConformingMesherOptions. maximumEdgeLength: model units, 0: off. Failure: as of RemeshSurface(); cells and points are then
+ * those of the surface.
+ */
+Status CoarsenSurface(const ConformingMesherInput& input,
+  const std::optional<double>& maximumDeviation, double maximumEdgeLength,
+  const ExecutionContext& context, TriangleMesh& surface, ConformingMesherOutput& output);
+} // namespace cdm
+
+#endif

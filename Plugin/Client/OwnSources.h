@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file OwnSources.h
+ * @brief Which sources and filters in the pipeline browser are those of this plugin.
+ */
+#ifndef OwnSources_h
+#define OwnSources_h
+
+class pqPipelineSource;
+
+namespace OwnSources
+{
+/** By its place in the menus. */
+bool IsOurs(pqPipelineSource* source);
+} // namespace OwnSources
+
+#endif
