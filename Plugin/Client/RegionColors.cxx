@@ -20,7 +20,10 @@
 #include <vtkSmartPointer.h>
 #include <vtkVariant.h>
 
+#include <QByteArray>
+#include <QMap>
 #include <QPointer>
+#include <QStringList>
 #include <QTimer>
 #include <QUrl>
 
@@ -156,18 +159,28 @@ std::vector<int> FindIds(pqOutputPort* port, int association)
   return ids;
 }
 
-/** Those of a list of texts: strings, or names of components. */
-int GetNumberOfTexts(vtkPVArrayInformation* texts)
+/** A list of texts: strings, or names of components, see Filters/Meshing/CoreBridge/Texts.h. */
+QStringList GetTexts(vtkPVArrayInformation* array)
 {
-  return texts->GetDataType() == VTK_STRING ? texts->GetNumberOfStringValues()
-                                            : texts->GetNumberOfComponents();
-}
-
-QString GetText(vtkPVArrayInformation* texts, int index)
-{
-  return texts->GetDataType() == VTK_STRING
-    ? QString::fromUtf8(texts->GetStringValue(index))
-    : QUrl::fromPercentEncoding(texts->GetComponentName(index));
+  QStringList texts;
+  if (array->GetDataType() == VTK_STRING)
+  {
+    for (int i = 0; i < array->GetNumberOfStringValues(); ++i)
+    {
+      texts.append(QString::fromUtf8(array->GetStringValue(i)));
+    }
+    return texts;
+  }
+  QMap<int, QByteArray> encoded;
+  for (int i = 0; i < array->GetNumberOfComponents(); ++i)
+  {
+    encoded[static_cast<int>(array->GetComponentRange(i)[0])] += array->GetComponentName(i);
+  }
+  for (const QByteArray& text : encoded)
+  {
+    texts.append(QUrl::fromPercentEncoding(text));
+  }
+  return texts;
 }
 
 /** Adds the names of the regions of what is shown: all that have a name, or all that are there. */
@@ -181,9 +194,10 @@ void AddTexts(pqDataRepresentation* representation, QMap<int, QString>& texts)
     return;
   }
   port = FindOrigin(port, association);
-  vtkPVArrayInformation* names =
+  vtkPVArrayInformation* array =
     port->getDataInformation()->GetArrayInformation("RegionNames", vtkDataObject::FIELD);
-  const int numberOfNames = names ? GetNumberOfTexts(names) : 0;
+  const QStringList names = array ? GetTexts(array) : QStringList();
+  const int numberOfNames = static_cast<int>(names.size());
   std::vector<int> ids(numberOfNames);
   std::iota(ids.begin(), ids.end(), 0);
   if (FindRegions(port, association)->GetComponentRange(0)[1] >= numberOfNames)
@@ -192,7 +206,7 @@ void AddTexts(pqDataRepresentation* representation, QMap<int, QString>& texts)
   }
   for (const int region : ids)
   {
-    const QString name = region < numberOfNames && region >= 0 ? GetText(names, region) : QString();
+    const QString name = region < numberOfNames && region >= 0 ? names[region] : QString();
     texts[region] = name.isEmpty() ? QString("Region %1").arg(region) : name;
   }
 }

@@ -10,6 +10,15 @@ from urllib.parse import unquote
 from paraview.simple import *
 
 
+def GetTexts(array):
+    """Names of components, percent-encoded; those of equal value are pieces of one text."""
+    texts = {}
+    for i in range(array.GetNumberOfComponents()):
+        index = int(array.GetComponent(0, i))
+        texts[index] = texts.get(index, "") + array.GetComponentName(i)
+    return [unquote(texts[index]) for index in sorted(texts)]
+
+
 def Certify(source, view):
     """The certificate as text in the view; returns the criteria and the text."""
     # Not by its name, which paraview.simple lacks if the plugin was loaded later.
@@ -23,9 +32,7 @@ def Certify(source, view):
     Delete(nothing)
     if certificate is None:
         raise RuntimeError("Select tetrahedra: the messages above say what is wrong with this.")
-    lines = [unquote(certificate.GetComponentName(i))
-             for i in range(certificate.GetNumberOfComponents())]
-    text = Text(Text="\n".join(lines).replace("; ", "\n"))
+    text = Text(Text="\n".join(GetTexts(certificate)).replace("; ", "\n"))
     display = Show(text, view)
     display.WindowLocation = "Upper Left Corner"
     display.Justification = "Left"

@@ -16,6 +16,15 @@ COLORS = ((0.49, 0.65, 0.84), (0.96, 0.74, 0.24), (0.82, 0.34, 0.32), (0.55, 0.7
           (0.71, 0.69, 0.45), (0.62, 0.62, 0.66), (0.31, 0.46, 0.66), (0.35, 0.66, 0.58))
 
 
+def GetTexts(array):
+    """Names of components, percent-encoded; those of equal value are pieces of one text."""
+    texts = {}
+    for i in range(array.GetNumberOfComponents()):
+        index = int(array.GetComponent(0, i))
+        texts[index] = texts.get(index, "") + array.GetComponentName(i)
+    return [unquote(texts[index]) for index in sorted(texts)]
+
+
 def GetRegionNames(source, count):
     """From the field array RegionNames, or the numbers."""
     # No cell passes, but the field data do.
@@ -29,7 +38,7 @@ def GetRegionNames(source, count):
     elif names.IsA("vtkStringArray"):
         texts = [names.GetValue(i) for i in range(names.GetNumberOfValues())]
     else:
-        texts = [unquote(names.GetComponentName(i)) for i in range(names.GetNumberOfComponents())]
+        texts = GetTexts(names)
     return [texts[i] if i < len(texts) else "Region %d" % i for i in range(count)]
 
 

@@ -30,6 +30,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <string>
@@ -316,7 +317,7 @@ inline void ExpectLinear(vtkPointSet* output, double tolerance = 1e-12)
 }
 
 /** Sum of the signed volumes of the tetrahedra of a region (-1: of all). */
-/** Those of a field array: the names of its components, percent-encoded. */
+/** Those of a field array: names of components, percent-encoded; equal values: pieces of one. */
 inline std::vector<std::string> GetTexts(vtkDataObject* data, const char* name)
 {
   std::vector<std::string> texts;
@@ -328,7 +329,8 @@ inline std::vector<std::string> GetTexts(vtkDataObject* data, const char* name)
     {
       text.replace(at, 3, 1, static_cast<char>(std::stoi(text.substr(at + 1, 2), nullptr, 16)));
     }
-    texts.push_back(text);
+    texts.resize(std::max<std::size_t>(texts.size(), array->GetComponent(0, i) + 1));
+    texts[static_cast<std::size_t>(array->GetComponent(0, i))] += text;
   }
   return texts;
 }

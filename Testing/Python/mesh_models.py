@@ -15,13 +15,15 @@ import numpy as np
 
 import conforming_delaunay as cd
 
+FEWEST_POINTS = {"mesh_for": 2}
 OPTIONS = {
     "default": {},
-    "sizes": {"maximum_edge_length": 0.1},
-    "finite volumes": {"criterion": 2, "add_steiner_points": True},
-    "quality": {"criterion": 1, "add_steiner_points": True, "radius_edge_ratio": 1.2,
-                "dihedral_angle_target": 20.0},
-    "mesh points": {"generate_mesh_points": True, "spacing": [0.2, 0.2, 0.2]},
+    "fewest points": FEWEST_POINTS,
+    "sizes": {**FEWEST_POINTS, "edge_length": 0.1},
+    "finite volumes": {**FEWEST_POINTS, "criterion": 2, "add_steiner_points": True},
+    "quality": {**FEWEST_POINTS, "criterion": 1, "add_steiner_points": True,
+                "radius_edge_ratio": 1.2, "dihedral_angle_target": 20.0},
+    "mesh points": {**FEWEST_POINTS, "generate_mesh_points": True, "spacing": [0.2, 0.2, 0.2]},
 }
 
 
@@ -34,7 +36,7 @@ def digest(points, tetrahedra, regions):
 
 def scaled(options, diagonal):
     """Lengths are in diagonals of the model."""
-    lengths = ("maximum_edge_length", "spacing")
+    lengths = ("edge_length", "spacing")
     return {
         name: (np.asarray(value) * diagonal).tolist() if name in lengths else value
         for name, value in options.items()
@@ -71,6 +73,7 @@ def write(folder):
             mesher = cd.vtkConformingDelaunayMesher()
             mesher.SetInputData(surface.to_vtk())
             for option, value in options.items():
+                option = {"edge_length": "maximum_edge_length"}.get(option, option)
                 setter = "Set" + "".join(word.capitalize() for word in option.split("_"))
                 getattr(mesher, setter)(value)
             mesher.Update()
@@ -83,7 +86,7 @@ def write(folder):
                 vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4),
                 vtk_to_numpy(grid.GetCellData().GetArray("RegionId")),
             )]
-        arrays = {key: value for key, value in vars(surface).items() if value is not None}
+        arrays = {key: value for key, value in vars(surface).items() if isinstance(value, np.ndarray)}
         np.savez(os.path.join(folder, name + ".npz"), **arrays)
         with open(os.path.join(folder, name + ".json"), "w") as file:
             json.dump(expected, file)

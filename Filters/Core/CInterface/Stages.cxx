@@ -9,6 +9,7 @@
 #include "Core/Sizing/CellSizing.h"
 #include "Core/Surface/StructuralEdges.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
+#include "Core/Voxels/MaterialInterfaces.h"
 
 #include <limits>
 #include <numeric>
@@ -605,6 +606,35 @@ Status ControlVolumesStage(
   return status;
 }
 
+Status ExtractInterfacesStage(
+  InputReader& reader, const SizingField&, const ExecutionContext& context, OutputWriter& writer)
+{
+  LabelledGrid grid;
+  const char* const axes[] = { "x", "y", "z" };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    reader.Read(axes[axis], grid.Coordinates[axis]);
+  }
+  reader.Read("regions", grid.Regions);
+  MaterialInterfacesOptions options;
+  reader.Read("smoothing_length", options.SmoothingLength, 0.0, 1000.0);
+  reader.Read("reduce_surface", options.Reduce);
+  reader.Read("maximum_deviation", options.MaximumDeviation, 0.0, Infinity);
+  reader.Read("feature_angle", options.FeatureAngle, 0.0, 180.0);
+  TriangleMesh surface;
+  MaterialInterfacesReport report;
+  const Status status = reader.Finish().Then(
+    [&] { return ExtractMaterialInterfaces(grid, options, context, surface, report); });
+  if (status.IsOk())
+  {
+    writer.Write("points", std::move(surface.Points));
+    Write(writer, surface);
+    writer.Write("faces", static_cast<std::int64_t>(report.Faces));
+    writer.Write("largest_deviation", report.LargestDeviation);
+  }
+  return status;
+}
+
 using Stage = Status (*)(InputReader&, const SizingField&, const ExecutionContext&, OutputWriter&);
 
 constexpr std::pair<const char*, Stage> AllStages[] = {
@@ -618,6 +648,7 @@ constexpr std::pair<const char*, Stage> AllStages[] = {
   { "refine_mesh", RefineMeshStage },
   { "certify", CertifyStage },
   { "control_volumes", ControlVolumesStage },
+  { "extract_interfaces", ExtractInterfacesStage },
 };
 } // namespace
 

@@ -28,7 +28,9 @@
  *  - remove_slivers: SliverRemover.h; mesh;
  *  - refine_mesh: SteinerPointRefiner.h; mesh, surface, facets, sizing;
  *  - certify: MeshCertificate.h at the full level; mesh;
- *  - control_volumes: ControlVolumes.h; mesh.
+ *  - control_volumes: ControlVolumes.h; mesh;
+ *  - extract_interfaces: MaterialInterfaces.h; x, y, z: the coordinates of LabelledGrid, and regions;
+ *    surface out.
  */
 #ifndef cdmStages_h
 #define cdmStages_h

@@ -256,6 +256,12 @@ Status RefineBySteinerPoints(const SteinerPointRefinerInput& input,
   const SteinerPointRefinerOptions& options, const ExecutionContext& context,
   SteinerPointRefinerOutput& output)
 {
+  if (options.RadiusEdgeRatio != 0.0 && !(options.RadiusEdgeRatio >= 1.0))
+  {
+    // The refinement would not end.
+    return Status::Failure(StatusCode::InvalidOption,
+      "RadiusEdgeRatio has to be 0 (off) or at least 1: no mesh has smaller ones everywhere.");
+  }
   return RunGuarded([&] { return RunRefineBySteinerPoints(input, options, context, output); });
 }
 } // namespace cdm

@@ -9,7 +9,9 @@
 #include <vtkNew.h>
 #include <vtkStringArray.h>
 
+#include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace
 {
@@ -31,6 +33,32 @@ std::string Encode(const std::string& text)
     }
   }
   return encoded;
+}
+
+/** Of an encoded text, at least one; they end behind a space where there is one, and at no code. */
+std::vector<std::string> Split(const std::string& encoded)
+{
+  // As VTK's legacy files encode a piece again it gets up to three times as long.
+  constexpr std::size_t longest = 80;
+  std::vector<std::string> pieces;
+  std::size_t begin = 0;
+  while (encoded.size() - begin > longest)
+  {
+    const std::size_t space = encoded.rfind(' ', begin + longest - 1);
+    std::size_t end = begin + longest;
+    if (space != std::string::npos && space > begin)
+    {
+      end = space + 1;
+    }
+    else if (const std::size_t code = encoded.find('%', end - 2); code < end)
+    {
+      end = code;
+    }
+    pieces.push_back(encoded.substr(begin, end - begin));
+    begin = end;
+  }
+  pieces.push_back(encoded.substr(begin));
+  return pieces;
 }
 
 /** What is no code stays as it is. */
@@ -65,14 +93,22 @@ void SetTexts(const char* name, const std::vector<std::string>& texts, vtkFieldD
   {
     return;
   }
+  std::vector<std::pair<int, std::string>> pieces;
+  for (std::size_t i = 0; i < texts.size(); ++i)
+  {
+    for (const std::string& piece : Split(Encode(texts[i])))
+    {
+      pieces.emplace_back(static_cast<int>(i), piece);
+    }
+  }
   vtkNew<vtkIntArray> array;
   array->SetName(name);
-  array->SetNumberOfComponents(static_cast<int>(texts.size()));
+  array->SetNumberOfComponents(static_cast<int>(pieces.size()));
   array->SetNumberOfTuples(1);
   for (int i = 0; i < array->GetNumberOfComponents(); ++i)
   {
-    array->SetValue(i, i);
-    array->SetComponentName(i, Encode(texts[i]).c_str());
+    array->SetValue(i, pieces[i].first);
+    array->SetComponentName(i, pieces[i].second.c_str());
   }
   data->AddArray(array);
 }
@@ -89,12 +125,20 @@ std::vector<std::string> GetTexts(const char* name, vtkFieldData* data)
       texts.push_back(strings->GetValue(i));
     }
   }
-  else if (array && array->HasAComponentName())
+  else if (auto numbers = vtkDataArray::SafeDownCast(array);
+           numbers && numbers->HasAComponentName() && numbers->GetNumberOfTuples() == 1)
   {
-    for (int i = 0; i < array->GetNumberOfComponents(); ++i)
+    const int count = numbers->GetNumberOfComponents();
+    for (int i = 0; i < count; ++i)
     {
-      const char* const text = array->GetComponentName(i);
-      texts.push_back(text ? Decode(text) : "");
+      // No list has more texts than components: other arrays are none.
+      const double index = numbers->GetComponent(0, i);
+      if (index >= 0.0 && index < count)
+      {
+        texts.resize(std::max(texts.size(), static_cast<std::size_t>(index) + 1));
+        const char* const piece = numbers->GetComponentName(i);
+        texts[static_cast<std::size_t>(index)] += piece ? Decode(piece) : "";
+      }
     }
   }
   return texts;

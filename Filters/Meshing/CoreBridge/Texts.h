@@ -4,10 +4,12 @@
  * @brief Texts in field data, in a form that every reader of VTK's files takes.
  *
  * VTK's writers store a vtkStringArray as an array of the type String, at which other readers stop
- * (meshio: "Illegal data type 'String'"). So a list of texts is a vtkIntArray of one tuple: component i
- * has the value i and, as its name, text i. Writers of VTK keep names of components, and ParaView's client
- * knows them without fetching the data. As these writers put names into XML as they are, all but
- * printable ASCII, and the characters "&'<>%, are percent-encoded (RFC 3986).
+ * (meshio: "Illegal data type 'String'"). So a list of texts is a vtkIntArray of one tuple: each component
+ * has the index of a text as its value, and the text, or the next piece of it, as its name. Writers of
+ * VTK keep names of components, and ParaView's client knows them without fetching the data. As these
+ * writers put names into XML as they are, all but printable ASCII, and the characters "&'<>%, are
+ * percent-encoded (RFC 3986). Pieces are short, as readers of the legacy format take 255 characters,
+ * spaces as three of them.
  */
 #ifndef CoreBridge_Texts_h
 #define CoreBridge_Texts_h

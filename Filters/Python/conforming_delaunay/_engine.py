@@ -33,11 +33,16 @@ class ErrorCode(enum.IntEnum):
 class MeshingError(RuntimeError):
     """A stage has failed. The message says what to do.
 
-    Attributes:
-        code: one of ErrorCode.
-        cells: ids of the input's polygons, triangles or tetrahedra that are at fault.
-        points: ids of the input's points that are at fault.
-        arrays: what the stage gave all the same, such as the problems of a surface.
+    Attributes
+    ----------
+    code : ErrorCode
+        What went wrong.
+    cells : numpy.ndarray
+        Ids of the input's polygons, triangles or tetrahedra that are at fault.
+    points : numpy.ndarray
+        Ids of the input's points that are at fault.
+    arrays : dict of str to numpy.ndarray
+        What the stage gave all the same, such as the problems of a surface.
     """
 
     def __init__(self, code: ErrorCode, message: str, arrays: Mapping[str, Any]):
@@ -191,19 +196,30 @@ def _get(owner: _Arrays, name: bytes) -> Any:
     return np.asarray(_View(owner, address, kind.value, shape))
 
 
-def to_snake_case(name: str) -> str:
+#: Names of the engine that are others in Python.
+_PYTHON_NAMES = {"maximum_edge_length": "edge_length"}
+_ENGINE_NAMES = {name: engine for engine, name in _PYTHON_NAMES.items()}
+
+
+def to_engine_name(name: str) -> str:
+    """The name of the engine for an option of Python."""
+    return _ENGINE_NAMES.get(name, name)
+
+
+def to_python_name(name: str) -> str:
     """The name in Python of a property or an option of C++: MaximumArea becomes maximum_area."""
-    return re.sub("(?<!^)([A-Z])", r"_\1", name).lower()
+    snake = re.sub("(?<!^)([A-Z])", r"_\1", name).lower()
+    return _PYTHON_NAMES.get(snake, snake)
 
 
 def _spell(text: str, inputs: Mapping[str, Any]) -> str:
     """Options by the names that they have in Python: the engine says MaximumGapEdges."""
 
     def replace(match: Any) -> str:
-        name = to_snake_case(match.group())
-        return name if name in inputs else match.group()
+        name = to_python_name(match.group())
+        return name if to_engine_name(name) in inputs else match.group()
 
-    return re.sub(r"\b(?:[A-Z][a-z]+){2,}\b", replace, text)
+    return re.sub(r"\b(?:[A-Z][a-z]+){2,}\b|\b[a-z]+(?:_[a-z]+)+\b", replace, text)
 
 
 def run(
@@ -230,6 +246,9 @@ def run(
         MeshingError: and its subclasses. KeyboardInterrupt ends a stage, too; so does whatever
             progress or sizing raise.
     """
+    if not isinstance(threads, int) or threads < 0:
+        message = f"threads is {threads!r}: it has to be a whole number from 0 on."
+        raise OptionError(ErrorCode.INVALID_OPTION, message, {})
     given = _Arrays()
     for name, value in inputs.items():
         if value is not None:

@@ -3,8 +3,8 @@
 
 Each has the name, the ports and the main properties of the C++ class: SetCriterion(1),
 GetMaximumEdgeLength(), AddSteinerPointsOn(). Point and cell data of the input other than
-BoundaryLabels, StructuralFacetId, RegionId and FreePoint are not carried along; the C++ classes
-interpolate them. Errors and warnings go to VTK's output window; outputs are then empty.
+BoundaryLabels, StructuralFacetId, ContactId, RegionId and FreePoint are not carried along; the C++
+classes interpolate them. Errors and warnings go to VTK's output window; outputs are then empty.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from vtkmodules.vtkCommonCore import vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 
 from . import meshing, vtk_data
-from ._engine import MeshingError, to_snake_case
+from ._engine import MeshingError, to_python_name
 from .data import Surface
 
 __all__ = [
@@ -34,7 +34,7 @@ __all__ = [
 ]
 
 
-def _add_properties(cls: type, properties: Dict[str, Any]) -> None:
+def _add_properties(cls: type, properties: Dict[str, Any], switches: Tuple[str, ...]) -> None:
     """Set, Get, and for switches On and Off, as VTK's macros make them."""
 
     def make(name: str, default: Any) -> None:
@@ -51,9 +51,9 @@ def _add_properties(cls: type, properties: Dict[str, Any]) -> None:
 
         setattr(cls, "Set" + name, setter)
         setattr(cls, "Get" + name, getter)
-        if isinstance(default, bool):
-            setattr(cls, name + "On", lambda self: setter(self, True))
-            setattr(cls, name + "Off", lambda self: setter(self, False))
+        if isinstance(default, bool) or name in switches:
+            setattr(cls, name + "On", lambda self: setter(self, 1))
+            setattr(cls, name + "Off", lambda self: setter(self, 0))
 
     for name, default in properties.items():
         make(name, default)
@@ -66,9 +66,13 @@ class _Stage(VTKPythonAlgorithmBase):
     inputs: Tuple[Tuple[str, bool], ...] = (("vtkPolyData", False),)
     outputs: Tuple[str, ...] = ("vtkUnstructuredGrid",)
     properties: Dict[str, Any] = {}
+    #: Properties that may be AUTOMATIC, -1.
+    automatic: Tuple[str, ...] = ()
+    #: Those of them that are 0 or 1 otherwise.
+    switches: Tuple[str, ...] = ()
 
     def __init_subclass__(cls) -> None:
-        _add_properties(cls, cls.properties)
+        _add_properties(cls, cls.properties, cls.switches)
 
     def __init__(self) -> None:
         super().__init__(
@@ -79,6 +83,10 @@ class _Stage(VTKPythonAlgorithmBase):
         )
         self.options = dict(self.properties)
         self.NumberOfThreads = 0
+
+    def GetOutput(self, port: int = 0) -> Any:
+        """The data set of a port, as of the C++ classes."""
+        return self.GetOutputDataObject(port)
 
     def FillInputPortInformation(self, port: int, info: Any) -> int:
         kind, is_optional = self.inputs[port]
@@ -101,7 +109,10 @@ class _Stage(VTKPythonAlgorithmBase):
         return not self.GetAbortExecute()
 
     def RequestData(self, request: Any, inputs: Any, outputs: Any) -> int:
-        options = {to_snake_case(name): value for name, value in self.options.items()}
+        options = {
+            to_python_name(name): None if name in self.automatic and value == -1 else value
+            for name, value in self.options.items()
+        }
         options["threads"] = self.NumberOfThreads
         options["progress"] = self._progress
         targets = [vtkDataObject.GetData(outputs, i) for i in range(len(self.outputs))]
@@ -162,20 +173,39 @@ _POINTS = {"Placement": 0, "Spacing": (0.0, 0.0, 0.0)}
 class vtkConformingDelaunayMesher(_Stage):
     """All stages: polygons, mesh points and a sizing in, tetrahedra and their boundary out."""
 
+    AUTOMATIC = -1
+    FINITE_VOLUMES, FINITE_ELEMENTS, FEWEST_POINTS = range(3)
+    automatic = (
+        "Criterion",
+        "MaximumEdgeLength",
+        "AddSteinerPoints",
+        "RemoveSlivers",
+        "DihedralAngleTarget",
+        "RadiusEdgeRatio",
+    )
+
     inputs = (("vtkPolyData", False), ("vtkPointSet", True), ("vtkDataSet", True))
     outputs = ("vtkUnstructuredGrid", "vtkPolyData")
     properties = {
+        "MeshFor": 0,
         **_BOUNDARY,
         **_SURFACE,
         **_POINTS,
         "GenerateMeshPoints": False,
         "CloseOpenBoundary": False,
-        "RemoveSlivers": True,
-        "AddSteinerPoints": False,
-        "RadiusEdgeRatio": 1.4,
-        "DihedralAngleTarget": 15.0,
         "MaximumVolume": 0.0,
+        **dict.fromkeys(automatic, -1),
     }
+    switches = ("AddSteinerPoints", "RemoveSlivers")
+
+    def SetMeshForToFiniteVolumes(self) -> None:
+        self.SetMeshFor(self.FINITE_VOLUMES)
+
+    def SetMeshForToFiniteElements(self) -> None:
+        self.SetMeshFor(self.FINITE_ELEMENTS)
+
+    def SetMeshForToFewestPoints(self) -> None:
+        self.SetMeshFor(self.FEWEST_POINTS)
 
     def execute(self, data: List[Any], options: Dict[str, Any]) -> List[Any]:
         return _mesh_outputs(
