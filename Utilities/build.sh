@@ -19,6 +19,7 @@ if [ "$1" = ON ]; then
     libeigen3-dev gmsh       # solvers, and meshes to compare with
     xdotool imagemagick      # a mouse for the GUI, and pictures of the whole screen
     python3-venv             # environments for the wheel
+    getdp python3-meshio     # readers of the files that are written
   )
 fi
 # Debian 12 has ParaView 5.11 with VTK 9.2 and Qt 5, Debian 13 has ParaView 5.13 with VTK 9.3 and Qt 6.
