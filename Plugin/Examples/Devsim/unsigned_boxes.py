@@ -92,18 +92,19 @@ def make_mesh(structure):
 
 
 def get_classes(grid, boundary):
-    """Rows of region, class, share of its volume, what it adds to the ratio of the region."""
+    """Rows of region, tetrahedra, ratio, then for each class the share of volume and part of the ratio."""
     points, tetrahedra, regions, ratios, volumes, _ = get_arrays(grid)
     is_border = np.zeros(len(points), bool)
     is_border[get_border(grid, boundary)] = True
     numbers = is_border[tetrahedra].sum(axis=1)
+    is_obtuse = has_obtuse_border(grid, boundary)
     rows = []
     for region in np.unique(regions):
         here = regions == region
         volume = volumes[here].sum()
         row = [get_name(grid, region), int(here.sum()), float((ratios * volumes)[here].sum() / volume)]
-        for low, high in ((0, 0), (1, 3), (4, 4)):
-            chosen = here & (numbers >= low) & (numbers <= high)
+        for chosen in (numbers == 0, (numbers > 0) & (numbers < 4), numbers == 4, is_obtuse):
+            chosen = here & chosen
             row += [float(volumes[chosen].sum() / volume),
                     float(((ratios - 1.0) * volumes)[chosen].sum() / volume)]
         rows.append(row)
@@ -112,6 +113,19 @@ def get_classes(grid, boundary):
 
 def get_name(grid, region):
     return cd.get_texts(grid, "RegionNames")[region]
+
+
+def has_obtuse_border(grid, boundary):
+    """Of each tetrahedron, whether a facet of it is an obtuse triangle of the boundary."""
+    triangles = vtk_to_numpy(boundary.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    corners = vtk_to_numpy(boundary.GetPoints().GetData())[triangles]
+    products = [((corners[:, i - 1] - corners[:, i]) * (corners[:, i - 2] - corners[:, i])).sum(axis=1)
+                for i in range(3)]
+    scale = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1) ** 2
+    obtuse = np.sort(np.array(get_border(grid, boundary))[triangles[np.min(products, axis=0) < -1e-9 * scale]])
+    keys = set(map(tuple, obtuse.tolist()))
+    tetrahedra = np.sort(vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4)).tolist()
+    return np.array([not keys.isdisjoint(itertools.combinations(ids, 3)) for ids in tetrahedra])
 
 
 def get_border(grid, boundary):
@@ -215,7 +229,7 @@ def main(rounds):
                             (cd.vtkTechnologyStructureSource.NMOS_WITH_FIELD_OXIDE, "NMOS")):
         grid, boundary, seconds = make_mesh(structure)
         print(f"\n{name}, {grid.GetNumberOfPoints()} points: ratio, then share of the volume and part of the "
-              "ratio by points on boundaries: none, 1 to 3, all 4")
+              "ratio by points on boundaries: none, 1 to 3, all 4; with an obtuse triangle of the boundary")
         for region, count, ratio, *classes in get_classes(grid, boundary):
             print(f"  {region:18s} {count:6d} tetrahedra {ratio:.3f}  " + "  ".join(
                 f"{100.0 * share:3.0f}% {part:.3f}" for share, part in zip(classes[::2], classes[1::2])))
