@@ -115,7 +115,7 @@ def ShowData(source, view, color):
         display.DiffuseColor = display.AmbientColor = [0.49, 0.65, 0.84]
         return
     if color == ("CELLS", "RegionId"):
-        region_cut.ColorByRegion(display, [str(i) for i in range(int(array.GetRange()[1]) + 1)])
+        region_cut.ColorByRegion(display, {i: str(i) for i in range(int(array.GetRange()[1]) + 1)})
     else:
         ColorBy(display, color)
         display.RescaleTransferFunctionToDataRange(False, True)

@@ -142,6 +142,16 @@ mesher.UpdatePipeline()
 assert abs(Volume(mesher) - 6.0) < 6e-12
 assert Count(mesher) > without, "the mesh points are used"
 
+# Sizes of regions, by name or id, in a table.
+device = TechnologyStructureSource(Structure="Via plug")
+counts = []
+for sizes in ([], ["Plug", 0.1], ["2", "0.1"]):
+    sized = ConformingDelaunayMesher(Input=device, MaximumEdgeLength=0.3, Growth=1,
+                                     RegionSizes=[str(value) for value in sizes])
+    sized.UpdatePipeline()
+    counts.append(Count(sized))
+assert 0 < counts[0] < counts[1] == counts[2], counts
+
 # Labels of points, chosen by name: two halves, in 5 x 5 x 5 voxels.
 halves = Calculator(Input=wavelet, ResultArrayName="Material", Function="if(coordsX>0.5,2,1)")
 interfaces = MaterialInterfaceExtractor(Input=halves, Labels=["POINTS", "Material"])
