@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -36,6 +37,7 @@ private:
     /** Its boundary. */
     std::vector<Id> Triangles;
     std::unique_ptr<BoxTree> Tree;
+    Box Bounds;
   };
 
   Status FindBoundary(SizedRegion& region) const;
@@ -63,7 +65,7 @@ Status RegionSizes::Build(const std::vector<RegionSize>& sizes)
     this->Largest > 0.0 ? this->Largest : Distance(this->Locator.GetLow(), this->Locator.GetHigh());
   for (auto size = lengths.cbegin(); size != lengths.cend() && status.IsOk(); ++size)
   {
-    this->Regions.push_back({ size->first, size->second, {}, nullptr });
+    this->Regions.push_back({ size->first, size->second, {}, nullptr, {} });
     status = this->FindBoundary(this->Regions.back());
   }
   std::stable_sort(this->Regions.begin(), this->Regions.end(),
@@ -82,6 +84,7 @@ Status RegionSizes::FindBoundary(SizedRegion& region) const
     {
       region.Triangles.push_back(static_cast<Id>(i));
       boxes.push_back(GetBox(this->Surface.Points, this->Surface.Triangles[i]));
+      region.Bounds.Add(boxes.back());
     }
   }
   if (boxes.empty())
@@ -106,7 +109,16 @@ double RegionSizes::GetDistance(const SizedRegion& region, const Vec3& position,
 
 double RegionSizes::GetLength(const Vec3& position) const
 {
-  const Id located = this->Locator.Locate(position);
+  // Found out once, and only if it may be a region that matters.
+  std::optional<Id> located;
+  const auto isIn = [&](const SizedRegion& region)
+  {
+    if (!located && region.Bounds.GetSquaredDistance(position) == 0.0)
+    {
+      located = this->Locator.Locate(position);
+    }
+    return located == region.Region;
+  };
   double length = this->Largest;
   for (const SizedRegion& region : this->Regions)
   {
@@ -114,7 +126,7 @@ double RegionSizes::GetLength(const Vec3& position) const
     {
       break;
     }
-    if (region.Region == located)
+    if (isIn(region))
     {
       return region.Length;
     }

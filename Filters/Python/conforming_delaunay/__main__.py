@@ -67,6 +67,8 @@ def _region_size(text: str) -> Tuple[str, float]:
     """REGION=LENGTH."""
     region, _, length = text.rpartition("=")
     try:
+        if not region:
+            raise ValueError
         return region, float(length)
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r} is not REGION=LENGTH") from None

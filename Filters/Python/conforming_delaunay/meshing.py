@@ -146,7 +146,7 @@ def _layers(surface: Surface, layers: Any) -> Optional[np.ndarray]:
     """Rows of numbers."""
     if layers is None:
         return None
-    rows = [[*row] for row in layers]
+    rows = [[*row] if np.ndim(row) == 1 else [row] for row in layers]
     if any(len(row) != 5 for row in rows):
         raise _wrong(
             "layers",
