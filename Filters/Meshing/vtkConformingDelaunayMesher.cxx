@@ -30,6 +30,7 @@
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
+#include <vtkPointSet.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
@@ -459,6 +460,12 @@ cdm::Status vtkConformingDelaunayMesher::MeshPolygons(const std::string& prefix,
       WarnOfLostArrays(this, prefix, input, mesh);
       return {};
     });
+}
+
+//--------------------------------------------------------------------------------------------------
+vtkPointSet* vtkConformingDelaunayMesher::GetOutput(int port)
+{
+  return vtkPointSet::SafeDownCast(this->GetOutputDataObject(port));
 }
 
 //--------------------------------------------------------------------------------------------------

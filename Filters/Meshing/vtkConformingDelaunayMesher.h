@@ -86,6 +86,12 @@ public:
   vtkTypeMacro(vtkConformingDelaunayMesher, vtkUnstructuredGridAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  ///@{
+  /** The tetrahedra; and the output of a port, null for blocks: 1 is the boundary, 2 the problems. */
+  vtkUnstructuredGrid* GetOutput() { return this->Superclass::GetOutput(); }
+  vtkPointSet* GetOutput(int port);
+  ///@}
+
   enum Purposes
   {
     FINITE_VOLUMES = 0,

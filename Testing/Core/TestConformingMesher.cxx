@@ -201,9 +201,11 @@ TEST(ConformingMesher, LimitsAreSaid)
   ConformingMesherOptions options;
   options.MeshFor = MeshPurpose::FewestPoints;
   options.Choices.MaximumEdgeLength = 0.1;
-  EXPECT_TRUE(Mesh(cube, options).Warnings.empty());
-  options.Surface.MaximumNewPoints = 20;
   ConformingMesherOutput output = Mesh(cube, options);
+  EXPECT_FALSE(Warns(output, "larger than asked for"));
+  EXPECT_FALSE(Warns(output, "MaximumNewPoints"));
+  options.Surface.MaximumNewPoints = 20;
+  output = Mesh(cube, options);
   EXPECT_TRUE(Warns(output, "larger than asked for"));
   EXPECT_TRUE(Warns(output, "MaximumNewPoints"));
   EXPECT_TRUE(output.Certificate.IsDelaunay());

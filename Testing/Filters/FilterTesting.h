@@ -230,6 +230,25 @@ public:
     messages += static_cast<const char*>(callData);
   }
 
+  /** All messages but the count of flat tetrahedra, which is no fault of the mesh. */
+  std::string GetFaults() const
+  {
+    const std::string messages = this->Errors + this->Warnings;
+    std::string faults;
+    for (std::size_t begin = 0; begin < messages.size();)
+    {
+      // Each message ends with an empty line.
+      const std::size_t end = std::min(messages.find("\n\n", begin), messages.size() - 2) + 2;
+      const std::string message = messages.substr(begin, end - begin);
+      if (message.find("a dihedral angle below 15 degrees") == std::string::npos)
+      {
+        faults += message;
+      }
+      begin = end;
+    }
+    return faults;
+  }
+
   std::string Errors;
   std::string Warnings;
   std::vector<double> Progress;
@@ -316,7 +335,6 @@ inline void ExpectLinear(vtkPointSet* output, double tolerance = 1e-12)
   }
 }
 
-/** Sum of the signed volumes of the tetrahedra of a region (-1: of all). */
 /** Those of a field array: names of components, percent-encoded; equal values: pieces of one. */
 inline std::vector<std::string> GetTexts(vtkDataObject* data, const char* name)
 {
@@ -335,6 +353,7 @@ inline std::vector<std::string> GetTexts(vtkDataObject* data, const char* name)
   return texts;
 }
 
+/** Sum of the signed volumes of the tetrahedra of a region (-1: of all). */
 inline double GetVolume(vtkUnstructuredGrid* grid, int region = -1)
 {
   vtkDataArray* regions = grid->GetCellData()->GetArray("RegionId");

@@ -80,7 +80,7 @@ void ExpectTurnedBoxes(double maximumEdgeLength)
   vtkNew<EventRecorder> recorder;
   recorder->Watch(filter);
   filter->Update();
-  EXPECT_EQ(recorder->Errors + recorder->Warnings, "") << GetCertificate(filter->GetOutput());
+  EXPECT_EQ(recorder->GetFaults(), "") << GetCertificate(filter->GetOutput());
   EXPECT_NEAR(GetVolume(filter->GetOutput(), 3), 1.0, 1e-12);
   EXPECT_NEAR(GetVolume(filter->GetOutput(), 7), 2.0, 1e-12);
   // Also where tetrahedra were peeled off, the boundary is whole and knows its polygons.
@@ -101,9 +101,10 @@ void ExpectTurnedBoxes(double maximumEdgeLength)
 /** The points inside have no array Linear: that it is not kept is the only warning. */
 void ExpectLostArrayOnly(const EventRecorder* recorder)
 {
+  const std::string faults = recorder->GetFaults();
   EXPECT_EQ(recorder->Errors, "");
-  EXPECT_TRUE(Contains(recorder->Warnings, "that the mesh points lack is not kept: Linear."));
-  EXPECT_EQ(recorder->Warnings.find("Warning"), recorder->Warnings.rfind("Warning"));
+  EXPECT_TRUE(Contains(faults, "that the mesh points lack is not kept: Linear."));
+  EXPECT_EQ(faults.find("Warning"), faults.rfind("Warning"));
 }
 } // namespace
 
@@ -116,7 +117,7 @@ TEST(ConformingDelaunayMesherFilter, MeshesTwoMaterials)
   vtkNew<EventRecorder> recorder;
   recorder->Watch(filter);
   filter->Update();
-  EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+  EXPECT_EQ(recorder->GetFaults(), "");
   vtkUnstructuredGrid* mesh = filter->GetOutput();
   EXPECT_NEAR(GetVolume(mesh, 3), 1.0, 1e-12);
   EXPECT_NEAR(GetVolume(mesh, 7), 2.0, 1e-12);
@@ -145,7 +146,7 @@ TEST(ConformingDelaunayMesherFilter, IsForFiniteVolumesUnlessTold)
   vtkNew<EventRecorder> recorder;
   recorder->Watch(filter);
   filter->Update();
-  EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+  EXPECT_EQ(recorder->GetFaults(), "");
   vtkFieldData* data = filter->GetOutput()->GetFieldData();
   EXPECT_EQ(GetCertificate(filter->GetOutput()).find("CLEAN FOR FINITE VOLUMES\n"), 0u);
   EXPECT_EQ(data->GetArray("TetrahedraUnder15Degrees")->GetComponent(0, 0), 0.0);
@@ -218,7 +219,7 @@ TEST(ConformingDelaunayMesherFilter, PeelingLeavesAValidMesh)
   vtkNew<EventRecorder> recorder;
   recorder->Watch(filter);
   filter->Update();
-  EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+  EXPECT_EQ(recorder->GetFaults(), "");
   EXPECT_EQ(GetCertificate(filter->GetOutput()).find("DELAUNAY\n"), 0u)
     << GetCertificate(filter->GetOutput());
 }
@@ -295,7 +296,7 @@ TEST(ConformingDelaunayMesherFilter, FulfilsCriteriaAndUsesItsOtherInputs)
     vtkNew<EventRecorder> recorder;
     recorder->Watch(filter);
     filter->Update();
-    EXPECT_EQ(recorder->Errors + recorder->Warnings, "") << criterion;
+    EXPECT_EQ(recorder->GetFaults(), "") << criterion;
     EXPECT_NEAR(GetVolume(filter->GetOutput(), 0), 1.0, 1e-12);
     EXPECT_GT(filter->GetOutput()->GetNumberOfPoints(), 60);
     ExpectLinear(filter->GetOutput());
@@ -331,7 +332,7 @@ TEST(ConformingDelaunayMesherFilter, SizesHoldAllAlongEdgesAndInTetrahedra)
     vtkNew<EventRecorder> recorder;
     recorder->Watch(filter);
     filter->Update();
-    EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+    EXPECT_EQ(recorder->GetFaults(), "");
     vtkUnstructuredGrid* mesh = filter->GetOutput();
     EXPECT_EQ(mesh->GetCellData()->GetArray("RefinementFault"), nullptr);
     // Positions along all edges, and all over the tetrahedra, with the longest edge there.
@@ -556,7 +557,7 @@ TEST(ConformingDelaunayMesherFilter, AddsSteinerPoints)
     }
     else
     {
-      EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+      EXPECT_EQ(recorder->GetFaults(), "");
     }
     ExpectProgress(recorder);
     vtkUnstructuredGrid* output = mesher->GetOutput();
@@ -602,7 +603,7 @@ TEST(ConformingDelaunayMesherFilter, SteinerPointsRemoveSliversIfAsked)
     recorder->Watch(mesher);
     criteria->Update();
     mesher->RemoveObserver(recorder);
-    EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+    EXPECT_EQ(recorder->GetFaults(), "");
     const double angle =
       criteria->GetOutput()->GetCellData()->GetArray("SmallestDihedralAngle")->GetRange()[0];
     EXPECT_EQ(angle >= 15.0, isRemoving) << angle;

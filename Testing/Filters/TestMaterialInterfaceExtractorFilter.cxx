@@ -104,8 +104,7 @@ void ExpectMesh(vtkMaterialInterfaceExtractor* extractor, const Volumes& expecte
   mesher->SetInputConnection(extractor->GetOutputPort());
   mesher->Update();
   // A mesh that its own check finds at fault comes with a warning.
-  EXPECT_EQ(recorder->Errors, "");
-  EXPECT_EQ(recorder->Warnings, "");
+  EXPECT_EQ(recorder->GetFaults(), "");
   auto mesh = vtkUnstructuredGrid::SafeDownCast(mesher->GetOutputDataObject(0));
   Volumes volumes;
   vtkDataArray* regions = FindArray(mesh->GetCellData(), "RegionId", 1, VTK_INT);

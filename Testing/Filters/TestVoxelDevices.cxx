@@ -112,7 +112,7 @@ void ExpectAllThatWasAskedFor(const VoxelDevice& device, double angle)
     criteria->SetInputConnection(1, mesher->GetOutputPort(1));
     criteria->Update();
     ASSERT_GT(mesher->GetOutput()->GetNumberOfCells(), 0);
-    EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+    EXPECT_EQ(recorder->GetFaults(), "");
     ExpectClean(criteria, criterion);
     EXPECT_EQ(CountSlivers(criteria), 0);
     EXPECT_EQ(CountMissed(mesher->GetOutput()), 0);

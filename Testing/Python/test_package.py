@@ -517,7 +517,7 @@ class CommandLine(unittest.TestCase):
             run = self.run_command(2, "device", "list")
             self.assertIn("no sample devices", run.stderr)
             return
-        self.assertIn("MOS transistor", self.run_command(0, "device", "list").stdout)
+        self.assertIn("MosTransistor", self.run_command(0, "device", "list").stdout)
         self.run_command(2, "device", "Teapot", "a.vtp")
         self.run_command(0, "device", "MOS transistor", "device.vtp")
         run = self.run_command(0, "mesh", "device.vtp", "device.msh", "--json")
@@ -694,7 +694,8 @@ class WithVtk(unittest.TestCase):
                     self.assertEqual(read.points.tobytes(), mesh.points.tobytes())
                     self.assertTrue(np.array_equal(read.tetrahedra, mesh.tetrahedra))
                     self.assertTrue(np.array_equal(read.regions, mesh.regions))
-                    if HAS_MESHIO:
+                    # It takes the integers of VTK's binary files of this format for 64 bits.
+                    if HAS_MESHIO and (suffix, path) != (".vtk", theirs):
                         import meshio
 
                         self.assertEqual(len(meshio.read(path).cells_dict["tetra"]),

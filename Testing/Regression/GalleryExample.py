@@ -29,7 +29,7 @@ def Check(script, meshes, pictures, arguments=(), clean=None):
             sys.exit("exit code %d" % run.returncode)
         certificates = re.findall("certificate: (.*)", run.stdout)
         assert len(certificates) == len(meshes), certificates
-        number = certificates.count("CLEAN FOR FINITE VOLUMES")
+        number = sum(text.startswith("CLEAN FOR FINITE VOLUMES") for text in certificates)
         assert number == (len(meshes) if clean is None else clean), certificates
         written = sorted([*meshes, *(name for name, _ in pictures)])
         assert sorted(os.listdir(folder)) == written, os.listdir(folder)

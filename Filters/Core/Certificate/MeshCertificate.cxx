@@ -258,7 +258,7 @@ std::string MeshCertificate::GetReasons() const
 
 std::string MeshCertificate::GetText() const
 {
-  const bool isTiny =
+  const bool isTiny = this->GetVerdict() != MeshVerdict::Invalid &&
     this->Level == CertificateLevel::Full && this->SmallestVolumeRatio < TinyVolumeRatio;
   return std::string(this->GetVerdictName()) +
     (isTiny ? ", but the smallest tetrahedron has " + Format("%.1g", this->SmallestVolumeRatio) +

@@ -271,9 +271,12 @@ def _device(options: Dict[str, Any], progress: Any, as_json: bool) -> int:
     if options["input"] == "list":
         _report(names, {"devices": names}, as_json)
         return 0
-    if options["input"] not in names or not options["output"]:
+    # As here or with blanks, as in ParaView.
+    keys = [name.lower() for name in names]
+    key = options["input"].replace(" ", "").lower()
+    if key not in keys or not options["output"]:
         raise ValueError(f"A device and a file are needed. There are: {', '.join(names)}.")
-    source.SetStructure(names.index(options["input"]))
+    source.SetStructure(keys.index(key))
     source.Update()
     surface = Surface.from_any(source.GetOutput())
     surface.save(options["output"])

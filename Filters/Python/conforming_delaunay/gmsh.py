@@ -149,13 +149,16 @@ def _write_version_4(file: TextIO, contents: _Contents) -> None:
     count = contents.number_of_facets + len(contents.tetrahedra)
     file.write(f"$EndNodes\n$Elements\n{len(contents.groups)} {count} 1 {count}\n")
     first = 1
-    for group, triangles in zip(contents.groups, contents.triangles):
-        numbers, nodes, kind = np.arange(first, first + len(triangles)), triangles, _TRIANGLE
-        if group.kind == "region":
-            chosen = contents.select(group)
-            numbers = contents.number_of_facets + 1 + chosen
-            nodes, kind = contents.tetrahedra[chosen], _TETRAHEDRON
+
+    def write(group: PhysicalGroup, kind: int, numbers: np.ndarray, nodes: np.ndarray) -> None:
         file.write(f"{_dimension(group)} {group.number} {kind} {len(nodes)}\n")
         file.write(_lines(np.concatenate([numbers[:, np.newaxis], nodes], axis=1).tolist()))
-        first += len(triangles)
+
+    for group, triangles in zip(contents.groups, contents.triangles):
+        if group.kind != "region":
+            write(group, _TRIANGLE, np.arange(first, first + len(triangles)), triangles)
+            first += len(triangles)
+    for group in regions:
+        chosen = contents.select(group)
+        write(group, _TETRAHEDRON, first + chosen, contents.tetrahedra[chosen])
     file.write("$EndElements\n")
