@@ -93,6 +93,14 @@ with tempfile.TemporaryDirectory() as folder:
     assert text.startswith("$MeshFormat\n2.2 0 8\n") and text.endswith("$EndElements\n")
     assert '"region_0_zmax"' in text
 
+# Contacts come along without being asked for.
+with tempfile.TemporaryDirectory() as folder:
+    path = os.path.join(folder, "device.msh")
+    device = TechnologyStructureSource(Structure="MOS transistor")
+    SaveData(path, proxy=ConformingDelaunayMesher(Input=device, MeshFor="Fewest points"))
+    with open(path, encoding="ascii") as file:
+        assert '"SourceContact"' in file.read()
+
 mesher = ConformingDelaunayMesher(Input=cube, MeshFor="Fewest points", MaximumEdgeLength=1.0)
 mesher.UpdatePipeline()
 assert abs(Volume(mesher) - 6.0) < 6e-12, "volume %.17g" % Volume(mesher)
