@@ -162,7 +162,7 @@ def Format(model, mode, row):
 
 HEAD = """# Twelve models in four modes
 
-Made by `Utilities/modes.sh --models FOLDER`, from `Testing/Benchmarks/Modes.py`, which says how. L is a
+Made by `bash Utilities/modes.sh --models FOLDER`, from `Testing/Benchmarks/Modes.py`, which says how. L is a
 twentieth of the diagonal of the bounding box. The median is that of all edges, in L; the angle is the
 smallest dihedral angle, in degrees; then there are the numbers of tetrahedra below 5 and 15 degrees, and the
 verdict of `Delaunay Mesh Criteria`; last the processor time in seconds, on one thread.
