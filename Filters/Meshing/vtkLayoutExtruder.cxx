@@ -303,6 +303,62 @@ void vtkLayoutExtruder::RemoveAllContactNames()
 }
 
 //--------------------------------------------------------------------------------------------------
+struct vtkLayoutExtruder::Structure
+{
+  cdm::PolygonSoup Boundary;
+  std::vector<Id> FacetIds;
+  std::vector<Id> ContactIds;
+};
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status vtkLayoutExtruder::MakeStructure(vtkPolyData* layout, Structure& structure)
+{
+  const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(this);
+  cdm::PolygonSoup polygons;
+  std::vector<vtkIdType> cells;
+  std::vector<Id> masks;
+  std::vector<Step> steps;
+  std::vector<Contact> contacts;
+  cdm::LayoutOverlay overlay;
+  const auto overlayMasks = [&]
+  {
+    if (std::any_of(steps.begin(), steps.end(), [](const Step& row) { return row.Mask == NoMask; }))
+    {
+      AddRectangle(this->Margin, polygons);
+      masks.push_back(NoMask);
+    }
+    return cdm::OverlayPolygons(std::move(polygons), context.Part(0.0, 0.8), overlay);
+  };
+  const auto stack = [&]
+  {
+    if (!context.Continue(0.8, "Collecting interfaces"))
+    {
+      return cdm::Status::Aborted();
+    }
+    structure.Boundary =
+      Stack(overlay, masks, steps, contacts).MakeBoundary(structure.FacetIds, structure.ContactIds);
+    return structure.Boundary.GetNumberOfPolygons() > 0
+      ? CheckContactIds(contacts.size(), structure.ContactIds)
+      : cdm::Status::InvalidInput("The process steps leave nothing.");
+  };
+  cdm::Status status =
+    vtkCoreBridge::ToPolygonSoup(layout, polygons, cells)
+      .Then(
+        [&]
+        {
+          return polygons.GetNumberOfPolygons() > 0
+            ? GetMasks(layout, cells, masks)
+            : cdm::Status::InvalidInput("The layout has no polygons.");
+        })
+      .Then([&] { return CheckSteps(this->Steps, masks, steps); })
+      .Then([&] { return CheckContacts(this->Contacts, masks, FindLevels(steps), contacts); })
+      .Then(overlayMasks)
+      .Then(stack);
+  vtkCoreBridge::MapCells(status.Cells, cells);
+  return status;
+}
+
+//--------------------------------------------------------------------------------------------------
 int vtkLayoutExtruder::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -311,79 +367,19 @@ int vtkLayoutExtruder::RequestData(
   {
     return 1;
   }
-  cdm::PolygonSoup boundary;
-  std::vector<Id> facetIds;
-  std::vector<Id> contactIds;
-  const cdm::Status status = cdm::RunGuarded(
-    [&]
-    {
-      cdm::PolygonSoup polygons;
-      std::vector<vtkIdType> cells;
-      std::vector<Id> masks;
-      std::vector<Step> steps;
-      std::vector<Contact> contacts;
-      cdm::LayoutOverlay overlay;
-      cdm::Status step = vtkCoreBridge::ToPolygonSoup(input, polygons, cells);
-      if (step.IsOk() && polygons.GetNumberOfPolygons() == 0)
-      {
-        step = cdm::Status::InvalidInput("The layout has no polygons.");
-      }
-      if (step.IsOk())
-      {
-        step = GetMasks(input, cells, masks);
-      }
-      if (step.IsOk())
-      {
-        step = CheckSteps(this->Steps, masks, steps);
-      }
-      if (step.IsOk())
-      {
-        step = CheckContacts(this->Contacts, masks, FindLevels(steps), contacts);
-      }
-      const bool isMaskless =
-        std::any_of(steps.begin(), steps.end(), [](const Step& row) { return row.Mask == NoMask; });
-      if (step.IsOk() && isMaskless)
-      {
-        AddRectangle(this->Margin, polygons);
-        masks.push_back(NoMask);
-      }
-      if (step.IsOk())
-      {
-        step = cdm::OverlayPolygons(
-          std::move(polygons), vtkCoreBridge::MakeContext(this).Part(0.0, 0.8), overlay);
-      }
-      if (step.IsOk())
-      {
-        const bool isWanted =
-          vtkCoreBridge::MakeContext(this).Continue(0.8, "Collecting interfaces");
-        if (!isWanted)
-        {
-          return cdm::Status::Aborted();
-        }
-        boundary = Stack(overlay, masks, steps, contacts).MakeBoundary(facetIds, contactIds);
-      }
-      if (step.IsOk() && boundary.GetNumberOfPolygons() == 0)
-      {
-        step = cdm::Status::InvalidInput("The process steps leave nothing.");
-      }
-      if (step.IsOk())
-      {
-        step = CheckContactIds(contacts.size(), contactIds);
-      }
-      vtkCoreBridge::MapCells(step.Cells, cells);
-      return step;
-    });
+  Structure structure;
+  const cdm::Status status = cdm::RunGuarded([&] { return this->MakeStructure(input, structure); });
   if (!status.IsOk())
   {
     return vtkCoreBridge::ReportFailure(this, outputVector, status, input);
   }
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  vtkStructureOutput::SetPolygons(boundary, facetIds, output);
+  vtkStructureOutput::SetPolygons(structure.Boundary, structure.FacetIds, output);
   vtkCoreBridge::SetTexts(
     vtkCoreBridge::RegionNamesName, this->RegionNames, output->GetFieldData());
   if (!this->Contacts.empty())
   {
-    vtkStructureOutput::AddIds("ContactId", contactIds, output);
+    vtkStructureOutput::AddIds("ContactId", structure.ContactIds, output);
     vtkCoreBridge::SetTexts(
       vtkCoreBridge::ContactNamesName, this->ContactNames, output->GetFieldData());
   }

@@ -53,6 +53,12 @@
 #include <string>
 #include <vector>
 
+class vtkPolyData;
+namespace cdm
+{
+struct Status;
+}
+
 class CDMMESHING_EXPORT vtkLayoutExtruder : public vtkPolyDataAlgorithm
 {
 public:
@@ -115,6 +121,9 @@ protected:
   double Margin = 0.0;
 
 private:
+  struct Structure;
+  cdm::Status MakeStructure(vtkPolyData* layout, Structure& structure);
+
   vtkLayoutExtruder(const vtkLayoutExtruder&) = delete;
   void operator=(const vtkLayoutExtruder&) = delete;
 };

@@ -96,6 +96,79 @@ vtkSizingFromSolution::vtkSizingFromSolution()
 }
 
 //--------------------------------------------------------------------------------------------------
+cdm::Status vtkSizingFromSolution::ComputeSizes(
+  vtkDataSet* data, vtkDataArray* solution, std::vector<double>* sizes)
+{
+  if (this->MaximumSize > 0.0 && this->MinimumSize > this->MaximumSize)
+  {
+    return cdm::Status::InvalidInput("MinimumSize is larger than MaximumSize.");
+  }
+  const vtkSmartPointer<vtkDataArray> gradient = ComputeGradient(data, solution);
+  if (!vtkCoreBridge::MakeContext(this).Continue(0.5, "Limiting sizes"))
+  {
+    return cdm::Status::Aborted();
+  }
+  double range[2];
+  solution->GetFiniteRange(range, 0);
+  // A constant solution wants no edge shorter than any other.
+  const double spread = range[1] > range[0] ? range[1] - range[0] : 1.0;
+  const double increase = this->MaximumIncrease > 0.0 ? this->MaximumIncrease : 0.1 * spread;
+  const double regularization =
+    this->Regularization > 0.0 ? this->Regularization : increase / data->GetLength();
+  const double largest =
+    this->MaximumSize > 0.0 ? this->MaximumSize : std::numeric_limits<double>::max();
+  const int components = this->GetNumberOfSizes();
+  for (int i = 0; i < components; ++i)
+  {
+    sizes[i].resize(data->GetNumberOfPoints());
+  }
+  vtkCoreBridge::ForEach(sizes[0].size(),
+    [&](std::size_t point)
+    {
+      double slopes[3];
+      gradient->GetTuple(static_cast<vtkIdType>(point), slopes);
+      slopes[0] = this->Anisotropic ? slopes[0] : vtkMath::Norm(slopes);
+      for (int i = 0; i < components; ++i)
+      {
+        const double size = increase / (regularization + std::abs(slopes[i]));
+        sizes[i][point] = std::min(std::max(size, this->MinimumSize), largest);
+      }
+    });
+  for (std::size_t point = 0; point < sizes[0].size(); ++point)
+  {
+    for (int i = 0; i < components; ++i)
+    {
+      if (!(sizes[i][point] > 0.0 && std::isfinite(sizes[i][point])))
+      {
+        return cdm::Status::InvalidInput(
+          "The solution has no finite gradient: its cells are degenerate there.", {},
+          { static_cast<cdm::Id>(point) });
+      }
+    }
+  }
+  return {};
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status vtkSizingFromSolution::BoundGradation(vtkDataSet* data, std::vector<double>* sizes)
+{
+  if (this->Gradation <= 0.0)
+  {
+    return {};
+  }
+  const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(this);
+  cdm::SizingCells cells;
+  cdm::Status status = vtkCoreBridge::ToSizingCells(data, cells);
+  const int components = this->GetNumberOfSizes();
+  for (int i = 0; i < components && status.IsOk(); ++i)
+  {
+    status = cdm::BoundGradation(cells, { this->Gradation },
+      context.Part(0.5 + 0.5 * i / components, 0.5 + 0.5 * (i + 1) / components), sizes[i]);
+  }
+  return status;
+}
+
+//--------------------------------------------------------------------------------------------------
 int vtkSizingFromSolution::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -106,74 +179,14 @@ int vtkSizingFromSolution::RequestData(
   }
   const vtkSmartPointer<vtkDataSet> data = vtkCoreBridge::CopyWithoutBlanking(input);
   vtkDataArray* solution = this->GetInputArrayToProcess(0, inputVector);
-  const int components = this->Anisotropic ? 3 : 1;
+  const int components = this->GetNumberOfSizes();
   std::vector<double> sizes[3];
   const cdm::Status status = cdm::RunGuarded(
     [&]
     {
-      const cdm::ExecutionContext context = vtkCoreBridge::MakeContext(this);
-      cdm::Status step = CheckSolution(data, solution);
-      if (step.IsOk() && this->MaximumSize > 0.0 && this->MinimumSize > this->MaximumSize)
-      {
-        step = cdm::Status::InvalidInput("MinimumSize is larger than MaximumSize.");
-      }
-      if (!step.IsOk())
-      {
-        return step;
-      }
-      const vtkSmartPointer<vtkDataArray> gradient = ComputeGradient(data, solution);
-      if (!context.Continue(0.5, "Limiting sizes"))
-      {
-        return cdm::Status::Aborted();
-      }
-      double range[2];
-      solution->GetFiniteRange(range, 0);
-      // A constant solution wants no edge shorter than any other.
-      const double spread = range[1] > range[0] ? range[1] - range[0] : 1.0;
-      const double increase = this->MaximumIncrease > 0.0 ? this->MaximumIncrease : 0.1 * spread;
-      const double regularization =
-        this->Regularization > 0.0 ? this->Regularization : increase / input->GetLength();
-      const double largest =
-        this->MaximumSize > 0.0 ? this->MaximumSize : std::numeric_limits<double>::max();
-      for (int i = 0; i < components; ++i)
-      {
-        sizes[i].resize(input->GetNumberOfPoints());
-      }
-      vtkCoreBridge::ForEach(sizes[0].size(),
-        [&](std::size_t point)
-        {
-          double slopes[3];
-          gradient->GetTuple(static_cast<vtkIdType>(point), slopes);
-          slopes[0] = this->Anisotropic ? slopes[0] : vtkMath::Norm(slopes);
-          for (int i = 0; i < components; ++i)
-          {
-            const double size = increase / (regularization + std::abs(slopes[i]));
-            sizes[i][point] = std::min(std::max(size, this->MinimumSize), largest);
-          }
-        });
-      for (std::size_t point = 0; point < sizes[0].size(); ++point)
-      {
-        for (int i = 0; i < components; ++i)
-        {
-          if (!(sizes[i][point] > 0.0 && std::isfinite(sizes[i][point])))
-          {
-            return cdm::Status::InvalidInput(
-              "The solution has no finite gradient: its cells are degenerate there.", {},
-              { static_cast<cdm::Id>(point) });
-          }
-        }
-      }
-      cdm::SizingCells cells;
-      if (this->Gradation > 0.0)
-      {
-        step = vtkCoreBridge::ToSizingCells(data, cells);
-      }
-      for (int i = 0; i < components && step.IsOk() && this->Gradation > 0.0; ++i)
-      {
-        step = cdm::BoundGradation(cells, { this->Gradation },
-          context.Part(0.5 + 0.5 * i / components, 0.5 + 0.5 * (i + 1) / components), sizes[i]);
-      }
-      return step;
+      return CheckSolution(data, solution)
+        .Then([&] { return this->ComputeSizes(data, solution, sizes); })
+        .Then([&] { return this->BoundGradation(data, sizes); });
     });
   if (!status.IsOk())
   {

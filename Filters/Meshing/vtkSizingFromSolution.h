@@ -37,6 +37,15 @@
 #include "cdmMeshingModule.h" // For export macro
 #include <vtkDataSetAlgorithm.h>
 
+#include <vector>
+
+class vtkDataArray;
+class vtkDataSet;
+namespace cdm
+{
+struct Status;
+}
+
 class CDMMESHING_EXPORT vtkSizingFromSolution : public vtkDataSetAlgorithm
 {
 public:
@@ -105,6 +114,12 @@ protected:
   double Gradation = 0.3;
 
 private:
+  /** Components of the sizes: of isotropic ones one, otherwise one for each axis. */
+  int GetNumberOfSizes() const { return this->Anisotropic ? 3 : 1; }
+  /** The sizes at each point, before they are graded; sizes: one list for each component. */
+  cdm::Status ComputeSizes(vtkDataSet* data, vtkDataArray* solution, std::vector<double>* sizes);
+  cdm::Status BoundGradation(vtkDataSet* data, std::vector<double>* sizes);
+
   vtkSizingFromSolution(const vtkSizingFromSolution&) = delete;
   void operator=(const vtkSizingFromSolution&) = delete;
 };
