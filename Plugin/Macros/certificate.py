@@ -8,26 +8,18 @@ and a text that changes with the mesh. Chosen again, for this or another mesh, i
 from paraview.simple import *
 
 NAME = "Certificate"
-# Runs where the data are. Texts are the names of the components of a field array, percent-encoded;
-# those of equal value are pieces of one text.
-SCRIPT = """
-import textwrap
-from urllib.parse import unquote
-from vtkmodules.vtkCommonCore import vtkStringArray
-
-lines = vtkStringArray()
-lines.SetName("Text")
-array = inputs[0].VTKObject.GetFieldData().GetArray("Certificate")
-if array:
-    texts = {}
-    for i in range(array.GetNumberOfComponents()):
-        index = int(array.GetComponent(0, i))
-        texts[index] = texts.get(index, "") + array.GetComponentName(i)
-    items = [item for index in sorted(texts) for item in unquote(texts[index]).split("; ")]
-    lines.InsertNextValue("\\n".join(
-        line for item in items for line in textwrap.wrap(item, 100, subsequent_indent="    ")))
-output.RowData.AddArray(lines)
-"""
+# Of a Python Annotation, which knows the data as inputs[0]. Texts are the names of the components of
+# a field array, percent-encoded; those of equal value are pieces of one text. No braces: ParaView would
+# replace them.
+EXPRESSION = """(lambda array, unquote, wrap: "" if array is None else "\\n".join(
+    line
+    for index in sorted(set(map(array.GetValue, range(array.GetNumberOfComponents()))))
+    for item in unquote("".join(array.GetComponentName(i)
+                                for i in range(array.GetNumberOfComponents())
+                                if array.GetValue(i) == index)).split("; ")
+    for line in wrap(item, 100, subsequent_indent="    ")))(
+        inputs[0].VTKObject.GetFieldData().GetArray("Certificate"),
+        __import__("urllib.parse").parse.unquote, __import__("textwrap").wrap)"""
 
 
 def FindCriteria(source):
@@ -51,8 +43,8 @@ def MakeCriteria(source):
 
 def GetText(note):
     """What the view shows; empty without a certificate."""
-    column = servermanager.Fetch(note).GetColumnByName("Text")
-    return column.GetValue(0) if column is not None and column.GetNumberOfValues() > 0 else ""
+    column = servermanager.Fetch(note).GetColumn(0)
+    return column.GetValue(0) if column is not None else ""
 
 
 def Certify(source, view):
@@ -61,13 +53,13 @@ def Certify(source, view):
     if former is not None:
         Delete(former)
     criteria = FindCriteria(source) or MakeCriteria(source)
-    note = ProgrammableFilter(registrationName=NAME, Input=criteria, OutputDataSetType="vtkTable",
-                              Script=SCRIPT)
+    note = PythonAnnotation(registrationName=NAME, Input=criteria, ArrayAssociation="Field Data",
+                            Expression=EXPRESSION)
     if not GetText(note):
         Delete(note)
         Delete(criteria)
         raise RuntimeError("Select tetrahedra: the messages above say what is wrong with this.")
-    display = Show(note, view, "TextSourceRepresentation")
+    display = Show(note, view)
     display.WindowLocation = "Upper Left Corner"
     display.Justification = "Left"
     display.FontSize = 10
