@@ -70,6 +70,8 @@ public:
    * A stamp that identifies the tetrahedron in this slot: no other one ever gets the same stamp.
    */
   std::int64_t GetStamp(Id tetrahedron) const { return this->Stamps[tetrahedron]; }
+  /** The stamp of the next tetrahedron that is made: those of older ones are smaller. */
+  std::int64_t GetNextStamp() const { return this->NextStamp; }
   /** A tetrahedron at the point, or NoId. */
   Id GetTetrahedronAt(Id point) const { return this->PointTetrahedra[point]; }
   /** Whether a facet lies between two regions or at the outside: it is never removed. */
