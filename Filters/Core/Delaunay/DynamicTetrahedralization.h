@@ -89,6 +89,9 @@ public:
    */
   Id Locate(const Vec3& position, Id first) const;
 
+  /** Whether a point with the given number lies in the (pulled) circumsphere of a tetrahedron. */
+  bool IsInConflict(Id tetrahedron, const Vec3& position, Id number) const;
+
   /**
    * Finds the cavity of a point with the given number. The search starts from a tetrahedron whose
    * circumsphere holds the point. False if the point cannot be inserted: it is not in conflict with
@@ -128,7 +131,6 @@ public:
   const std::vector<Id>& GetChanged() const { return this->Changed; }
 
 private:
-  bool IsInConflict(Id tetrahedron, const Vec3& position, Id number) const;
   Id Make(const TetrahedronIds& ids, Id region);
   void Kill(Id tetrahedron);
   void Fill(Id point, const PointCavity& cavity);
