@@ -3,6 +3,7 @@
 #include "Core/Improvement/BoundaryShape.h"
 #include "Core/Improvement/BoundarySpheres.h"
 #include "Core/Improvement/BoundarySplits.h"
+#include "Core/Improvement/NegativeCouplings.h"
 #include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
@@ -153,6 +154,7 @@ public:
     if (this->Splits->IsUsable())
     {
       this->Shape->Follow(change);
+      this->Couplings.NoteTriangles(this->Surface, change.Triangles);
     }
     // What has failed is still to be done.
     EXPECT_EQ(triangles.empty() && edges.empty(), this->Splits->IsUsable());
@@ -164,6 +166,9 @@ public:
   {
     const std::unique_ptr<BoundaryShape> expected = this->MakeShape();
     const TetMesh& mesh = this->Mesh->GetMesh();
+    NegativeCouplings couplings;
+    EXPECT_EQ(this->Couplings.Update(*this->Mesh, this->Surface, this->Shape->PointTriangles),
+      couplings.Update(*this->Mesh, this->Surface, expected->PointTriangles));
     BoundarySpheres::Encroached found;
     BoundarySpheres::Encroached wanted;
     for (Id t = 0; t < this->Mesh->GetNumberOfTetrahedra(); ++t)
@@ -259,6 +264,7 @@ private:
   std::unique_ptr<DynamicTetrahedralization> Mesh;
   std::unique_ptr<BoundarySplits> Splits;
   std::unique_ptr<BoundaryShape> Shape;
+  NegativeCouplings Couplings;
 };
 
 /** Three boxes side by side and on top of each other: many points on one sphere. */

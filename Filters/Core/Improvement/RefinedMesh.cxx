@@ -3,7 +3,6 @@
 
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
-#include "Core/Improvement/NegativeCouplings.h"
 
 #include <algorithm>
 #include <limits>
@@ -202,7 +201,8 @@ bool RefinedMesh::RequestEncroached(const Vec3& position, bool isSizeKept)
 
 std::size_t RefinedMesh::RequestNegativeCouplings()
 {
-  const std::vector<EdgeIds> edges = FindNegativeCouplings(this->GetMesh(), this->Boundary.Surface);
+  const std::vector<EdgeIds>& edges =
+    this->Couplings.Update(this->Mesh, this->Boundary.Surface, this->Shape->PointTriangles);
   for (const EdgeIds& edge : edges)
   {
     this->Requests.AddEdgeOrTriangle(edge, this->Shape->PointTriangles);
@@ -292,6 +292,7 @@ void RefinedMesh::FollowBoundary(
     change.Parents.push_back(sourceTriangles[surface.SourceCells[t]]);
   }
   this->Shape->Follow(change);
+  this->Couplings.NoteTriangles(surface, change.Triangles);
   this->Facts.Forget(this->FirstPreliminary);
   this->Flatter.Forget(this->FirstPreliminary);
   this->Faulty.Forget(this->FirstPreliminary);

@@ -27,6 +27,7 @@
 #include "Core/Improvement/BoundaryRequests.h"
 #include "Core/Improvement/BoundaryShape.h"
 #include "Core/Improvement/BoundarySplits.h"
+#include "Core/Improvement/NegativeCouplings.h"
 #include "Core/Improvement/SliverMemory.h"
 #include "Core/Improvement/TetrahedronFacts.h"
 #include "Core/Improvement/TetrahedronWatch.h"
@@ -225,6 +226,7 @@ private:
   std::vector<InteriorPoint> Points;
   RefinedMeshReport Report;
   BoundaryRequests Requests;
+  NegativeCouplings Couplings;
   mutable TetrahedronFacts Facts;
   /**
    * Facts about tetrahedra with this stamp or a later one may be about surface points that have
