@@ -131,7 +131,17 @@ vtkConformingDelaunayMesher::vtkConformingDelaunayMesher()
 void vtkConformingDelaunayMesher::AddLayers(
   double region, double neighbor, double numberOfLayers, double firstDistance, double growthRatio)
 {
-  this->Layers.push_back({ region, neighbor, numberOfLayers, firstDistance, growthRatio });
+  this->Layers.push_back(
+    vtkCoreBridge::MakeLayerRow(region, neighbor, { numberOfLayers, firstDistance, growthRatio }));
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkConformingDelaunayMesher::AddLayers(const char* region, const char* neighbor,
+  double numberOfLayers, double firstDistance, double growthRatio)
+{
+  this->Layers.push_back({ { region ? region : "", neighbor ? neighbor : "" },
+    { numberOfLayers, firstDistance, growthRatio } });
   this->Modified();
 }
 
@@ -139,6 +149,26 @@ void vtkConformingDelaunayMesher::AddLayers(
 void vtkConformingDelaunayMesher::RemoveAllLayers()
 {
   this->Layers.clear();
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkConformingDelaunayMesher::AddRegionSize(int region, double length)
+{
+  this->AddRegionSize(std::to_string(region).c_str(), length);
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkConformingDelaunayMesher::AddRegionSize(const char* region, double length)
+{
+  this->RegionSizes.emplace_back(region ? region : "", length);
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkConformingDelaunayMesher::RemoveAllRegionSizes()
+{
+  this->RegionSizes.clear();
   this->Modified();
 }
 
@@ -329,7 +359,8 @@ cdm::Status vtkConformingDelaunayMesher::MakeChoices(cdm::MeshOptionChoices& cho
 }
 
 //--------------------------------------------------------------------------------------------------
-cdm::Status vtkConformingDelaunayMesher::MakeOptions(cdm::ConformingMesherOptions& options) const
+cdm::Status vtkConformingDelaunayMesher::MakeOptions(
+  vtkPolyData* input, cdm::ConformingMesherOptions& options) const
 {
   options.MeshFor = static_cast<cdm::MeshPurpose>(this->MeshFor);
   options.Boundary.MergeTolerance = this->MergeTolerance;
@@ -344,6 +375,7 @@ cdm::Status vtkConformingDelaunayMesher::MakeOptions(cdm::ConformingMesherOption
   options.GeneratesMeshPoints = this->GenerateMeshPoints;
   options.MeshPoints.Placement = static_cast<cdm::PointPlacement>(this->Placement);
   options.MeshPoints.Spacing = { this->Spacing[0], this->Spacing[1], this->Spacing[2] };
+  options.RegionSizes.Growth = this->Growth;
   options.CloseOpenBoundary = this->CloseOpenBoundary;
   options.MaximumVolume = this->MaximumVolume;
   return this->MakeChoices(options.Choices)
@@ -353,7 +385,11 @@ cdm::Status vtkConformingDelaunayMesher::MakeOptions(cdm::ConformingMesherOption
         return ToChoice(
           "MaximumDeviation", this->MaximumDeviation, VTK_DOUBLE_MAX, options.MaximumDeviation);
       })
-    .Then([&] { return vtkCoreBridge::ToLayers(this->Layers, options.MeshPoints.Layers); });
+    .Then([&] { return vtkCoreBridge::ToLayers(input, this->Layers, options.MeshPoints.Layers); })
+    .Then(
+      [&] {
+        return vtkCoreBridge::ToRegionSizes(input, this->RegionSizes, options.RegionSizes.Sizes);
+      });
 }
 
 //--------------------------------------------------------------------------------------------------
@@ -372,7 +408,7 @@ cdm::Status vtkConformingDelaunayMesher::MeshPolygons(const std::string& prefix,
   const cdm::Status converted = cdm::RunGuarded(
     [&]
     {
-      return this->MakeOptions(options)
+      return this->MakeOptions(input, options)
         .Then([&] { return vtkCoreBridge::ToPolygonSoup(input, soup, cells); })
         .Then([&] { return vtkCoreBridge::ToFacets(input, cells, engineInput.Facets); })
         .Then(
@@ -447,14 +483,20 @@ void vtkConformingDelaunayMesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumArea: " << this->MaximumArea << "\n";
   os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
   os << indent << "MaximumDeviation: " << this->MaximumDeviation << "\n";
+  for (const auto& [region, length] : this->RegionSizes)
+  {
+    os << indent << "RegionSizes: region " << region << ", length " << length << "\n";
+  }
+  os << indent << "Growth: " << this->Growth << "\n";
   os << indent << "GenerateMeshPoints: " << this->GenerateMeshPoints << "\n";
   os << indent << "Placement: " << this->Placement << "\n";
   os << indent << "Spacing: " << this->Spacing[0] << ", " << this->Spacing[1] << ", "
      << this->Spacing[2] << "\n";
-  for (const std::array<double, 5>& row : this->Layers)
+  for (const auto& [regions, numbers] : this->Layers)
   {
-    os << indent << "Layers: region " << row[0] << ", neighbor " << row[1] << ", number " << row[2]
-       << ", first distance " << row[3] << ", growth ratio " << row[4] << "\n";
+    os << indent << "Layers: region " << regions[0] << ", neighbor " << regions[1] << ", number "
+       << numbers[0] << ", first distance " << numbers[1] << ", growth ratio " << numbers[2]
+       << "\n";
   }
   os << indent << "MeshPointClearanceRatio: " << this->MeshPointClearanceRatio << "\n";
   os << indent << "CloseOpenBoundary: " << this->CloseOpenBoundary << "\n";

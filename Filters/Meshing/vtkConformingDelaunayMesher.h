@@ -22,10 +22,9 @@
  * certificate has all of it.
  *
  * Inputs: port 0: vtkPolyData, any list of polygons, optionally with the two-component cell array
- * BoundaryLabels (region ids on the front and back side, -1 outside). Port 1, optional:
- * vtkPointSet, mesh points, beside those that are generated. Port 2, optional: vtkDataSet with the
- * point array
- * Sizing: target edge length in model units.
+ * BoundaryLabels (region ids on the front and back side, -1 outside) and the field array RegionNames.
+ * Port 1, optional: vtkPointSet, mesh points, beside those that are generated. Port 2, optional:
+ * vtkDataSet with the point array Sizing: target edge length in model units.
  *
  * Blocks: port 0 may be a vtkPartitionedDataSetCollection or a vtkMultiBlockDataSet of vtkPolyData.
  * Each block is meshed by itself; all get the same mesh points and sizing. On several processes
@@ -66,6 +65,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 class vtkDataSet;
@@ -217,6 +217,26 @@ public:
 
   ///@{
   /**
+   * A region, by its id or by its name in the field array RegionNames, gets edges no longer than
+   * this, beside MaximumEdgeLength and the sizing. Model units, above 0; default: none.
+   */
+  void AddRegionSize(int region, double length);
+  void AddRegionSize(const char* region, double length);
+  void RemoveAllRegionSizes();
+  ///@}
+
+  ///@{
+  /**
+   * How much longer edges may be for each unit of distance from a region with a size of its own: at
+   * a distance d its size + Growth * d (Core/Sizing/RegionSizes.h). Default 0.3; above 0; well
+   * shaped tetrahedra need about 0.5 or less.
+   */
+  vtkSetMacro(Growth, double);
+  vtkGetMacro(Growth, double);
+  ///@}
+
+  ///@{
+  /**
    * How far the surface may be from that of the input, and the input's from it, where it is finer
    * than edges are to be: it is then made coarser and evened out first, with structural edges
    * (which bend by more than 40 degrees, or lie between different labels, facets or values of
@@ -257,9 +277,14 @@ public:
   ///@}
 
   ///@{
-  /** Layers of them along interfaces, as in vtkMeshPointGenerator. Default none. */
+  /**
+   * Layers of them along interfaces, as in vtkMeshPointGenerator: regions are ids, or texts with
+   * their names or ids. Default none.
+   */
   void AddLayers(double region, double neighbor, double numberOfLayers, double firstDistance,
     double growthRatio);
+  void AddLayers(const char* region, const char* neighbor, double numberOfLayers,
+    double firstDistance, double growthRatio);
   void RemoveAllLayers();
   ///@}
 
@@ -356,11 +381,13 @@ protected:
   double MinimumAngle = 0.0;
   double MaximumArea = 0.0;
   double MaximumEdgeLength = AUTOMATIC;
+  std::vector<std::pair<std::string, double>> RegionSizes;
+  double Growth = 0.3;
   double MaximumDeviation = AUTOMATIC;
   bool GenerateMeshPoints = false;
   int Placement = vtkMeshPointGenerator::OCTREE;
   double Spacing[3] = { 0.0, 0.0, 0.0 };
-  std::vector<std::array<double, 5>> Layers;
+  std::vector<std::pair<std::array<std::string, 2>, std::array<double, 3>>> Layers;
   double MeshPointClearanceRatio = 1e-3;
   bool CloseOpenBoundary = false;
   int RemoveSlivers = AUTOMATIC;
@@ -373,7 +400,7 @@ private:
   int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   int MeshBlocks(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   cdm::Status MakeChoices(cdm::MeshOptionChoices& choices) const;
-  cdm::Status MakeOptions(cdm::ConformingMesherOptions& options) const;
+  cdm::Status MakeOptions(vtkPolyData* input, cdm::ConformingMesherOptions& options) const;
   /** All stages; prefix comes before the text of warnings. */
   cdm::Status MeshPolygons(const std::string& prefix, vtkPolyData* input, vtkPointSet* givenPoints,
     vtkDataSet* sizing, vtkUnstructuredGrid* mesh, vtkPolyData* boundary, vtkPolyData* problems);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkGmshMeshWriter.h"
 
+#include "CoreBridge/ArrayNames.h"
 #include "CoreBridge/Execution.h"
 #include "CoreBridge/Reports.h"
 #include "Gmsh/DevsimScript.h"
@@ -15,12 +16,15 @@
 #include <vtkInformation.h>
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
+#include <vtkPointSet.h>
+#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <vtksys/FStream.hxx>
 #include <vtksys/SystemTools.hxx>
 
+#include <algorithm>
 #include <cmath>
 #include <locale>
 
@@ -54,6 +58,53 @@ cdm::Status FindArrays(vtkFieldData* data, const std::vector<std::string>& names
     arrays.push_back(array);
   }
   return {};
+}
+
+/** Filters that hand a mesh on also hand on its points, or a copy. */
+bool HasSamePoints(vtkUnstructuredGrid* grid, vtkPointSet* other)
+{
+  vtkPoints* const points = grid->GetPoints();
+  vtkPoints* const others = other ? other->GetPoints() : nullptr;
+  const auto areEqual = [&](vtkIdType i)
+  {
+    double a[3];
+    double b[3];
+    points->GetPoint(i, a);
+    others->GetPoint(i, b);
+    return std::equal(a, a + 3, b);
+  };
+  bool isSame = points && others && points->GetNumberOfPoints() == others->GetNumberOfPoints();
+  for (vtkIdType i = 0; isSame && points != others && i < points->GetNumberOfPoints(); ++i)
+  {
+    isSame = areEqual(i);
+  }
+  return isSame;
+}
+
+/**
+ * The contacts of a mesh that come out of the filter that made it, beside it; null if there are
+ * none. Filters in between must have handed the mesh on as it was.
+ */
+vtkPolyData* FindContacts(vtkAlgorithm* writer, vtkUnstructuredGrid* grid)
+{
+  vtkAlgorithm* algorithm = writer;
+  while (algorithm->GetNumberOfInputPorts() > 0 && algorithm->GetNumberOfInputConnections(0) == 1)
+  {
+    algorithm = algorithm->GetInputAlgorithm(0, 0);
+    if (!HasSamePoints(grid, vtkPointSet::SafeDownCast(algorithm->GetOutputDataObject(0))))
+    {
+      return nullptr;
+    }
+    for (int port = 1; port < algorithm->GetNumberOfOutputPorts(); ++port)
+    {
+      auto* boundary = vtkPolyData::SafeDownCast(algorithm->GetOutputDataObject(port));
+      if (boundary && boundary->GetCellData()->HasArray(vtkCoreBridge::ContactIdName))
+      {
+        return boundary;
+      }
+    }
+  }
+  return nullptr;
 }
 } // namespace
 
@@ -91,7 +142,9 @@ void vtkGmshMeshWriter::WriteData()
     return;
   }
   auto grid = vtkUnstructuredGrid::SafeDownCast(this->GetInput());
-  auto contacts = vtkPolyData::SafeDownCast(this->GetExecutive()->GetInputData(1, 0));
+  vtkPolyData* const contacts = this->GetNumberOfInputConnections(1) > 0
+    ? vtkPolyData::SafeDownCast(this->GetExecutive()->GetInputData(1, 0))
+    : FindContacts(this, grid);
   vtkGmsh::GroupedMesh mesh;
   vtkGmsh::GmshFileOptions options{ this->FileFormat == VERSION_4_1, this->Scale, {}, {} };
   cdm::ControlVolumes volumes;

@@ -34,6 +34,9 @@
  *    boundary or interfaces (the mesher's second output has them), with the cell array ContactId
  *    (whole numbers; cells with a negative one are passed over). Its field array ContactNames
  *    (texts, by contact id) is optional: without it contacts are called contact_0, contact_1, ...
+ *    Without this input the contacts are those that the filter upstream which made the mesh has in
+ *    another output, as vtkConformingDelaunayMesher does, if all filters in between hand on its
+ *    points.
  *
  * Guarantees: deterministic; what the file says is what DEVSIM's reader asks for (format 2.2, no
  * data sections): positive numbers, points, triangles and tetrahedra only, a physical group for each

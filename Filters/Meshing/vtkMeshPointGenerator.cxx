@@ -59,7 +59,17 @@ void vtkMeshPointGenerator::RemoveAllTicks(int axis)
 void vtkMeshPointGenerator::AddLayers(
   double region, double neighbor, double numberOfLayers, double firstDistance, double growthRatio)
 {
-  this->Layers.push_back({ region, neighbor, numberOfLayers, firstDistance, growthRatio });
+  this->Layers.push_back(
+    vtkCoreBridge::MakeLayerRow(region, neighbor, { numberOfLayers, firstDistance, growthRatio }));
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkMeshPointGenerator::AddLayers(const char* region, const char* neighbor,
+  double numberOfLayers, double firstDistance, double growthRatio)
+{
+  this->Layers.push_back({ { region ? region : "", neighbor ? neighbor : "" },
+    { numberOfLayers, firstDistance, growthRatio } });
   this->Modified();
 }
 
@@ -117,7 +127,7 @@ int vtkMeshPointGenerator::RequestData(
       }
       if (step.IsOk())
       {
-        step = vtkCoreBridge::ToLayers(this->Layers, options.Layers);
+        step = vtkCoreBridge::ToLayers(input, this->Layers, options.Layers);
       }
       if (step.IsOk())
       {
@@ -160,10 +170,11 @@ void vtkMeshPointGenerator::PrintSelf(ostream& os, vtkIndent indent)
   }
   os << indent << "SmoothingIterations: " << this->SmoothingIterations << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
-  for (const std::array<double, 5>& row : this->Layers)
+  for (const auto& [regions, numbers] : this->Layers)
   {
-    os << indent << "Layers: region " << row[0] << ", neighbor " << row[1] << ", number " << row[2]
-       << ", first distance " << row[3] << ", growth ratio " << row[4] << "\n";
+    os << indent << "Layers: region " << regions[0] << ", neighbor " << regions[1] << ", number "
+       << numbers[0] << ", first distance " << numbers[1] << ", growth ratio " << numbers[2]
+       << "\n";
   }
   os << indent << "BoundaryClearance: " << this->BoundaryClearance << "\n";
   os << indent << "MaximumNumberOfPoints: " << this->MaximumNumberOfPoints << "\n";

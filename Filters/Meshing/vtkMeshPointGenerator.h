@@ -57,6 +57,8 @@
 #include <vtkPolyDataAlgorithm.h>
 
 #include <array>
+#include <string>
+#include <utility>
 #include <vector>
 
 class CDMMESHING_EXPORT vtkMeshPointGenerator : public vtkPolyDataAlgorithm
@@ -154,11 +156,14 @@ public:
   /**
    * Layers of points in a region along its interface with a neighbor (ids as in BoundaryLabels; -1
    * is the outside): so many of them, the first one at a distance (model units), each further gap
-   * growing by a ratio. Whole numbers are passed as double, as ParaView does with rows of a table.
+   * growing by a ratio. Whole numbers are passed as double, as ParaView does with rows of a table;
+   * or as texts, which may also be names from the field array RegionNames.
    * Default: none; ranges: region and neighbor >= -1, 1 to 1000 layers, distance and ratio > 0.
    */
   void AddLayers(double region, double neighbor, double numberOfLayers, double firstDistance,
     double growthRatio);
+  void AddLayers(const char* region, const char* neighbor, double numberOfLayers,
+    double firstDistance, double growthRatio);
   void RemoveAllLayers();
   ///@}
 
@@ -200,7 +205,7 @@ protected:
   std::array<std::vector<double>, 3> Ticks;
   int SmoothingIterations = 10;
   int Seed = 1;
-  std::vector<std::array<double, 5>> Layers;
+  std::vector<std::pair<std::array<std::string, 2>, std::array<double, 3>>> Layers;
   double BoundaryClearance = 0.5;
   int MaximumNumberOfPoints = 10000000;
 

@@ -17,7 +17,7 @@ from vtkmodules.numpy_interface import dataset_adapter
 from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
 
 COLOURS = [0.36, 0.54, 0.75,  0.93, 0.80, 0.27,  0.80, 0.33, 0.28,
-           0.55, 0.74, 0.47,  0.55, 0.74, 0.47]
+           0.55, 0.74, 0.47,  0.66, 0.53, 0.78]
 
 
 def MakeMesh():

@@ -8,12 +8,16 @@ properties of the clip that the macro makes; there, Show Plane shows it.
 """
 from urllib.parse import unquote
 
+from paraview.modules.vtkRemotingViews import vtkPVProminentValuesInformation
 from paraview.simple import *
+from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 # By region, and from the start again where there are more regions.
 COLORS = ((0.49, 0.65, 0.84), (0.96, 0.74, 0.24), (0.82, 0.34, 0.32), (0.55, 0.75, 0.48),
           (0.66, 0.53, 0.78), (0.95, 0.60, 0.40), (0.42, 0.73, 0.74), (0.93, 0.66, 0.74),
           (0.71, 0.69, 0.45), (0.62, 0.62, 0.66), (0.31, 0.46, 0.66), (0.35, 0.66, 0.58))
+# A legend of more regions does not fit on the screen.
+MAXIMUM_NUMBER_OF_REGIONS = 30
 
 
 def GetTexts(array):
@@ -25,8 +29,24 @@ def GetTexts(array):
     return [unquote(texts[index]) for index in sorted(texts)]
 
 
-def GetRegionNames(source, count):
-    """From the field array RegionNames, or the numbers."""
+def GetRegions(source):
+    """The ids that there are, ascending."""
+    # Every value, however rare, and however many there are.
+    values = vtkPVProminentValuesInformation()
+    values.SetPortNumber(source.Port)
+    values.SetFieldAssociation(vtkDataObject.GetAssociationTypeAsString(vtkDataObject.CELL))
+    values.SetFieldName("RegionId")
+    values.SetNumberOfComponents(1)
+    values.SetFraction(0.0)
+    values.SetUncertainty(0.0)
+    values.SetForce(True)
+    source.SMProxy.GatherInformation(values)
+    found = values.GetProminentComponentValues(0)
+    return sorted(found.GetVariantValue(i).ToInt() for i in range(found.GetNumberOfValues()))
+
+
+def GetRegionNames(source):
+    """By region: from the field array RegionNames, or the number."""
     # No cell passes, but the field data do.
     nothing = Threshold(Input=source, Scalars=["CELLS", "RegionId"],
                         ThresholdMethod="Below Lower Threshold", LowerThreshold=-10)
@@ -39,23 +59,27 @@ def GetRegionNames(source, count):
         texts = [names.GetValue(i) for i in range(names.GetNumberOfValues())]
     else:
         texts = GetTexts(names)
-    return [texts[i] if i < len(texts) else "Region %d" % i for i in range(count)]
+    return {region: texts[region] if 0 <= region < len(texts) and texts[region]
+            else "Region %d" % region for region in GetRegions(source)}
 
 
 def ColorByRegion(display, names):
-    """One color and one entry of the legend for each region."""
+    """One color and one entry of the legend for each region; by number if they are many."""
     ColorBy(display, ("CELLS", "RegionId"))
     colors = GetColorTransferFunction("RegionId")
+    if len(names) > MAXIMUM_NUMBER_OF_REGIONS:
+        colors.InterpretValuesAsCategories = 0
+        display.RescaleTransferFunctionToDataRange(False, True)
+        return
     colors.InterpretValuesAsCategories = 1
-    colors.Annotations = [text for i, name in enumerate(names) for text in (str(i), name)]
+    colors.Annotations = [text for region in names for text in (str(region), names[region])]
     colors.IndexedColors = [part for i in range(len(names)) for part in COLORS[i % len(COLORS)]]
 
 
 def CutRegions(source, view):
     """A crinkled clip of the source, shown instead of it, colored by region; returns the clip."""
     source.UpdatePipeline()
-    regions = source.GetCellDataInformation().GetArray("RegionId")
-    if regions is None:
+    if source.GetCellDataInformation().GetArray("RegionId") is None:
         raise RuntimeError("Select tetrahedra with the cell array RegionId: those of the "
                            "Conforming Delaunay Mesher or of another filter of the plugin.")
     bounds = source.GetDataInformation().GetBounds()
@@ -72,7 +96,7 @@ def CutRegions(source, view):
     HideAll(view)
     display = Show(clip, view)
     display.Representation = "Surface With Edges"
-    ColorByRegion(display, GetRegionNames(source, int(regions.GetRange()[1]) + 1))
+    ColorByRegion(display, GetRegionNames(source))
     display.SetScalarBarVisibility(view, True)
 
     # From the side that is gone, a little from above and from the left.

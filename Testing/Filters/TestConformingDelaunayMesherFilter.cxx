@@ -6,10 +6,12 @@
 #include <vtkConformingDelaunayMesher.h>
 #include <vtkDataSetTriangleFilter.h>
 #include <vtkDelaunayMeshCriteria.h>
+#include <vtkFieldData.h>
 #include <vtkImageData.h>
 #include <vtkMath.h>
 #include <vtkProbeFilter.h>
 #include <vtkSphereSource.h>
+#include <vtkStringArray.h>
 #include <vtkSuperquadricSource.h>
 #include <vtkTriangleFilter.h>
 
@@ -609,6 +611,98 @@ TEST(ConformingDelaunayMesherFilter, SteinerPointsRemoveSliversIfAsked)
     EXPECT_TRUE(std::none_of(recorder->Texts.begin(), recorder->Texts.end(),
       [](const std::string& text) { return Contains(text, "Sliver removal"); }));
   }
+}
+
+namespace
+{
+double GetLongestEdge(vtkUnstructuredGrid* mesh, int region)
+{
+  vtkDataArray* regions = mesh->GetCellData()->GetArray("RegionId");
+  double longest = 0.0;
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+  {
+    if (regions->GetComponent(cell, 0) == region)
+    {
+      vtkIdList* ids = mesh->GetCell(cell)->GetPointIds();
+      for (int i = 0; i < 4; ++i)
+      {
+        for (int j = 0; j < i; ++j)
+        {
+          double a[3];
+          double b[3];
+          mesh->GetPoint(ids->GetId(i), a);
+          mesh->GetPoint(ids->GetId(j), b);
+          longest = std::max(longest, std::sqrt(vtkMath::Distance2BetweenPoints(a, b)));
+        }
+      }
+    }
+  }
+  return longest;
+}
+
+/** Region 3 is called Oxide. */
+vtkSmartPointer<vtkPolyData> MakeNamedBoxes()
+{
+  auto boxes = MakeTwoBoxes(true);
+  vtkNew<vtkStringArray> names;
+  names->SetName("RegionNames");
+  names->SetNumberOfValues(4);
+  names->SetValue(3, "Oxide");
+  boxes->GetFieldData()->AddArray(names);
+  return boxes;
+}
+} // namespace
+
+TEST(ConformingDelaunayMesherFilter, KeepsSizesOfRegions)
+{
+  vtkNew<vtkConformingDelaunayMesher> filter;
+  filter->SetInputData(MakeNamedBoxes());
+  filter->SetMaximumEdgeLength(0.5);
+  filter->AddRegionSize("Oxide", 0.2);
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->Update();
+  EXPECT_EQ(recorder->Errors + recorder->Warnings, "");
+  EXPECT_LE(GetLongestEdge(filter->GetOutput(), 3), 0.2 * (1.0 + 1e-12));
+  EXPECT_GT(GetLongestEdge(filter->GetOutput(), 7), 0.25);
+  vtkNew<vtkUnstructuredGrid> named;
+  named->DeepCopy(filter->GetOutput());
+
+  filter->RemoveAllRegionSizes();
+  filter->AddRegionSize(3, 0.2);
+  filter->Update();
+  ExpectSameCells(filter->GetOutput(), named);
+
+  // Edges that may grow faster fill less of the other region.
+  filter->SetGrowth(2.0);
+  filter->Update();
+  EXPECT_LT(filter->GetOutput()->GetNumberOfCells(), named->GetNumberOfCells());
+  EXPECT_LE(GetLongestEdge(filter->GetOutput(), 3), 0.2 * (1.0 + 1e-12));
+
+  filter->SetGrowth(0.0);
+  ExpectFailure(filter, { "Growth" }, 0);
+  filter->SetGrowth(1.0);
+  filter->AddRegionSize("Gas", 0.2);
+  ExpectFailure(filter, { "RegionSizes", "Gas", "Oxide" }, 0);
+}
+
+TEST(ConformingDelaunayMesherFilter, NamesRegionsOfLayers)
+{
+  vtkNew<vtkConformingDelaunayMesher> filter;
+  filter->SetMeshForToFewestPoints();
+  filter->SetInputData(MakeNamedBoxes());
+  filter->SetMaximumEdgeLength(0.25);
+  filter->GenerateMeshPointsOn();
+  filter->AddLayers(3, 7, 2, 0.01, 2.0);
+  filter->Update();
+  vtkNew<vtkUnstructuredGrid> numbered;
+  numbered->DeepCopy(filter->GetOutput());
+  filter->RemoveAllLayers();
+  filter->AddLayers("Oxide", "7", 2, 0.01, 2.0);
+  filter->Update();
+  ExpectSameCells(filter->GetOutput(), numbered);
+  filter->AddLayers("Gas", "7", 2, 0.01, 2.0);
+  ExpectFailure(filter, { "Layers 1", "Gas", "Oxide" }, 0);
 }
 
 TEST(ConformingDelaunayMesherFilter, GeneratesMeshPoints)

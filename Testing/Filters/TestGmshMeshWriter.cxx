@@ -2,12 +2,15 @@
 #include "FilterTesting.h"
 
 #include <vtkConformingDelaunayMesher.h>
+#include <vtkDelaunayMeshCriteria.h>
 #include <vtkGmshMeshWriter.h>
 #include <vtkTechnologyStructureSource.h>
 
 #include <vtkErrorCode.h>
 #include <vtkFieldData.h>
 #include <vtkStringArray.h>
+#include <vtkTransform.h>
+#include <vtkTransformFilter.h>
 #include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
@@ -211,8 +214,10 @@ TEST(GmshMeshWriter, DeviceWithNames)
   mesher->SetMeshForToFewestPoints();
   mesher->SetInputData(named);
   mesher->SetMaximumEdgeLength(0.2);
+  mesher->Update();
   vtkNew<vtkGmshMeshWriter> writer;
-  writer->SetInputConnection(mesher->GetOutputPort());
+  // Without the pipeline there are no contacts.
+  writer->SetInputData(mesher->GetOutput());
   writer->SetFileName(FileName.c_str());
   ASSERT_EQ(1, writer->Write());
 
@@ -326,7 +331,7 @@ TEST(GmshMeshWriter, ContactsKeepTheirNamesAndChangeNoOthers)
   mesher->SetMaximumEdgeLength(0.5);
   const auto boundary = NameContacts(mesher, { "region_3_region_7", "source-contact" });
   vtkNew<vtkGmshMeshWriter> writer;
-  writer->SetInputConnection(mesher->GetOutputPort());
+  writer->SetInputData(mesher->GetOutput());
   writer->SetFileName(FileName.c_str());
   ASSERT_EQ(1, writer->Write());
   const GmshFile before = Read(FileName);
@@ -356,6 +361,45 @@ TEST(GmshMeshWriter, ContactsKeepTheirNamesAndChangeNoOthers)
   }
   EXPECT_EQ(1, missing);
   EXPECT_EQ(before.Names.size() + 1, after.Names.size());
+}
+
+TEST(GmshMeshWriter, ContactsOfTheMesherAreFound)
+{
+  vtkNew<vtkTechnologyStructureSource> device;
+  device->SetStructureToMosTransistor();
+  vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetMeshForToFewestPoints();
+  mesher->SetInputConnection(device->GetOutputPort());
+  mesher->Update();
+  vtkNew<vtkGmshMeshWriter> writer;
+  writer->SetFileName(FileName.c_str());
+  writer->SetInputConnection(0, mesher->GetOutputPort(0));
+  writer->SetInputConnection(1, mesher->GetOutputPort(1));
+  ASSERT_EQ(1, writer->Write());
+  const GmshFile given = Read(FileName);
+  EXPECT_GT(given.GetNumber("SourceContact"), 0);
+  writer->RemoveAllInputConnections(1);
+  ASSERT_EQ(1, writer->Write());
+  EXPECT_EQ(given.Names, Read(FileName).Names);
+
+  // Also behind a filter that hands the mesh on, but not behind one that changes it.
+  vtkNew<vtkDelaunayMeshCriteria> criteria;
+  criteria->SetInputConnection(mesher->GetOutputPort());
+  writer->SetInputConnection(criteria->GetOutputPort());
+  ASSERT_EQ(1, writer->Write());
+  EXPECT_EQ(given.Names, Read(FileName).Names);
+  vtkNew<vtkTransform> transform;
+  transform->Scale(2.0, 2.0, 2.0);
+  vtkNew<vtkTransformFilter> scaled;
+  scaled->SetTransform(transform);
+  scaled->SetInputConnection(mesher->GetOutputPort());
+  writer->SetInputConnection(scaled->GetOutputPort());
+  ASSERT_EQ(1, writer->Write());
+  EXPECT_EQ(Read(FileName).Tetrahedra.size(), given.Tetrahedra.size());
+  for (const auto& [number, name] : Read(FileName).Names)
+  {
+    EXPECT_FALSE(Contains(name, "Contact")) << name;
+  }
 }
 
 TEST(GmshMeshWriter, ContactsOfSeveralRegions)

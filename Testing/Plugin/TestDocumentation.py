@@ -8,8 +8,10 @@ shows. The python blocks of a tutorial are one script, which writes pictures Tut
 program of the C++ tutorial is that of Testing/Package.
 """
 
+import contextlib
 import glob
 import importlib.util
+import io
 import os
 import re
 import shutil
@@ -115,7 +117,7 @@ def ShowData(source, view, color):
         display.DiffuseColor = display.AmbientColor = [0.49, 0.65, 0.84]
         return
     if color == ("CELLS", "RegionId"):
-        region_cut.ColorByRegion(display, [str(i) for i in range(int(array.GetRange()[1]) + 1)])
+        region_cut.ColorByRegion(display, {i: str(i) for i in range(int(array.GetRange()[1]) + 1)})
     else:
         ColorBy(display, color)
         display.RescaleTransferFunctionToDataRange(False, True)
@@ -176,10 +178,23 @@ def DrawPage(name, text):
     WritePixels(os.path.join(OUTPUT, "Page%s.png" % name), picture)
 
 
+def CheckNumbers(name, text, printed):
+    """Numbers of tetrahedra that a tutorial tells are those that its script prints."""
+    count = r"([0-9][0-9,]*) tetrahedra"
+    told = re.findall(count, re.sub(r"^```.*?^```", "", text, flags=re.MULTILINE | re.DOTALL))
+    measured = re.findall(count, printed)
+    return ["%s tells %s tetrahedra, measured are %s" % (name, number, measured)
+            for number in told if number.replace(",", "") not in measured]
+
+
 def RunTutorial(name):
     """Run it in the current folder; its pictures go to the others."""
     text = Read(os.path.join(DOCUMENTATION, name))
-    exec(compile(GetScript(text), name, "exec"), {"__name__": "tutorial"})
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(compile(GetScript(text), name, "exec"), {"__name__": "tutorial"})
+    print(printed.getvalue())
+    faults.extend(CheckNumbers(name, text, printed.getvalue()))
     pictures = re.findall(r'SaveScreenshot\("(\w+\.png)"', text)
     for picture in pictures:
         shutil.move(picture, os.path.join(OUTPUT, picture))

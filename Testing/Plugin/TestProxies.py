@@ -93,6 +93,14 @@ with tempfile.TemporaryDirectory() as folder:
     assert text.startswith("$MeshFormat\n2.2 0 8\n") and text.endswith("$EndElements\n")
     assert '"region_0_zmax"' in text
 
+# Contacts come along without being asked for.
+with tempfile.TemporaryDirectory() as folder:
+    path = os.path.join(folder, "device.msh")
+    device = TechnologyStructureSource(Structure="MOS transistor")
+    SaveData(path, proxy=ConformingDelaunayMesher(Input=device, MeshFor="Fewest points"))
+    with open(path, encoding="ascii") as file:
+        assert '"SourceContact"' in file.read()
+
 mesher = ConformingDelaunayMesher(Input=cube, MeshFor="Fewest points", MaximumEdgeLength=1.0)
 mesher.UpdatePipeline()
 assert abs(Volume(mesher) - 6.0) < 6e-12, "volume %.17g" % Volume(mesher)
@@ -141,6 +149,16 @@ mesher.Sizing = sizing
 mesher.UpdatePipeline()
 assert abs(Volume(mesher) - 6.0) < 6e-12
 assert Count(mesher) > without, "the mesh points are used"
+
+# Sizes of regions, by name or id, in a table.
+device = TechnologyStructureSource(Structure="Via plug")
+counts = []
+for sizes in ([], ["Plug", 0.1], ["2", "0.1"]):
+    sized = ConformingDelaunayMesher(Input=device, MaximumEdgeLength=0.3, Growth=1,
+                                     RegionSizes=[str(value) for value in sizes])
+    sized.UpdatePipeline()
+    counts.append(Count(sized))
+assert 0 < counts[0] < counts[1] == counts[2], counts
 
 # Labels of points, chosen by name: two halves, in 5 x 5 x 5 voxels.
 halves = Calculator(Input=wavelet, ResultArrayName="Material", Function="if(coordsX>0.5,2,1)")

@@ -42,7 +42,7 @@ OPTIONS = {
     "Distributed": {},
     "Interfaces": {"MaximumDeviation": 0.5, "Labels": ["POINTS", "Material"]},
     "Layout": {"Steps": [-1.0, 0.0, 1.0, 0.0, 0.0, 0.2, 0.8, 1.0], "Margin": 0.1},
-    "Mesher": {"MaximumEdgeLength": 0.2}}
+    "Mesher": {"MaximumEdgeLength": 0.2, "RegionSizes": ["0", "0.1"]}}
 
 
 def Make(name, function, **inputs):
@@ -158,10 +158,49 @@ def CheckCertificate():
     view = CreateRenderView(ViewSize=[600, 450])
     mesh = ConformingDelaunayMesher(Input=Box())
     sheared = Calculator(Input=mesh, CoordinateResults=1, Function="coords + 0.9*coordsZ*iHat")
-    certify = runpy.run_path(os.path.join(MACROS, "certificate.py"))["Certify"]
+    macro = runpy.run_path(os.path.join(MACROS, "certificate.py"))
+    notes = []
     for tetrahedra, verdict in ((mesh, "CLEAN FOR FINITE VOLUMES\n"), (sheared, "NOT DELAUNAY\n")):
-        _, text = certify(tetrahedra, view)
-        assert text.Text.startswith(verdict), text.Text
+        for _ in range(2):
+            criteria, note = macro["Certify"](tetrahedra, view)
+            text = macro["GetText"](note)
+            assert text.startswith(verdict), text
+            assert not [line for line in text.splitlines() if len(line) > 100], text
+        # It replaces the text, and takes the criteria that are there.
+        assert [name for name, _ in GetSources()].count("Certificate") == 1
+        again, _ = macro["Certify"](criteria, view)
+        assert again.SMProxy == criteria.SMProxy
+    kinds = [proxy.SMProxy.GetXMLName() for proxy in GetSources().values()]
+    assert kinds.count("DelaunayMeshCriteria") == 2, kinds
+    # The text follows the mesh.
+    note = FindSource("Certificate")
+    sheared.Function = "coords"
+    Render(view)
+    assert macro["GetText"](note).startswith("CLEAN FOR FINITE VOLUMES\n")
+    Delete(view)
+
+
+def CheckRegionColors():
+    """Ids that are not 0 to n get a legend of those that are there; very many get none."""
+    Start()
+    view = CreateRenderView(ViewSize=[600, 450])
+    cut = runpy.run_path(os.path.join(MACROS, "region_cut.py"))["CutRegions"]
+    mesh = ConformingDelaunayMesher(Input=Box(), MeshFor="Fewest points", MaximumEdgeLength=0.25)
+    for count, step in ((15, 7144), (40, 1)):
+        renamed = ProgrammableFilter(Input=mesh, Script=(
+            "import numpy\n"
+            "count = inputs[0].GetNumberOfCells()\n"
+            "output.CellData.append(numpy.arange(count) %% %d * %d + 5, 'RegionId')\n"
+            % (count, step)))
+        cut(renamed, view)
+        colors = GetColorTransferFunction("RegionId")
+        assert bool(colors.InterpretValuesAsCategories) == (count <= 30)
+        if count <= 30:
+            ids = [5 + step * i for i in range(count)]
+            assert ids[-1] > 100000
+            assert list(colors.Annotations) == [
+                text for i in ids for text in (str(i), "Region %d" % i)], colors.Annotations
+            assert len(colors.IndexedColors) == 3 * count
     Delete(view)
 
 
@@ -194,4 +233,5 @@ with tempfile.TemporaryDirectory() as folder:
 
 CheckExample()
 CheckCertificate()
+CheckRegionColors()
 print("states: ok")

@@ -130,6 +130,73 @@ class NumPyAlone(unittest.TestCase):
         with self.assertRaisesRegex(cd.MeshingError, "not positive"):
             cd.mesh((CUBE_POINTS, CUBE_QUADS), sizing=lambda x, y, z: -1.0)
 
+    def test_sizes_of_regions(self):
+        points, quads, labels = two_cubes()
+        options = dict(labels=labels, region_names=["left", "right"], edge_length=0.5)
+
+        def longest(mesh, region):
+            return lengths(mesh)[:, mesh.regions == region].max()
+
+        meshes = []
+        for growth, sizes in ((0.3, {"right": 0.15}), (0.3, {1: 0.15}), (0.3, {"1": 0.15}),
+                              (2.0, {"right": 0.15})):
+            mesh = cd.mesh((points, quads), region_sizes=sizes, growth=growth, **options)
+            self.assertTrue(mesh.certificate.is_clean)
+            self.assertLessEqual(longest(mesh, 1), 0.15)
+            self.assertGreater(longest(mesh, 0), 0.25)
+            meshes.append(mesh)
+        for mesh in meshes[1:3]:
+            self.assertEqual(mesh.points.tobytes(), meshes[0].points.tobytes())
+        self.assertLess(len(meshes[3].points), len(meshes[0].points))
+        with self.assertRaisesRegex(cd.OptionError, "left, right"):
+            cd.mesh((points, quads), region_sizes={"middle": 0.1}, **options)
+        with self.assertRaisesRegex(cd.OptionError, "no region 2"):
+            cd.mesh((points, quads), region_sizes={2: 0.1}, **options)
+        with self.assertRaisesRegex(cd.OptionError, "region_sizes"):
+            cd.mesh((points, quads), region_sizes={"left": -1}, **options)
+
+    def test_layers_by_name(self):
+        points, quads, labels = two_cubes()
+        options = dict(labels=labels, region_names=["left", "right"], edge_length=0.3,
+                       generate_mesh_points=True, placement="none")
+        named = cd.mesh((points, quads), layers=[["left", "right", 2, 0.02, 1.5]], **options)
+        numbered = cd.mesh((points, quads), layers=[[0, 1, 2, 0.02, 1.5]], **options)
+        self.assertEqual(named.points.tobytes(), numbered.points.tobytes())
+        for x in (0.98, 0.95):
+            self.assertGreater(np.isclose(named.points[:, 0], x, atol=1e-12).sum(), 4)
+        with self.assertRaisesRegex(cd.OptionError, "middle"):
+            cd.mesh((points, quads), layers=[["middle", "right", 2, 0.02, 1.5]], **options)
+        with self.assertRaisesRegex(cd.OptionError, "layers"):
+            cd.mesh((points, quads), layers=[0, 1, 2, 0.02, 1.5], **options)
+
+    def test_fine_surfaces_are_coarsened(self):
+        # A ball of 5,000 triangles with edges of 0.06.
+        n = 50
+        polar, angle = np.meshgrid(np.linspace(0, np.pi, n + 1)[1:-1],
+                                   np.linspace(0, 2 * np.pi, n, endpoint=False), indexing="ij")
+        ring = np.stack([np.sin(polar) * np.cos(angle), np.sin(polar) * np.sin(angle),
+                         np.cos(polar)], axis=-1).reshape(-1, 3)
+        points = np.vstack([ring, [[0, 0, 1], [0, 0, -1]]])
+        i, j = np.meshgrid(np.arange(n - 2), np.arange(n), indexing="ij")
+        a, b = (n * i + j).ravel(), (n * i + (j + 1) % n).ravel()
+        caps = np.arange(n), (np.arange(n) + 1) % n
+        triangles = np.vstack([
+            np.stack([a, a + n, b], axis=1), np.stack([b, a + n, b + n], axis=1),
+            np.stack([np.full(n, len(ring)), caps[0], caps[1]], axis=1),
+            np.stack([np.full(n, len(ring) + 1), n * (n - 2) + caps[1], n * (n - 2) + caps[0]],
+                     axis=1)])
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            mesh = cd.mesh((points, triangles), edge_length=0.4)
+            exact = cd.mesh((points, triangles), edge_length=0.4, maximum_deviation=0.0)
+        self.assertIn("remeshed", str(caught[0].message))
+        self.assertLess(5 * len(mesh.points), len(exact.points))
+        self.assertLess(0.65 * 0.4, np.median(lengths(mesh)))
+        # Between the balls that the bound allows.
+        radii = np.linalg.norm(mesh.points[np.unique(mesh.boundary.triangles)], axis=1)
+        self.assertLess(radii.max(), 1.0 + 0.04)
+        self.assertGreater(radii.min(), 1.0 - 0.04 - 0.06 ** 2)
+
     def test_errors_name_the_culprits(self):
         with self.assertRaisesRegex(cd.MeshingError, "maximum_gap_edges") as caught:
             cd.mesh((CUBE_POINTS, CUBE_QUADS[:-1]))
@@ -205,10 +272,12 @@ class NumPyAlone(unittest.TestCase):
             edge_length=-5, radius_edge_ratio=0.5, dihedral_angle_target=71, maximum_volume=-1,
             minimum_angle=31, maximum_area=-1, accuracy_angle=181, merge_tolerance=-1,
             maximum_gap_edges=-1, mesh_for="best", criterion=3, placement=4, threads=-1,
-            add_steiner_points=2, remove_slivers="yes", spacing=-1.0,
+            add_steiner_points=2, remove_slivers="yes", spacing=-1.0, growth=0.0,
+            maximum_deviation=-1,
         )
         for name, value in wrong.items():
             others = {"generate_mesh_points": True} if name in ("spacing", "placement") else {}
+            others = {"region_sizes": {0: 0.5}} if name == "growth" else others
             with self.assertRaisesRegex(cd.MeshingError, "(?i)" + name, msg=name) as caught:
                 cd.mesh((CUBE_POINTS, CUBE_QUADS), **{name: value}, **others)
             self.assertEqual(caught.exception.code, cd.ErrorCode.INVALID_OPTION, name)
@@ -382,6 +451,25 @@ class CommandLine(unittest.TestCase):
         run = self.run_command(2, "mesh", "open.stl", "a.vtu", "--json")
         self.assertEqual(json.loads(run.stdout)["code"], "NOT_CLOSED")
         self.assertTrue(json.loads(run.stdout)["cells"])
+
+    def test_sizes_of_regions(self):
+        points, quads, labels = two_cubes()
+        cd.Surface.from_triangles(
+            points, quads, labels=labels, region_names=["left", "right"]).save(self.path("two.vtp"))
+        coarse = ("--edge-length", "0.5", "--json")
+        if HAS_VTK:
+            run = self.run_command(0, "mesh", "two.vtp", "two.vtu", *coarse)
+            count = json.loads(run.stdout)["tetrahedra"]
+            run = self.run_command(0, "mesh", "two.vtp", "two.vtu", *coarse, "--region-size",
+                                   "right=0.2", "--region-size", "0=0.3", "--growth", "0.5",
+                                   "--generate-mesh-points", "--placement", "none", "--layers",
+                                   "left", "right", "1", "0.05", "1")
+            self.assertGreater(json.loads(run.stdout)["tetrahedra"], 2 * count)
+            self.assertIn("left, right", self.run_command(
+                2, "mesh", "two.vtp", "two.vtu", "--region-size", "middle=0.2").stderr)
+        for wrong in ("0.2", "right=", "right=long"):
+            self.assertIn("REGION=LENGTH", self.run_command(
+                2, "mesh", "text.stl", "a.vtu", "--region-size", wrong).stderr)
 
     def test_help_and_manual(self):
         from conforming_delaunay.__main__ import make_parser

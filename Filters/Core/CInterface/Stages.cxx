@@ -120,6 +120,16 @@ void ReadOptions(InputReader& reader, ConformingMesherOptions& options)
   ReadChoice(reader, "radius_edge_ratio", choices.RadiusEdgeRatio, 0.0, Infinity);
   ReadChoice(reader, "maximum_edge_length", choices.MaximumEdgeLength, 0.0, Infinity);
   ReadChoice(reader, "maximum_deviation", options.MaximumDeviation, 0.0, Infinity);
+  std::vector<Id> regions;
+  std::vector<double> sizes;
+  reader.Read("region_size_ids", regions);
+  reader.Read("region_sizes", sizes);
+  reader.Match("region_sizes", sizes.size(), regions.size());
+  for (std::size_t i = 0; i < regions.size() && i < sizes.size(); ++i)
+  {
+    options.RegionSizes.Sizes.push_back({ regions[i], sizes[i] });
+  }
+  reader.Read("growth", options.RegionSizes.Growth, 0.0, Infinity);
   reader.Read("generate_mesh_points", options.GeneratesMeshPoints);
   reader.Read("close_open_boundary", options.CloseOpenBoundary);
   reader.Read("maximum_volume", options.MaximumVolume, 0.0, Infinity);

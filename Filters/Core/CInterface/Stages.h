@@ -11,6 +11,7 @@
  *    labels (2): of polygons or triangles; facets: the structural facet of each;
  *  - triangles (3): a surface; tetrahedra (4), regions: a mesh;
  *  - mesh_points (3), mesh_points_free;
+ *  - region_size_ids, region_sizes: see RegionSizes.h;
  *  - sizing_points (3), sizing_lengths, sizing_tetrahedra (4): a sizing, see CellSizing.h; without
  *    them the callback Sizing, if there is one.
  * What stages give has the same names, and the names of their output structs; warnings is a text

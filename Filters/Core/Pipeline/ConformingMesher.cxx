@@ -69,7 +69,7 @@ public:
 
 private:
   Status TriangulateSurface();
-  void ChooseSettings();
+  Status ChooseSettings();
   Status Coarsen();
   Status PlaceMeshPoints();
   Status RefineSurface();
@@ -99,6 +99,8 @@ private:
   ConformingMesherOutput& Output;
   /** What the choices became. */
   MeshSettings Settings;
+  /** That of the input, and those of regions. */
+  SizingField Sizing;
   /** The surface as it is now; its source cells are polygons of the input. */
   TriangleMesh Surface;
   /** Given mesh points, then generated ones, as far as they are still there, and their numbers. */
@@ -158,16 +160,15 @@ Status ConformingMesher::TriangulateSurface()
   this->Surface = std::move(clean.Surface);
   this->Output.Points.SurfaceSources = std::move(clean.PointSources);
   this->Output.Points.SurfacePoints = std::move(clean.NewPoints);
-  this->ChooseSettings();
   if (this->Input.MeshPoints != nullptr)
   {
     this->MeshPoints = *this->Input.MeshPoints;
   }
-  return status;
+  return this->ChooseSettings();
 }
 
 /** By the surface as it is after its repair. */
-void ConformingMesher::ChooseSettings()
+Status ConformingMesher::ChooseSettings()
 {
   const MeshOptionChoices& given = this->Options.Choices;
   this->Settings = MakeSettings(this->Options.MeshFor, given);
@@ -176,13 +177,17 @@ void ConformingMesher::ChooseSettings()
     this->Settings.MaximumEdgeLength = GetDefaultSize(this->Surface);
   }
   this->Output.Settings = this->Settings;
+  this->Sizing = this->Input.Sizing;
+  return this->Name(LimitByRegions(this->Surface, this->Options.RegionSizes,
+                      this->Settings.MaximumEdgeLength, this->Sizing),
+    this->Surface.SourceCells);
 }
 
 Status ConformingMesher::Coarsen()
 {
-  return this->Name(
-    CoarsenSurface(this->Input, this->Options.MaximumDeviation, this->Settings.MaximumEdgeLength,
-      this->GetPart("Surface coarsening", 0.05, 0.1), this->Surface, this->Output),
+  return this->Name(CoarsenSurface(this->Input, this->Sizing, this->Options.MaximumDeviation,
+                      this->Settings.MaximumEdgeLength,
+                      this->GetPart("Surface coarsening", 0.05, 0.1), this->Surface, this->Output),
     this->Surface.SourceCells);
 }
 
@@ -200,8 +205,8 @@ Status ConformingMesher::PlaceMeshPoints()
   }
   options.IsClearanceSized = this->Settings.AddsSteinerPoints;
   MeshPointGeneratorOutput generated;
-  Status status = GenerateMeshPoints({ &this->Surface, this->Input.Sizing }, options,
-    this->GetPart("Mesh points", 0.1, 0.2), generated);
+  Status status = GenerateMeshPoints(
+    { &this->Surface, this->Sizing }, options, this->GetPart("Mesh points", 0.1, 0.2), generated);
   if (!status.IsOk())
   {
     return this->Name(std::move(status), this->Surface.SourceCells);
@@ -222,7 +227,7 @@ Status ConformingMesher::RefineSurface()
   DelaunaySurfaceRefinerInput input;
   input.Surface = &this->Surface;
   input.MeshPoints = &this->MeshPoints;
-  input.Sizing = this->Input.Sizing;
+  input.Sizing = this->Sizing;
   DelaunaySurfaceRefinerOptions options = this->Options.Surface;
   options.Criterion = this->Settings.Criterion;
   options.MaximumEdgeLength = this->Settings.MaximumEdgeLength;
@@ -360,7 +365,7 @@ Status ConformingMesher::AddSteinerPoints()
   SteinerPointRefinerInput input;
   input.Mesh = &this->Output.Mesh;
   input.Boundary = &this->Output.Boundary;
-  input.Sizing = this->Input.Sizing;
+  input.Sizing = this->Sizing;
   input.IsFree = this->IsFree;
   SteinerPointRefinerOptions options;
   options.Criterion = std::max(this->Settings.Criterion, SurfaceCriterion::SmallestSphere);

@@ -4,9 +4,9 @@
  * @brief All stages in one run: polygons in, boundary-conforming Delaunay tetrahedra out.
  *
  * Method (thesis chapters 3, 5 and 6):
- *  1. BoundaryTriangulator.h: one clean triangulated surface; SurfaceCoarsener.h: as coarse as the
- *     maximum deviation allows and the size asks for; MeshPointGenerator.h, if points are to be
- *     generated;
+ *  1. BoundaryTriangulator.h: one clean triangulated surface; RegionSizes.h: sizes of single
+ *     regions; SurfaceCoarsener.h: as coarse as the maximum deviation allows and the size asks for;
+ *     MeshPointGenerator.h, if points are to be generated;
  *  2. DelaunaySurfaceRefiner.h: flips and new points until the surface is part of its Delaunay
  *     mesh;
  *  3. AdvancingFrontTetrahedralizer.h: tetrahedra for every enclosed region;
@@ -35,6 +35,7 @@
 #include "Core/Meshes/TriangleMesh.h"
 #include "Core/Pipeline/MeshPurpose.h"
 #include "Core/Repair/BoundaryTriangulator.h"
+#include "Core/Sizing/RegionSizes.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 
 #include <optional>
@@ -57,6 +58,8 @@ struct ConformingMesherOptions
    * units; 0: it stays as it is; not given: chosen for the surface, see SurfaceCoarsener.h.
    */
   std::optional<double> MaximumDeviation;
+  /** Longest edges of single regions, beside the maximum edge length and the sizing. */
+  RegionSizesOptions RegionSizes;
   bool GeneratesMeshPoints = false;
   /** Where they are. A Spacing of 0 is the maximum edge length, if there is one. */
   MeshPointGeneratorOptions MeshPoints;

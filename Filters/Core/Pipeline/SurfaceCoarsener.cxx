@@ -49,18 +49,18 @@ bool HasManyTriangles(const PolygonSoup& polygons)
 }
 
 /** 0 where the surface is not one of many small triangles. */
-double GetAutomaticDeviation(
-  const ConformingMesherInput& input, double maximumEdgeLength, const TriangleMesh& surface)
+double GetAutomaticDeviation(const PolygonSoup& polygons, const SizingField& sizing,
+  double maximumEdgeLength, const TriangleMesh& surface)
 {
-  if ((!input.Sizing && maximumEdgeLength == 0.0) || surface.Triangles.empty() ||
-    !HasManyTriangles(*input.Polygons))
+  if ((!sizing && maximumEdgeLength == 0.0) || surface.Triangles.empty() ||
+    !HasManyTriangles(polygons))
   {
     return 0.0;
   }
   std::vector<double> lengths;
   for (const Vec3& point : surface.Points)
   {
-    lengths.push_back(GetMaximumLength(input.Sizing, maximumEdgeLength, point));
+    lengths.push_back(GetMaximumLength(sizing, maximumEdgeLength, point));
   }
   Id edges = 0;
   Id small = 0;
@@ -190,14 +190,15 @@ std::string Describe(
 }
 } // namespace
 
-Status CoarsenSurface(const ConformingMesherInput& input,
+Status CoarsenSurface(const ConformingMesherInput& input, const SizingField& sizing,
   const std::optional<double>& maximumDeviation, double maximumEdgeLength,
   const ExecutionContext& context, TriangleMesh& surface, ConformingMesherOutput& output)
 {
   const bool isAutomatic = !maximumDeviation;
   SurfaceRemesherOptions options;
-  options.MaximumDeviation =
-    isAutomatic ? GetAutomaticDeviation(input, maximumEdgeLength, surface) : *maximumDeviation;
+  options.MaximumDeviation = isAutomatic
+    ? GetAutomaticDeviation(*input.Polygons, sizing, maximumEdgeLength, surface)
+    : *maximumDeviation;
   if (options.MaximumDeviation == 0.0 || surface.Triangles.empty())
   {
     return {};
@@ -205,14 +206,13 @@ Status CoarsenSurface(const ConformingMesherInput& input,
   SurfaceRemesherInput remesherInput;
   remesherInput.Surface = &surface;
   remesherInput.Facets = MakeGroups(input, surface);
-  if (input.Sizing)
+  if (sizing)
   {
     remesherInput.Sizing = [&](const Vec3& position)
-    { return WantedLengthRatio * GetMaximumLength(input.Sizing, maximumEdgeLength, position); };
+    { return WantedLengthRatio * GetMaximumLength(sizing, maximumEdgeLength, position); };
   }
-  options.EdgeLength = maximumEdgeLength > 0.0 || input.Sizing
-    ? WantedLengthRatio * maximumEdgeLength
-    : GetBoundingBoxDiagonal(surface.Points);
+  options.EdgeLength = maximumEdgeLength > 0.0 || sizing ? WantedLengthRatio * maximumEdgeLength
+                                                         : GetBoundingBoxDiagonal(surface.Points);
   SurfaceRemesherOutput remeshed;
   Status status = RemeshSurface(remesherInput, options, context, remeshed);
   if (!status.IsOk())
@@ -225,7 +225,7 @@ Status CoarsenSurface(const ConformingMesherInput& input,
   }
   FollowPoints(remeshed, output.Points);
   output.Warnings.push_back({ Describe(surface.Triangles.size(), remeshed.Surface.Triangles.size(),
-    options.MaximumDeviation, isAutomatic, static_cast<bool>(input.Sizing)) });
+    options.MaximumDeviation, isAutomatic, static_cast<bool>(sizing)) });
   surface = std::move(remeshed.Surface);
   return status;
 }

@@ -24,10 +24,11 @@ namespace cdm
 {
 /**
  * Makes the clean surface coarser, and says in the output where its points come from.
- * maximumDeviation: as that of ConformingMesherOptions. maximumEdgeLength: model units, 0: off. Failure: as of RemeshSurface(); cells and points are then
+ * sizing: that of the run, may be empty. maximumDeviation: as that of ConformingMesherOptions.
+ * maximumEdgeLength: model units, 0: off. Failure: as of RemeshSurface(); cells and points are then
  * those of the surface.
  */
-Status CoarsenSurface(const ConformingMesherInput& input,
+Status CoarsenSurface(const ConformingMesherInput& input, const SizingField& sizing,
   const std::optional<double>& maximumDeviation, double maximumEdgeLength,
   const ExecutionContext& context, TriangleMesh& surface, ConformingMesherOutput& output);
 } // namespace cdm

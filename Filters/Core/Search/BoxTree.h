@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoxTree.h
- * @brief Finds those of many fixed boxes that overlap a given one: a static bounding volume
- *   hierarchy.
+ * @brief Finds those of many fixed boxes that overlap a given one, or what is nearest to a point: a
+ *   static bounding volume hierarchy.
  *
  * Boxes are closed: touching counts. Built once, by splitting at the median of the centers along
  * the longest side. Queries are const and thread safe; they visit boxes in an order that depends on
@@ -17,7 +17,9 @@
 #include "Core/Basics/Vec3.h"
 #include "Core/Geometry/Box.h"
 
+#include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace cdm
@@ -30,6 +32,13 @@ public:
   /** Calls visit(id) for each box that overlaps the given one. */
   template <class Function>
   void VisitOverlaps(const Box& box, Function&& visit) const;
+
+  /**
+   * The smallest getDistance(id) of what is in the boxes, or the limit if that is smaller. No
+   * distance is smaller than that of the box.
+   */
+  template <class Function>
+  double FindDistance(const Vec3& point, double limit, Function&& getDistance) const;
 
 private:
   // Nodes in depth-first order: the left child of an inner node follows it.
@@ -83,6 +92,48 @@ void BoxTree::VisitOverlaps(const Box& box, Function&& visit) const
       }
     }
   }
+}
+
+template <class Function>
+double BoxTree::FindDistance(const Vec3& point, double limit, Function&& getDistance) const
+{
+  Id stack[64];
+  int size = 0;
+  if (!this->Nodes.empty())
+  {
+    stack[size++] = 0;
+  }
+  while (size > 0)
+  {
+    const Id index = stack[--size];
+    const Node& node = this->Nodes[index];
+    if (!(node.Bounds.GetSquaredDistance(point) < limit * limit))
+    {
+      continue;
+    }
+    if (node.Right != NoId)
+    {
+      // The nearer child comes first: it leaves less of the other one.
+      Id children[2] = { index + 1, node.Right };
+      if (this->Nodes[children[1]].Bounds.GetSquaredDistance(point) <
+        this->Nodes[children[0]].Bounds.GetSquaredDistance(point))
+      {
+        std::swap(children[0], children[1]);
+      }
+      stack[size++] = children[1];
+      stack[size++] = children[0];
+      continue;
+    }
+    for (Id i = node.Begin; i < node.End; ++i)
+    {
+      const Id id = this->Order[i];
+      if (this->Boxes[id].GetSquaredDistance(point) < limit * limit)
+      {
+        limit = std::min(limit, static_cast<double>(getDistance(id)));
+      }
+    }
+  }
+  return limit;
 }
 } // namespace cdm
 

@@ -147,6 +147,7 @@ void RegionLocator::FindDepths()
     numberOfComponents = std::max(numberOfComponents, component + 1);
   }
   this->Depths.assign(numberOfComponents, NoId);
+  std::vector<std::vector<Id>> around(numberOfComponents);
   for (std::size_t t = 0; t < this->Components.size() && numberOfComponents > 1; ++t)
   {
     const Id component = this->Components[t];
@@ -154,14 +155,35 @@ void RegionLocator::FindDepths()
     for (int i = 0; i < 3 && this->Depths[component] == NoId; ++i)
     {
       bool isOnSurface = false;
-      const std::vector<Id> shells = this->FindShells(
+      around[component] = this->FindShells(
         this->Surface.Points[this->Surface.Triangles[t][i]], component, isOnSurface);
       if (!isOnSurface)
       {
-        this->Depths[component] = static_cast<Id>(shells.size());
+        this->Depths[component] = static_cast<Id>(around[component].size());
       }
     }
   }
+  for (std::size_t shell = 0; shell < this->Regions.size() && this->Surface.Labels.empty(); ++shell)
+  {
+    if (this->IsOuter[shell])
+    {
+      this->Regions[shell] = this->GetInnermostRegion(around[this->ShellComponents[shell]]);
+    }
+  }
+}
+
+Id RegionLocator::GetInnermostRegion(const std::vector<Id>& shells) const
+{
+  Id innermost = NoId;
+  for (const Id shell : shells)
+  {
+    if (innermost == NoId ||
+      this->Depths[this->ShellComponents[shell]] > this->Depths[this->ShellComponents[innermost]])
+    {
+      innermost = shell;
+    }
+  }
+  return innermost == NoId ? OutsideRegion : this->Regions[innermost];
 }
 
 RegionPair RegionLocator::GetRegions(Id triangle) const
@@ -245,16 +267,7 @@ Id RegionLocator::Locate(const Vec3& point) const
     }
   }
   bool isOnSurface = false;
-  Id innermost = NoId;
-  for (const Id shell : this->FindShells(point, NoId, isOnSurface))
-  {
-    if (innermost == NoId ||
-      this->Depths[this->ShellComponents[shell]] > this->Depths[this->ShellComponents[innermost]])
-    {
-      innermost = shell;
-    }
-  }
-  return innermost == NoId ? OutsideRegion : this->Regions[innermost];
+  return this->GetInnermostRegion(this->FindShells(point, NoId, isOnSurface));
 }
 
 bool RegionLocator::MayTouch(const Vec3& low, const Vec3& high) const
@@ -266,17 +279,13 @@ bool RegionLocator::MayTouch(const Vec3& low, const Vec3& high) const
 
 double RegionLocator::GetDistance(const Vec3& point, double limit) const
 {
-  const Vec3 reach{ limit, limit, limit };
-  double distance = limit;
-  this->Tree->VisitOverlaps({ point - reach, point + reach },
+  return this->Tree->FindDistance(point, limit,
     [&](Id t)
     {
       const TriangleIds& ids = this->Surface.Triangles[t];
-      distance = std::min(distance,
-        GetDistanceToTriangle(point, this->Surface.Points[ids[0]], this->Surface.Points[ids[1]],
-          this->Surface.Points[ids[2]]));
+      return GetDistanceToTriangle(point, this->Surface.Points[ids[0]],
+        this->Surface.Points[ids[1]], this->Surface.Points[ids[2]]);
     });
-  return distance;
 }
 
 namespace

@@ -11,7 +11,8 @@
  *     replaced by another one.
  *  2. Components may lie inside of others: the innermost one around the point counts.
  * Regions: with labels that of the shell; without the enclosed segments are numbered from 0 on by
- * their first side, as the tetrahedralizer does.
+ * their first side, as the tetrahedralizer does, and the outer shell of a component that lies inside
+ * of another one looks into the region around it.
  *
  * Guarantees: a point on the surface lies in no region; all else is exact. Queries are thread safe.
  * Failure: NotClosed names triangles whose labels contradict each other (as they do around an
@@ -71,6 +72,7 @@ private:
 
   Status FindRegions();
   void FindDepths();
+  Id GetInnermostRegion(const std::vector<Id>& shells) const;
   std::vector<Id> FindShells(const Vec3& point, Id except, bool& isOnSurface) const;
   bool CountCrossings(
     const Vec3& point, const Vec3& outside, Id except, std::vector<ShellCount>& counts) const;

@@ -5,11 +5,57 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
 namespace cdm
 {
+namespace
+{
+/**
+ * Makes a symmetric matrix diagonal by rotations, one of which takes away each pair of elements in
+ * turn (Jacobi's method); the columns of the rotation are then the principal directions.
+ */
+void Diagonalize(double (&matrix)[3][3], double (&rotation)[3][3])
+{
+  // It converges quadratically: six sweeps leave nothing.
+  constexpr int sweeps = 6;
+  for (int step = 0; step < 3 * sweeps; ++step)
+  {
+    const int p = step % 3;
+    const int q = (p + 1) % 3;
+    if (matrix[p][q] == 0.0)
+    {
+      continue;
+    }
+    const double half = 0.5 * (matrix[q][q] - matrix[p][p]) / matrix[p][q];
+    const double tangent =
+      (half >= 0.0 ? 1.0 : -1.0) / (std::abs(half) + std::sqrt(half * half + 1.0));
+    const double cosine = 1.0 / std::sqrt(tangent * tangent + 1.0);
+    const double sine = tangent * cosine;
+    const auto turn = [=](double& x, double& y)
+    {
+      const double turned = cosine * x - sine * y;
+      y = sine * x + cosine * y;
+      x = turned;
+    };
+    for (double(&row)[3] : matrix)
+    {
+      turn(row[p], row[q]);
+    }
+    for (int column = 0; column < 3; ++column)
+    {
+      turn(matrix[p][column], matrix[q][column]);
+    }
+    for (double(&row)[3] : rotation)
+    {
+      turn(row[p], row[q]);
+    }
+  }
+}
+} // namespace
+
 LocalSpacing::LocalSpacing(const Vec3& lengths)
   : Rows{ { 1.0 / lengths.X, 0.0, 0.0 }, { 0.0, 1.0 / lengths.Y, 0.0 },
       { 0.0, 0.0, 1.0 / lengths.Z } },
@@ -47,18 +93,62 @@ LocalSpacing::LocalSpacing(const Vec3& direction, double along, double across)
   }
 }
 
+LocalSpacing LocalSpacing::GetLimited(double length) const
+{
+  if (this->Largest <= length)
+  {
+    return *this;
+  }
+  if (this->Smallest >= length)
+  {
+    return length;
+  }
+  double inverse[3][3];
+  double rotation[3][3] = { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } };
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      inverse[row][column] = this->Rows[row][column];
+    }
+  }
+  Diagonalize(inverse, rotation);
+  Vec3 lengths;
+  Vec3 directions[3];
+  for (int i = 0; i < 3; ++i)
+  {
+    lengths[i] = std::min(length, 1.0 / inverse[i][i]);
+    directions[i] = { rotation[0][i], rotation[1][i], rotation[2][i] };
+  }
+  return LocalSpacing(lengths, directions);
+}
+
 //--------------------------------------------------------------------------------------------------
+void SizingField::Limit(LengthFunction lengths)
+{
+  if (!this->Spacing)
+  {
+    this->Spacing = std::move(lengths);
+    return;
+  }
+  this->Lengths = !this->Lengths
+    ? std::move(lengths)
+    : [former = std::move(this->Lengths), added = std::move(lengths)](const Vec3& position)
+  { return std::min(former(position), added(position)); };
+}
+
 template <std::size_t Size>
 bool SizingField::AnyBelowIn(
   const std::array<Vec3, Size>& corners, double length, const Predicate& isSought) const
 {
   const auto isSoughtAt = [&](const Vec3& position)
   {
-    if (this->Minima && !this->Minima->MayBeBelow(position, length))
+    if (this->Minima && !this->Minima->MayBeBelow(position, length) &&
+      !(this->Lengths && this->Lengths(position) < length))
     {
       return false;
     }
-    const LocalSpacing spacing = this->Spacing(position);
+    const LocalSpacing spacing = (*this)(position);
     return spacing.GetSmallest() < length && isSought(position, spacing);
   };
   Vec3 center;
@@ -115,7 +205,7 @@ void SizingField::VisitMinima(const Box& box, double length,
   this->Minima->VisitBelow(ConvexRegion(box), length,
     [&](const Vec3& position)
     {
-      const LocalSpacing spacing = this->Spacing(position);
+      const LocalSpacing spacing = (*this)(position);
       visit(spacing);
       length = std::min(length, spacing.GetSmallest());
       return length;

@@ -52,6 +52,9 @@ public:
   /** One length along a direction of length 1, another one across it. */
   LocalSpacing(const Vec3& direction, double along, double across);
 
+  /** The largest spacing that is nowhere longer than this one and the length. */
+  LocalSpacing GetLimited(double length) const;
+
   double GetSmallest() const { return this->Smallest; }
   double GetLargest() const { return this->Largest; }
   /** Half the extents of a box around the ellipsoid. */
@@ -81,7 +84,7 @@ private:
  * The spacing at each position. Edges are to be no longer than the spacing anywhere along them, and
  * those of a triangle or a tetrahedron than anywhere in it. They are asked at corners, the middles
  * of edges and the center; with SizingMinima also wherever else they can be smallest. Of a field
- * that is only a function, what is small between these is not seen.
+ * that is only a function, and of Limit(), what is small between these is not seen.
  */
 class SizingField
 {
@@ -104,8 +107,17 @@ public:
   {
   }
 
+  /** A longest length at each position. */
+  using LengthFunction = std::function<double(const Vec3&)>;
+  /** Lowers the spacing to these lengths, where it is longer; without a field they are one. */
+  void Limit(LengthFunction lengths);
+
   explicit operator bool() const { return static_cast<bool>(this->Spacing); }
-  LocalSpacing operator()(const Vec3& position) const { return this->Spacing(position); }
+  LocalSpacing operator()(const Vec3& position) const
+  {
+    return this->Lengths ? this->Spacing(position).GetLimited(this->Lengths(position))
+                         : this->Spacing(position);
+  }
 
   /** Whether somewhere in a triangle a spacing with a length below this one fulfils a condition. */
   bool AnyBelow(
@@ -122,7 +134,9 @@ private:
     const std::array<Vec3, Size>& corners, double length, const Predicate& isSought) const;
 
   Function Spacing;
+  /** Of Spacing alone. */
   std::shared_ptr<const SizingMinima> Minima;
+  LengthFunction Lengths;
 };
 
 struct GradationOptions

@@ -4,6 +4,7 @@
 #include "CoreBridge/ArrayNames.h"
 #include "CoreBridge/Execution.h"
 #include "CoreBridge/Reports.h"
+#include "CoreBridge/Texts.h"
 
 #include "Core/Basics/IdLimits.h"
 #include "Core/Meshes/MeshInvariants.h"
@@ -15,6 +16,7 @@
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDataSet.h>
+#include <vtkFieldData.h>
 #include <vtkGenericCell.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
@@ -27,6 +29,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <string>
 #include <utility>
@@ -520,21 +524,90 @@ std::vector<cdm::Id> ToCellGroups(vtkPolyData* input, const std::vector<vtkIdTyp
 }
 
 //--------------------------------------------------------------------------------------------------
-cdm::Status ToLayers(
-  const std::vector<std::array<double, 5>>& rows, std::vector<cdm::PointLayers>& layers)
+cdm::Status FindRegion(vtkDataSet* data, const std::string& name, cdm::Id& region)
 {
-  const auto isWhole = [](double value)
-  { return std::abs(value) <= VTK_INT_MAX && value == std::floor(value); };
-  for (const std::array<double, 5>& row : rows)
+  const std::vector<std::string> names = GetTexts(RegionNamesName, data->GetFieldData());
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end())
   {
-    if (!isWhole(row[0]) || !isWhole(row[1]) || !isWhole(row[2]))
+    region = static_cast<cdm::Id>(found - names.begin());
+    return {};
+  }
+  char* end = nullptr;
+  const double value = std::strtod(name.c_str(), &end);
+  if (name.empty() || *end != '\0' || !(std::abs(value) <= VTK_INT_MAX) ||
+    value != std::floor(value))
+  {
+    std::string list;
+    for (const std::string& other : names)
     {
-      return cdm::Status::Failure(cdm::StatusCode::InvalidOption,
-        "Layers " + std::to_string(layers.size()) +
-          " are not right: region, neighbor and number of layers are whole numbers.");
+      list += (list.empty() ? "" : ", ") + other;
     }
-    layers.push_back({ static_cast<cdm::Id>(row[0]), static_cast<cdm::Id>(row[1]),
-      static_cast<cdm::Id>(row[2]), row[3], row[4] });
+    return cdm::Status::Failure(cdm::StatusCode::InvalidOption,
+      "There is no region '" + name + "': give a whole number" +
+        (list.empty() ? "; the input has no names of regions." : ", or one of: " + list + "."));
+  }
+  region = static_cast<cdm::Id>(value);
+  return {};
+}
+
+//--------------------------------------------------------------------------------------------------
+LayerRow MakeLayerRow(double region, double neighbor, const std::array<double, 3>& numbers)
+{
+  const auto toText = [](double value)
+  {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    return std::string(text);
+  };
+  return { { toText(region), toText(neighbor) }, numbers };
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToLayers(
+  vtkDataSet* data, const std::vector<LayerRow>& rows, std::vector<cdm::PointLayers>& layers)
+{
+  for (const auto& [regions, numbers] : rows)
+  {
+    const std::string row = "Layers " + std::to_string(layers.size()) + " are not right: ";
+    cdm::PointLayers one;
+    cdm::Status status = FindRegion(data, regions[0], one.Region);
+    if (status.IsOk())
+    {
+      status = FindRegion(data, regions[1], one.Neighbor);
+    }
+    if (!status.IsOk())
+    {
+      status.Message = row + status.Message;
+      return status;
+    }
+    if (!(std::abs(numbers[0]) <= VTK_INT_MAX) || numbers[0] != std::floor(numbers[0]))
+    {
+      return cdm::Status::Failure(
+        cdm::StatusCode::InvalidOption, row + "the number of layers is a whole number.");
+    }
+    one.NumberOfLayers = static_cast<cdm::Id>(numbers[0]);
+    one.FirstDistance = numbers[1];
+    one.GrowthRatio = numbers[2];
+    layers.push_back(one);
+  }
+  return {};
+}
+
+//--------------------------------------------------------------------------------------------------
+cdm::Status ToRegionSizes(
+  vtkDataSet* data, const std::vector<RegionSizeRow>& rows, std::vector<cdm::RegionSize>& sizes)
+{
+  for (const auto& [name, length] : rows)
+  {
+    cdm::Id region = 0;
+    cdm::Status status = FindRegion(data, name, region);
+    if (!status.IsOk())
+    {
+      status.Message = "RegionSizes: " + status.Message;
+      return status;
+    }
+    sizes.push_back({ region, length });
   }
   return {};
 }

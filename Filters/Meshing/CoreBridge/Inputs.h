@@ -14,11 +14,14 @@
 #include "Core/Meshes/PolygonSoup.h"
 #include "Core/Meshes/TetMesh.h"
 #include "Core/Meshes/TriangleMesh.h"
+#include "Core/Sizing/RegionSizes.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 
 #include <vtkType.h>
 
 #include <array>
+#include <string>
+#include <utility>
 #include <vector>
 
 class vtkDataSet;
@@ -52,9 +55,19 @@ cdm::Status ToFacets(
  */
 std::vector<cdm::Id> ToCellGroups(vtkPolyData* input, const std::vector<vtkIdType>& cells);
 
-/** Rows of region, neighbor, number of layers, first distance and growth ratio. */
+/** The region of a name in the field array RegionNames of the data, or of a whole number. */
+cdm::Status FindRegion(vtkDataSet* data, const std::string& name, cdm::Id& region);
+
+/** Region and neighbor, each a name or a number; number of layers, first distance, growth ratio. */
+using LayerRow = std::pair<std::array<std::string, 2>, std::array<double, 3>>;
+LayerRow MakeLayerRow(double region, double neighbor, const std::array<double, 3>& numbers);
 cdm::Status ToLayers(
-  const std::vector<std::array<double, 5>>& rows, std::vector<cdm::PointLayers>& layers);
+  vtkDataSet* data, const std::vector<LayerRow>& rows, std::vector<cdm::PointLayers>& layers);
+
+/** A region, by its name or number, and a size. */
+using RegionSizeRow = std::pair<std::string, double>;
+cdm::Status ToRegionSizes(
+  vtkDataSet* data, const std::vector<RegionSizeRow>& rows, std::vector<cdm::RegionSize>& sizes);
 
 /** Finite points; name says in messages which input they are. */
 cdm::Status ToPoints(vtkPointSet* input, const char* name, std::vector<cdm::Vec3>& points);

@@ -13,7 +13,7 @@ import re
 import sys
 import time
 import warnings
-from typing import Any, Callable, Dict, List, Optional
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
 
@@ -32,8 +32,8 @@ from .meshing import CHOICES, FLAGS, WHOLE_NUMBERS
 
 #: Options of functions that need Python.
 _LEFT_OUT = (
-    "surface", "labels", "region_names", "contacts", "sizing", "mesh_points", "layers", "progress",
-    "voxels", "origin",
+    "surface", "labels", "region_names", "contacts", "sizing", "mesh_points", "progress", "voxels",
+    "origin",
 )
 _EXAMPLES = """examples:
   conforming-delaunay mesh part.stl part.msh --edge-length 0.5
@@ -42,7 +42,7 @@ _EXAMPLES = """examples:
   conforming-delaunay volumes part.vtu boxes.npz
   conforming-delaunay interfaces voxels.vti interfaces.vtp --smoothing-length 6
   conforming-delaunay device "MOS transistor" device.vtp
-  conforming-delaunay mesh device.vtp device.msh
+  conforming-delaunay mesh device.vtp device.msh --region-size GateOxide=0.01
 
 exit status: 0; 1 if the mesh is at fault: invalid, or not Delaunay; 2 for bad input or options"""
 
@@ -63,6 +63,17 @@ def describe_parameters(function: Callable[..., Any]) -> Dict[str, str]:
     return found
 
 
+def _region_size(text: str) -> Tuple[str, float]:
+    """REGION=LENGTH."""
+    region, _, length = text.rpartition("=")
+    try:
+        if not region:
+            raise ValueError
+        return region, float(length)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not REGION=LENGTH") from None
+
+
 def _add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) -> None:
     texts = describe_parameters(function)
     for name, parameter in inspect.signature(function).parameters.items():
@@ -71,7 +82,25 @@ def _add_options(parser: argparse.ArgumentParser, function: Callable[..., Any]) 
         option = "--" + name.replace("_", "-")
         given: Dict[str, Any] = {"dest": name, "default": parameter.default}
         text = texts.get(name, "").replace("%", "%%")
-        if name == "spacing":
+        if name == "region_sizes":
+            parser.add_argument(
+                "--region-size",
+                type=_region_size,
+                action="append",
+                metavar="REGION=LENGTH",
+                help=text + " May be given several times.",
+                **given,
+            )
+        elif name == "layers":
+            parser.add_argument(
+                option,
+                nargs=5,
+                action="append",
+                metavar=("REGION", "NEIGHBOR", "NUMBER", "DISTANCE", "RATIO"),
+                help=text + " May be given several times; with --generate-mesh-points.",
+                **given,
+            )
+        elif name == "spacing":
             parser.add_argument(option, type=float, nargs="+", metavar="LENGTH", help=text, **given)
         elif name in CHOICES:
             words = [choice.replace(" ", "-") for choice in CHOICES[name]]
@@ -197,6 +226,7 @@ def _mesh(options: Dict[str, Any], progress: Any, as_json: bool) -> int:
     start = time.perf_counter()
     target, source = options.pop("output"), options.pop("input")
     save = {name: options.pop(name) for name in ("gmsh_format", "scale")}
+    options["region_sizes"] = dict(options["region_sizes"] or [])
     made = mesh(source, progress=progress, **options)
     made.save(target, **save)
     seconds = time.perf_counter() - start

@@ -182,6 +182,7 @@ class vtkConformingDelaunayMesher(_Stage):
         "RemoveSlivers",
         "DihedralAngleTarget",
         "RadiusEdgeRatio",
+        "MaximumDeviation",
     )
 
     inputs = (("vtkPolyData", False), ("vtkPointSet", True), ("vtkDataSet", True))
@@ -194,9 +195,31 @@ class vtkConformingDelaunayMesher(_Stage):
         "GenerateMeshPoints": False,
         "CloseOpenBoundary": False,
         "MaximumVolume": 0.0,
+        "Growth": 0.3,
         **dict.fromkeys(automatic, -1),
     }
     switches = ("AddSteinerPoints", "RemoveSlivers")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.region_sizes: Dict[Any, float] = {}
+        self.layers: List[Tuple[Any, ...]] = []
+
+    def AddRegionSize(self, region: Any, length: float) -> None:
+        self.region_sizes[region] = min(length, self.region_sizes.get(region, length))
+        self.Modified()
+
+    def RemoveAllRegionSizes(self) -> None:
+        self.region_sizes.clear()
+        self.Modified()
+
+    def AddLayers(self, *row: Any) -> None:
+        self.layers.append(row)
+        self.Modified()
+
+    def RemoveAllLayers(self) -> None:
+        self.layers.clear()
+        self.Modified()
 
     def SetMeshForToFiniteVolumes(self) -> None:
         self.SetMeshFor(self.FINITE_VOLUMES)
@@ -210,7 +233,12 @@ class vtkConformingDelaunayMesher(_Stage):
     def execute(self, data: List[Any], options: Dict[str, Any]) -> List[Any]:
         return _mesh_outputs(
             meshing.mesh(
-                data[0], mesh_points=_point_array(data[1]), sizing=_sized(data[2]), **options
+                data[0],
+                mesh_points=_point_array(data[1]),
+                sizing=_sized(data[2]),
+                region_sizes=self.region_sizes,
+                layers=self.layers or None,
+                **options,
             )
         )
 

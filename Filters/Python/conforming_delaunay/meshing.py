@@ -113,6 +113,55 @@ def _reals(value: Any) -> Optional[np.ndarray]:
     return None if value is None else np.asarray(value, np.float64)
 
 
+def _region_id(surface: Surface, region: Any) -> int:
+    """Of a name or an id."""
+    if isinstance(region, str):
+        if region in surface.region_names:
+            return surface.region_names.index(region)
+        try:
+            return int(region)
+        except ValueError:
+            names = ", ".join(name for name in surface.region_names if name)
+            wanted = "a whole number" + (f", or one of: {names}" if names else "")
+            raise _wrong("region", region, wanted) from None
+    try:
+        return operator.index(region)
+    except TypeError:
+        if float(region).is_integer():
+            return int(region)
+        raise _wrong("region", region, "a name or a whole number") from None
+
+
+def _region_sizes(surface: Surface, sizes: Optional[Mapping[Any, Any]]) -> Dict[str, Any]:
+    """The arrays of the engine for region_sizes."""
+    if not sizes:
+        return {}
+    return {
+        "region_size_ids": [_region_id(surface, region) for region in sizes],
+        "region_sizes": [float(_option("region_sizes", size)) for size in sizes.values()],
+    }
+
+
+def _layers(surface: Surface, layers: Any) -> Optional[np.ndarray]:
+    """Rows of numbers."""
+    if layers is None:
+        return None
+    rows = [[*row] if np.ndim(row) == 1 else [row] for row in layers]
+    if any(len(row) != 5 for row in rows):
+        raise _wrong(
+            "layers",
+            layers,
+            "rows of region, neighbor, number of layers, first distance and growth ratio",
+        )
+    return np.array(
+        [
+            [_region_id(surface, region), _region_id(surface, neighbor)]
+            + [float(_option("layers", number)) for number in numbers]
+            for region, neighbor, *numbers in rows
+        ]
+    ).reshape(-1, 5)
+
+
 def _spacing(value: Any) -> Any:
     return None if value is None else np.broadcast_to(np.asarray(value, np.float64), 3)
 
@@ -161,6 +210,9 @@ def mesh(
     region_names: Optional[Sequence[str]] = None,
     contacts: Optional[Mapping[str, Any]] = None,
     sizing: SizingLike = None,
+    region_sizes: Optional[Mapping[Any, float]] = None,
+    growth: float = 0.3,
+    maximum_deviation: Optional[float] = None,
     criterion: Any = None,
     add_steiner_points: Optional[bool] = None,
     radius_edge_ratio: Optional[float] = None,
@@ -211,6 +263,15 @@ def mesh(
     sizing : callable, tuple or vtkDataSet, optional
         Longest edges: a function of x, y, z; points (k, 3) and lengths (k,); these and tetrahedra
         (l, 4); or a data set with the point array Sizing. Model units.
+    region_sizes : mapping of str or int to float, optional
+        By name or id of a region, the longest edge there, beside edge_length and sizing. Model units.
+    growth : float, default: 0.3
+        How much longer edges may be for each unit of distance from a region with a size of its own.
+        Above 0; well shaped tetrahedra need about 0.5 or less.
+    maximum_deviation : float, optional
+        How far the surface may be from that of the input, and the input's from it, where it is finer
+        than edges are to be: it is made coarser first. Model units; 0: it stays as it is; None: a tenth
+        of the longest edge for surfaces of many small triangles, else 0.
     criterion : {"delaunay", "smallest sphere", "smallest sphere and edges"}, optional
         What the surface fulfils; the last one closes all control volumes.
     add_steiner_points : bool, optional
@@ -234,7 +295,8 @@ def mesh(
     spacing : float or array_like, optional
         Their distance, one or three, model units; None: by the size.
     layers : array_like, optional
-        (k, 5), rows of region, neighbor, number of layers, first distance, growth ratio.
+        (k, 5), rows of region, neighbor (names or ids; -1: outside), number of layers, first distance,
+        growth ratio.
     minimum_angle : float, default: 0
         Of the surface's triangles. Degrees, 0 (off) to 30.
     maximum_area : float, default: 0
@@ -290,6 +352,8 @@ def mesh(
                 mesh_for=mesh_for,
                 criterion=criterion,
                 edge_length=edge_length,
+                growth=growth,
+                maximum_deviation=maximum_deviation,
                 add_steiner_points=add_steiner_points,
                 radius_edge_ratio=radius_edge_ratio,
                 dihedral_angle_target=dihedral_angle_target,
@@ -306,9 +370,10 @@ def mesh(
                 keep_internal_pieces=keep_internal_pieces,
                 close_open_boundary=close_open_boundary,
             ),
+            **_region_sizes(polygons, region_sizes),
             "mesh_points": _reals(mesh_points),
             "spacing": _spacing(spacing),
-            "layers": _reals(layers),
+            "layers": _layers(polygons, layers),
         },
         sizing=function,
         progress=progress,
@@ -549,14 +614,15 @@ def generate_mesh_points(
     numpy.ndarray
         (k, 3), model units.
     """
+    triangles = Surface.from_any(surface)
     arrays, function = sizing_inputs(sizing)
     result = _engine.run(
         "generate_mesh_points",
         {
-            **triangle_inputs(Surface.from_any(surface)),
+            **triangle_inputs(triangles),
             **arrays,
             "spacing": _spacing(spacing),
-            "layers": _reals(layers),
+            "layers": _layers(triangles, layers),
             **_options(
                 placement=placement,
                 template=template,
