@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # bash Utilities/benchmark.sh [--models FOLDER] [--repetitions N] [--limit SECONDS] [--quick]
+#                             [--kinds KIND[,KIND]...] [--inputs NAME[,NAME]...]
 #                             [--output FOLDER] [--install-tetgen]
 # Installs what is missing (Debian 12), builds what is measured into build/, and measures it beside
 # TetGen, Gmsh, CGAL and vtkDelaunay3D, as far as they are installed: Suite.md, Suite.json and

@@ -2,13 +2,15 @@
 """Measures the suite beside TetGen, Gmsh, CGAL and vtkDelaunay3D, in one interleaved run.
 
     Suite.py run --programs BUILD/bin --output FOLDER [--models FOLDER] [--repetitions N]
-        [--limit SECONDS] [--quick]
+        [--limit SECONDS] [--quick] [--kinds KIND[,KIND]...] [--inputs NAME[,NAME]...]
     Suite.py report FOLDER
 
 run leaves Suite.json in the output folder, every single measurement and the certificate of each
 result; report makes Suite.md and SuiteGrowth.png from it, and is part of run. --models: .vtp files;
 those that an INDEX.csv beside them marks as valid are taken. --limit: processor time of a single
-measurement. --quick: a few small inputs. Programs that are not installed are named and left out.
+measurement. --quick: a few small inputs. --kinds: some of sets, devices, models, steiner (models
+with Steiner points), growth and device-growth. --inputs: some inputs of these, by their names.
+Programs that are not installed are named and left out.
 
 For each input the programs take turns, --repetitions times; each measurement is a process of its
 own. A program that has used REPEAT_SECONDS on an input is not repeated there. Exit status: 1 if one
@@ -51,7 +53,10 @@ DEVICES = ("MosTransistor", "ViaPlug", "NmosWithFieldOxide", "Locos", "DramInter
 GROWTH_DEVICE = "ViaPlug"
 # Edge of the regular tetrahedron of volume 1, which a limit on edges is compared with.
 REGULAR_EDGE = (6.0 * 2.0**0.5) ** (1.0 / 3.0)
-SHAPE = ["--criterion", "2", "--radius-edge-ratio", "1.4", "--dihedral-angle", "15"]
+SHAPE = ["--radius-edge-ratio", "1.4", "--dihedral-angle", "15"]
+# RefinementFault of tetrahedra that are badly shaped, but excused: SteinerFault::Inevitable.
+EXCUSED = 4
+KINDS = ("sets", "devices", "models", "steiner", "growth", "device-growth")
 
 
 def MakePlan(isQuick):
@@ -121,14 +126,16 @@ def FindPrograms(folder):
                          stdout=subprocess.PIPE, universal_newlines=True, check=True)
     names = [line.split()[0] for line in run.stdout.splitlines()]
     sets = [MakePointProgram(name) for name in names]
-    devices = [MakeMesher(SHAPE + ["--maximum-volume", "{volume}"])]
+    devices = [MakeMesher(["--criterion", "2"] + SHAPE + ["--maximum-volume", "{volume}"])]
     models = [MakeMesher(["--remove-slivers", "0"])]
+    steiner = [MakeMesher(["--criterion", "1"] + SHAPE + ["--steiner-points", "1"])]
     versions = dict(line.split() for line in run.stdout.splitlines() if len(line.split()) > 1)
     missing = [name for name in ("CGAL", "TetGen", "vtkDelaunay3D") if name not in names]
     if "TetGen" in names:
         versions["TetGen"] = GetPackageVersion("libtet1.5-dev")
         devices += [MakeTetgen("-pq1.4/15Aa{volume}D3O0"), MakeTetgen("-pq1.4Aa{volume}")]
         models += [MakeTetgen("-pADO0")]
+        steiner += [MakeTetgen("-pq1.4"), MakeTetgen("-pq1.4/15AaD3O0")]
     if os.path.exists(os.path.join(folder, "SuiteCgal")):
         devices.append(Program("CGAL Mesh_3", ["{programs}/SuiteCgal", "{regular_edge}",
                                                "{base}.vtp", "{mesh}"], "{mesh}.ele", OWN_CLOCK))
@@ -143,8 +150,8 @@ def FindPrograms(folder):
         versions["Gmsh"] = run.stdout.strip()
     else:
         missing.append("gmsh")
-    return {"sets": sets, "growth": sets, "devices": devices, "device growth": devices,
-            "models": models}, versions, missing
+    return {"sets": sets, "growth": sets, "devices": devices, "device-growth": devices,
+            "models": models, "steiner": steiner}, versions, missing
 
 
 def GetPackageVersion(package):
@@ -303,6 +310,13 @@ def Certify(path, numberOfPoints):
     certificate["AddedPoints"] = grid.GetNumberOfPoints() - numberOfPoints
     volumes = vtk_to_numpy(fields.GetArray("RegionVolumes"))
     certificate["RegionVolumes"] = volumes.tolist()
+    cells = criteria.GetOutput().GetCellData()
+    angles = vtk_to_numpy(cells.GetArray("SmallestDihedralAngle"))
+    faults = grid.GetCellData().GetArray("RefinementFault")
+    isExcused = vtk_to_numpy(faults) == EXCUSED if faults else numpy.zeros(len(angles), bool)
+    certificate["TetrahedraUnder15Degrees"] = int((angles < 15.0).sum())
+    certificate["ExcusedTetrahedra"] = int(isExcused.sum())
+    certificate["ExcusedUnder15Degrees"] = int((isExcused & (angles < 15.0)).sum())
     return certificate
 
 
@@ -439,12 +453,13 @@ def MakeTasks(plan, models, folder):
     for name in plan["devices"]:
         yield "devices", name, {"device": name, "elements": plan["elements"]}
     paths = find_models(models) if models else []
-    for path in paths[:plan["models"]]:
-        yield "models", os.path.splitext(os.path.basename(path))[0], {"path": path}
+    for kind in ("models", "steiner"):
+        for path in paths[:plan["models"]]:
+            yield kind, os.path.splitext(os.path.basename(path))[0], {"path": path}
     for count in plan["growth"]:
         yield "growth", "random, %d" % count, {"set": "random", "count": str(count)}
     for elements in plan["device_growth"]:
-        yield ("device growth", "%s, %d" % (GROWTH_DEVICE, elements),
+        yield ("device-growth", "%s, %d" % (GROWTH_DEVICE, elements),
                {"device": GROWTH_DEVICE, "elements": elements})
 
 
@@ -491,7 +506,7 @@ def RunTask(kind, name, task, programs, arguments, earlier):
             # Files of its own, which stay for the certificate.
             mesh = os.path.join(folder, "mesh%d" % len(own))
             own[program.Name] = {**files, "mesh": mesh}
-        enough = REPEAT_SECONDS_MODEL if kind == "models" else REPEAT_SECONDS
+        enough = REPEAT_SECONDS_MODEL if "path" in task else REPEAT_SECONDS
         runs = {program: [] for program in own}
         for _ in range(arguments.repetitions):
             for program in programs:
@@ -550,6 +565,7 @@ def Run(arguments):
         "missing": missing,
         "options": {"repetitions": arguments.repetitions, "limit": arguments.limit,
                     "quick": arguments.quick, "models": bool(arguments.models),
+                    "kinds": arguments.kinds, "inputs": arguments.inputs,
                     "repeat_seconds": REPEAT_SECONDS,
                     "repeat_seconds_model": REPEAT_SECONDS_MODEL}}
     results = []
@@ -558,6 +574,8 @@ def Run(arguments):
     earlier = {}
     for kind, name, task in MakeTasks(MakePlan(arguments.quick), arguments.models,
                                       arguments.output):
+        if kind not in arguments.kinds or (arguments.inputs and name not in arguments.inputs):
+            continue
         results += RunTask(kind, name, task, programs[kind], arguments, earlier)
         # What there is so far stays if the run is ended. A line for each result.
         with open(path, "w", encoding="ascii") as file:
@@ -571,6 +589,10 @@ def Run(arguments):
     return 1 if failures else 0
 
 
+def SplitNames(text):
+    return text.split(",")
+
+
 def main():
     parser = argparse.ArgumentParser()
     commands = parser.add_subparsers(dest="what", required=True)
@@ -581,6 +603,8 @@ def main():
     run.add_argument("--repetitions", type=int, default=5)
     run.add_argument("--limit", type=float, default=60.0)
     run.add_argument("--quick", action="store_true")
+    run.add_argument("--kinds", type=SplitNames, default=KINDS)
+    run.add_argument("--inputs", type=SplitNames, default=())
     report = commands.add_parser("report")
     report.add_argument("folder")
     arguments = parser.parse_args()
@@ -589,6 +613,8 @@ def main():
             parser.error("--repetitions and --limit have to be 1 or more")
         if arguments.models and not find_models(arguments.models):
             parser.error("there are no models in " + arguments.models)
+        if not set(arguments.kinds) <= set(KINDS):
+            parser.error("--kinds are some of " + ", ".join(KINDS))
         return Run(arguments)
     WriteReport(arguments.folder)
     return 0

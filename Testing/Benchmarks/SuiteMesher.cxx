@@ -5,9 +5,9 @@
  *
  *     SuiteMesher INPUT.vtp OUTPUT.vtu [--OPTION VALUE]...
  *
- * Options: criterion (one of vtkConformingDelaunayMesher::Criteria, 0), maximum-volume (0; above,
- * with Steiner points), radius-edge-ratio and dihedral-angle (of these; the filter's),
- * remove-slivers (1).
+ * Options: criterion (one of vtkConformingDelaunayMesher::Criteria, 0), steiner-points (0),
+ * maximum-volume (0; above, with Steiner points), radius-edge-ratio and dihedral-angle (of these;
+ * the filter's), remove-slivers (1).
  *
  * Prints one line of "name value" pairs: seconds (processor time of the filter, without reading and
  * writing), megabytes (the peak until then), points and tetrahedra. Exit status: 0 meshed, 1
@@ -33,8 +33,8 @@ int main(int argc, char* argv[])
 {
   vtkNew<vtkConformingDelaunayMesher> mesher;
   mesher->SetMeshForToFewestPoints();
-  std::map<std::string, double> options{ { "--criterion", 0.0 }, { "--maximum-volume", 0.0 },
-    { "--radius-edge-ratio", mesher->GetRadiusEdgeRatio() },
+  std::map<std::string, double> options{ { "--criterion", 0.0 }, { "--steiner-points", 0.0 },
+    { "--maximum-volume", 0.0 }, { "--radius-edge-ratio", mesher->GetRadiusEdgeRatio() },
     { "--dihedral-angle", mesher->GetDihedralAngleTarget() }, { "--remove-slivers", 1.0 } };
   bool isRightUse = argc >= 3 && argc % 2 == 1;
   for (int i = 3; isRightUse && i < argc; i += 2)
@@ -60,7 +60,8 @@ int main(int argc, char* argv[])
   }
   mesher->SetInputConnection(reader->GetOutputPort());
   mesher->SetCriterion(static_cast<int>(options["--criterion"]));
-  mesher->SetAddSteinerPoints(options["--maximum-volume"] > 0.0);
+  mesher->SetAddSteinerPoints(
+    options["--steiner-points"] != 0.0 || options["--maximum-volume"] > 0.0);
   mesher->SetMaximumVolume(options["--maximum-volume"]);
   mesher->SetRadiusEdgeRatio(options["--radius-edge-ratio"]);
   mesher->SetDihedralAngleTarget(options["--dihedral-angle"]);

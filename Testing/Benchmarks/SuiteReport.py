@@ -64,11 +64,19 @@ points to make the boundary Delaunay, TetGen after merging facets that are flat 
 gets triangles, keeps them, and puts points inside, as dense as the triangles around. Our time
 includes the check of the result, which the others do not have.
 """,
+    "steiner": """## Models with Steiner points
+
+The same surfaces with Steiner points and no limit on size. Ours: criterion 3.1, radius-edge ratio
+1.4, dihedral angle 15 degrees; TetGen: its default, which is not Delaunay, and with `-D` and the same
+limits. **under 5, 15**: tetrahedra with a smaller dihedral angle. **excused**: tetrahedra of ours that
+are badly shaped, but in a thin layer or at a sharp angle (*Inevitable*), and those of them under 15
+degrees.
+""",
     "growth": """## Growth
 
 Size: random points. `vtkDelaunay3D` ends where the next size would take too long.
 """,
-    "device growth": """Size: the volume of the via plug's box by the largest volume of a
+    "device-growth": """Size: the volume of the via plug's box by the largest volume of a
 tetrahedron. As the devices above; for Gmsh, too, the edge of the regular tetrahedron of that
 volume.
 """}
@@ -101,6 +109,12 @@ def GetCells(result, ours, kind):
     cells = ["%.3f" % seconds,
              "%.2f" % (seconds / reference) if isLong and reference > 0.0 else "",
              "%.0f" % GetMedian(result, "megabytes"), "%d" % certificate["Tetrahedra"]]
+    if kind == "steiner":
+        excused = ["%d" % certificate[name] for name in (
+            "ExcusedTetrahedra", "ExcusedUnder15Degrees")] if result is ours else ["", ""]
+        return cells + ["%d" % certificate["TetrahedraUnder5Degrees"],
+                        "%d" % certificate["TetrahedraUnder15Degrees"]] + excused + [
+                            certificate["Verdict"]]
     if kind != "sets":
         cells.append("%d" % certificate["AddedPoints"])
     cells += [FormatShare(certificate["NonDelaunayFacets"], certificate["Facets"]),
@@ -114,10 +128,13 @@ def GetCells(result, ours, kind):
 
 def WriteRows(results, kind, write):
     names = ["s", "ratio", "MB", "tetrahedra"]
-    names += [] if kind == "sets" else ["points added"]
-    names += ["non-Delaunay facets", "negative couplings"]
-    names += [] if kind == "sets" else ["filled spheres", "open"]
-    names += ["smallest angle", "under 5 degrees"]
+    if kind == "steiner":
+        names += ["under 5 degrees", "under 15", "excused", "excused under 15"]
+    else:
+        names += [] if kind == "sets" else ["points added"]
+        names += ["non-Delaunay facets", "negative couplings"]
+        names += [] if kind == "sets" else ["filled spheres", "open"]
+        names += ["smallest angle", "under 5 degrees"]
     write("| input | program | %s | verdict |\n|---|---|%s---|\n" % (
         " | ".join(names), "---:|" * len(names)))
     ours = {result["input"]: result for result in results if result["program"] == "ours"}
@@ -157,6 +174,28 @@ def WriteSummary(results, write):
             program, len(rows), len(verdicts), " | ".join(map(str, counts)), " | ".join(cells)))
     write("\nThe last four columns: by ours, median (quartiles) of the inputs that both mesh; time "
           "where one of them takes %g s or more.\n\n" % SHORTEST)
+
+
+def WriteOwnRatios(results, write):
+    """A row for each other program: our seconds, tetrahedra and MB by theirs."""
+    write("Ours by theirs, median and nine of ten of the inputs that both mesh:\n\n")
+    write("| program | time | tetrahedra | memory |\n|---|---:|---:|---:|\n")
+    ours = {result["input"]: result for result in results if result["program"] == "ours"}
+    for program in dict.fromkeys(result["program"] for result in results):
+        cells = []
+        for get in (lambda row: GetMedian(row, "seconds"), GetTetrahedra,
+                    lambda row: GetMedian(row, "megabytes")):
+            pairs = [(get(ours[row["input"]]), get(row)) for row in results
+                     if row["program"] == program and row["certificate"]
+                     and ours[row["input"]]["certificate"]]
+            ratios = sorted(own / other for own, other in pairs
+                            if get is GetTetrahedra or max(own, other) >= SHORTEST and other > 0.0)
+            cells.append("%.2f, %.2f" % (
+                statistics.median(ratios), ratios[math.ceil(0.9 * len(ratios)) - 1])
+                         if ratios else "")
+        if program != "ours":
+            write("| %s | %s |\n" % (program, " | ".join(cells)))
+    write("\n")
 
 
 def WriteGrowth(results, write):
@@ -286,18 +325,24 @@ def WriteReport(folder):
                   options["repetitions"], options["repeat_seconds"],
                   options["repeat_seconds_model"], options["limit"],
                   " The short form." if options["quick"] else ""))
-        for kind in ("sets", "devices", "models"):
+        for kind in ("sets", "devices", "models", "steiner"):
             rows = [result for result in results if result["kind"] == kind]
             if rows:
                 write(TEXTS[kind] + "\n")
                 WriteSummary(rows, write)
-        for kind in ("growth", "device growth"):
+                if kind == "steiner":
+                    WriteOwnRatios(rows, write)
+        growth = [result for result in results if "growth" in result["kind"]]
+        for kind in dict.fromkeys(result["kind"] for result in growth):
             write(TEXTS[kind] + "\n")
-            WriteGrowth([result for result in results if result["kind"] == kind], write)
-        write("![Processor time by tetrahedra](SuiteGrowth.png)\n")
-        for kind, title in (("sets", "point set"), ("devices", "device"), ("models", "model")):
+            WriteGrowth([result for result in growth if result["kind"] == kind], write)
+        if growth:
+            write("![Processor time by tetrahedra](SuiteGrowth.png)\n")
+        for kind, title in (("sets", "point set"), ("devices", "device"), ("models", "model"),
+                            ("steiner", "model with Steiner points")):
             rows = [result for result in results if result["kind"] == kind]
             if rows:
                 write("\n## Each %s\n\n" % title)
                 WriteRows(rows, kind, write)
-    DrawGrowth(results, os.path.join(folder, "SuiteGrowth.png"))
+    if growth:
+        DrawGrowth(results, os.path.join(folder, "SuiteGrowth.png"))

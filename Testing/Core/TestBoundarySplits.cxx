@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Basics/SortedIds.h"
+#include "Core/Improvement/BoundaryShape.h"
 #include "Core/Improvement/BoundarySpheres.h"
 #include "Core/Improvement/BoundarySplits.h"
+#include "Core/Improvement/NegativeCouplings.h"
 #include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
@@ -10,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 #include <random>
@@ -62,6 +65,7 @@ public:
     this->InsertPoints(60);
     this->Splits = std::make_unique<BoundarySplits>(
       *this->Mesh, this->FirstInside, this->Surface, this->Edges, this->Options, SizingField());
+    this->Shape = this->MakeShape();
   }
 
   /** Into random tetrahedra, where they disturb nothing. */
@@ -135,10 +139,56 @@ public:
     {
       edges.push_back(this->Edges[this->Draw(static_cast<Id>(this->Edges.size()))].Points);
     }
+    std::map<Id, Id> sourceTriangles;
+    for (std::size_t t = 0; t < this->Surface.SourceCells.size(); ++t)
+    {
+      sourceTriangles[this->Surface.SourceCells[t]] = static_cast<Id>(t);
+    }
     EXPECT_TRUE(this->Splits->Run(triangles, edges, {}).IsOk());
+    BoundaryChange change{ this->Splits->GetChangedTriangles(), {}, this->Splits->GetChangedEdges(),
+      this->Splits->GetSegments() };
+    for (Id t : change.Triangles)
+    {
+      change.Parents.push_back(sourceTriangles.at(this->Surface.SourceCells[t]));
+    }
+    if (this->Splits->IsUsable())
+    {
+      this->Shape->Follow(change);
+      this->Couplings.NoteTriangles(this->Surface, change.Triangles);
+    }
     // What has failed is still to be done.
     EXPECT_EQ(triangles.empty() && edges.empty(), this->Splits->IsUsable());
     return this->Splits->IsUsable();
+  }
+
+  /** What is known of the boundary is what is found anew. */
+  void ExpectShapeAsMadeAnew()
+  {
+    const std::unique_ptr<BoundaryShape> expected = this->MakeShape();
+    const TetMesh& mesh = this->Mesh->GetMesh();
+    NegativeCouplings couplings;
+    EXPECT_EQ(this->Couplings.Update(*this->Mesh, this->Surface, this->Shape->PointTriangles),
+      couplings.Update(*this->Mesh, this->Surface, expected->PointTriangles));
+    BoundarySpheres::Encroached found;
+    BoundarySpheres::Encroached wanted;
+    for (Id t = 0; t < this->Mesh->GetNumberOfTetrahedra(); ++t)
+    {
+      if (this->Mesh->IsDead(t))
+      {
+        continue;
+      }
+      const TetrahedronIds& ids = mesh.Tetrahedra[t];
+      EXPECT_EQ(this->Shape->Sharp.IsAcross(ids), expected->Sharp.IsAcross(ids));
+      EXPECT_EQ(this->Shape->Sharp.IsAtCorner(ids), expected->Sharp.IsAtCorner(ids));
+      EXPECT_EQ(this->Shape->Layers.IsAcross(ids, mesh.Regions[t]),
+        expected->Layers.IsAcross(ids, mesh.Regions[t]));
+      const std::array<Vec3, 4> v = this->Mesh->GetCorners(t);
+      const Vec3 position = 0.4 * v[0] + 0.3 * v[1] + 0.2 * v[2] + 0.1 * v[3];
+      this->Shape->Spheres.Find(position, found);
+      expected->Spheres.Find(position, wanted);
+      EXPECT_EQ(found.Triangles, wanted.Triangles);
+      EXPECT_EQ(found.Edges, wanted.Edges);
+    }
   }
 
   std::size_t GetNumberOfSurfacePoints() const { return this->Surface.Points.size(); }
@@ -198,6 +248,12 @@ public:
   }
 
 private:
+  std::unique_ptr<BoundaryShape> MakeShape() const
+  {
+    return std::make_unique<BoundaryShape>(
+      this->Surface, this->Edges, this->Edges, SharpPlaneAngleOfEmptySpheres);
+  }
+
   Id Draw(Id count) { return std::uniform_int_distribution<Id>(0, count - 1)(this->Generator); }
 
   std::mt19937_64& Generator;
@@ -207,6 +263,8 @@ private:
   Id FirstInside = 0;
   std::unique_ptr<DynamicTetrahedralization> Mesh;
   std::unique_ptr<BoundarySplits> Splits;
+  std::unique_ptr<BoundaryShape> Shape;
+  NegativeCouplings Couplings;
 };
 
 /** Three boxes side by side and on top of each other: many points on one sphere. */
@@ -235,6 +293,7 @@ TEST(BoundarySplits, TheMeshIsAsMadeAnew)
     {
       ASSERT_TRUE(mesh.Split(run, 8 - run));
       mesh.ExpectAsMadeAnew();
+      mesh.ExpectShapeAsMadeAnew();
       mesh.InsertPoints(10);
       mesh.RemovePoints(5);
     }

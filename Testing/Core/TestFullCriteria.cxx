@@ -56,6 +56,43 @@ TEST(FullCriteria, QualityOfTheRegularTetrahedron)
   EXPECT_NEAR(quality.SmallestDihedralAngle, quality.LargestDihedralAngle, 1e-12);
 }
 
+/** Closed forms of what solvers compute that add up boxes without the signs of their parts. */
+TEST(FullCriteria, UnsignedBoxes)
+{
+  EXPECT_NEAR(1.0, GetTetrahedronQuality(A, B, C, D).UnsignedBoxRatio, 1e-15) << "center inside";
+  EXPECT_NEAR(2.0,
+    GetTetrahedronQuality({ 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }).UnsignedBoxRatio,
+    1e-15);
+  EXPECT_NEAR(1.0,
+    GetTetrahedronQuality({ 0, 0, 0 }, { 1, 0, 0 }, { 1, 2, 0 }, { 1, 2, 3 }).UnsignedBoxRatio,
+    1e-15)
+    << "center on an edge";
+  EXPECT_TRUE(std::isinf(
+    GetTetrahedronQuality({ 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 }).UnsignedBoxRatio));
+
+  // The cube of five, where the four at its corners are twice as large as they should be; beside it
+  // a region in which nothing is too large.
+  std::vector<Vec3> points;
+  for (int i = 0; i < 8; ++i)
+  {
+    points.push_back({ double(i & 1), double((i >> 1) & 1), double((i >> 2) & 1) });
+  }
+  TetMesh mesh = MakeMesh(
+    points, { { 0, 1, 2, 4 }, { 3, 2, 1, 7 }, { 5, 4, 7, 1 }, { 6, 7, 4, 2 }, { 1, 7, 2, 4 } });
+  for (const Vec3& corner : { A, B, C, D })
+  {
+    mesh.Points.push_back(corner + Vec3{ 9, 0, 0 });
+  }
+  mesh.Tetrahedra.push_back({ 8, 9, 10, 11 });
+  mesh.Regions.push_back(1);
+  const MeshCertificate report = Evaluate(mesh);
+  ASSERT_EQ(2u, report.Regions.size());
+  EXPECT_NEAR(5.0 / 3.0, report.Regions[0].UnsignedBoxRatio, 1e-14);
+  EXPECT_NEAR(1.0, report.Regions[1].UnsignedBoxRatio, 1e-14);
+  EXPECT_EQ((std::vector<char>{ 1, 1, 1, 1, 0, 0 }), report.MakesUnsignedBoxesLarge);
+  EXPECT_NE(std::string::npos, report.GetText().find("1.67 times as large in region 0"));
+}
+
 TEST(FullCriteria, QualityOfDegenerateTetrahedraIsTheWorst)
 {
   const TetrahedronQuality flat =

@@ -52,7 +52,7 @@ def two_boxes():
     polygons = [[0, 3, 4, 1], [1, 4, 5, 2], [6, 7, 10, 9], [7, 8, 11, 10], [0, 1, 7, 6],
                 [1, 2, 8, 7], [3, 9, 10, 4], [4, 10, 11, 5], [0, 6, 9, 3], [2, 5, 11, 8],
                 [1, 7, 10, 4]]
-    return cd.mesh((points, polygons), maximum_edge_length=0.4, add_steiner_points=True,
+    return cd.mesh((points, polygons), edge_length=0.4, add_steiner_points=True,
                    criterion="smallest sphere and edges")
 
 
@@ -213,6 +213,38 @@ class TestExamples(unittest.TestCase):
         errors = {name: np.abs(result[1] / reference - 1.0).max() for name, result in results.items()}
         self.assertLess(errors["ours, round 1"], 0.03)
         self.assertGreater(errors["ours, DEVSIM's boxes"], 2.0 * errors["ours, round 1"])
+
+    def test_transistor(self):
+        import mos_transistor
+
+        reference, results = mos_transistor.run(
+            ((1.0, 0.1), (1.5, 0.1)), mos_transistor.LENGTHS[:1], has_gmsh=False)
+        signed, unsigned = (np.abs(result[1] / reference - 1.0) for result in results.values())
+        self.assertLess(signed.max(), 0.1)
+        self.assertTrue(np.all(unsigned > signed))
+
+    def test_unsigned_boxes(self):
+        import unsigned_boxes
+
+        # An equilateral prism, however high, and one with a right angle.
+        for height in (0.01, 1.0):
+            self.assertTrue(
+                np.allclose(unsigned_boxes.get_prism_ratios(60.0, height), 11.0 / 9.0, rtol=1e-9))
+            self.assertTrue(
+                np.allclose(unsigned_boxes.get_prism_ratios(90.0, height), (1.0, 4.0 / 3.0), rtol=1e-9))
+        grid, boundary, _ = unsigned_boxes.make_mesh(cd.vtkTechnologyStructureSource.MOS_TRANSISTOR)
+        rows = unsigned_boxes.get_classes(grid, boundary)
+        # All classes together are the ratio, and the gate oxide is one tetrahedron thick.
+        for _, _, ratio, *classes in rows:
+            self.assertAlmostEqual(1.0 + sum(classes[1:6:2]), ratio, places=12)
+            self.assertAlmostEqual(sum(classes[:6:2]), 1.0, places=12)
+        self.assertAlmostEqual(rows[1][7], 1.0, places=12)
+        moved = list(unsigned_boxes.move_points(grid, boundary, 2))[-1]
+        before, after = (unsigned_boxes.get_ratios(each)[0] for each in (grid, moved))
+        self.assertTrue(np.all(after < before))
+        self.assertLess(after[0] - 1.0, 0.5 * (before[0] - 1.0))
+        fields = unsigned_boxes.certify(moved).GetFieldData()
+        self.assertEqual(fields.GetArray("IsClean").GetValue(0), 1)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gmsh, GetDP and meshio read the files of vtkGmshMeshWriter, with names of regions and data.
+"""Gmsh, GetDP, FreeFEM and meshio read the files of vtkGmshMeshWriter, with names of regions and data.
 
 Those that are not installed are skipped with a message.
 """
@@ -114,6 +114,25 @@ PostOperation { { Name O; NameOfPostProcessing P; Operation {
         for name, volume in (("bulk", self.volumes["Bulk"]), ("oxide", self.volumes["GateOxide"])):
             with open(os.path.join(self.folder.name, name + ".txt")) as file:
                 self.assertAlmostEqual(float(file.read().split()[-1]) / volume, 1.0, places=9)
+
+    @needs("FreeFem++")
+    def test_freefem(self):
+        path = self.write(0)
+        program = os.path.join(self.folder.name, "volumes.edp")
+        with open(program, "w") as file:
+            file.write(f"""
+load "gmsh"
+mesh3 Th = gmshload3("{path}");
+cout.precision(15);
+cout << "counts " << Th.nv << " " << Th.nt << endl;
+cout << "volumes " << int3d(Th, 1)(1.) << " " << int3d(Th, 2)(1.) << endl;
+""")
+        output = self.run_program("FreeFem++", "-nw", "-v", "0", program)
+        counts = re.search(r"counts (\d+) (\d+)", output)
+        self.assertEqual([int(count) for count in counts.groups()], [len(self.points), self.count])
+        volumes = re.search(r"volumes (\S+) (\S+)", output)
+        for name, volume in zip(("Bulk", "GateOxide"), volumes.groups()):
+            self.assertAlmostEqual(float(volume) / self.volumes[name], 1.0, places=9)
 
     @unittest.skipUnless(importlib.util.find_spec("meshio"), "meshio is not installed")
     def test_meshio(self):

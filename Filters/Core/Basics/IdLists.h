@@ -58,6 +58,18 @@ public:
     }
   }
 
+  /** Adds an owner, after all others. */
+  void Append(const std::vector<Id>& ids)
+  {
+    if (this->Begin.empty())
+    {
+      this->Begin.push_back(0);
+    }
+    this->Ids.insert(this->Ids.end(), ids.begin(), ids.end());
+    this->Begin.push_back(static_cast<Id>(this->Ids.size()));
+    this->End.push_back(this->Begin.back());
+  }
+
   Range operator[](Id owner) const
   {
     return { this->Ids.data() + this->Begin[owner], this->Ids.data() + this->End[owner] };

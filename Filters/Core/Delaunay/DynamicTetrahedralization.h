@@ -70,6 +70,8 @@ public:
    * A stamp that identifies the tetrahedron in this slot: no other one ever gets the same stamp.
    */
   std::int64_t GetStamp(Id tetrahedron) const { return this->Stamps[tetrahedron]; }
+  /** The stamp of the next tetrahedron that is made: those of older ones are smaller. */
+  std::int64_t GetNextStamp() const { return this->NextStamp; }
   /** A tetrahedron at the point, or NoId. */
   Id GetTetrahedronAt(Id point) const { return this->PointTetrahedra[point]; }
   /** Whether a facet lies between two regions or at the outside: it is never removed. */
@@ -86,6 +88,9 @@ public:
    * first one. NoId if a boundary is in the way, or if cospherical sets lead the walk in a circle.
    */
   Id Locate(const Vec3& position, Id first) const;
+
+  /** Whether a point with the given number lies in the (pulled) circumsphere of a tetrahedron. */
+  bool IsInConflict(Id tetrahedron, const Vec3& position, Id number) const;
 
   /**
    * Finds the cavity of a point with the given number. The search starts from a tetrahedron whose
@@ -126,7 +131,6 @@ public:
   const std::vector<Id>& GetChanged() const { return this->Changed; }
 
 private:
-  bool IsInConflict(Id tetrahedron, const Vec3& position, Id number) const;
   Id Make(const TetrahedronIds& ids, Id region);
   void Kill(Id tetrahedron);
   void Fill(Id point, const PointCavity& cavity);

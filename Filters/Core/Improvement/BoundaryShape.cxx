@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/BoundaryShape.h"
 
-#include <utility>
-
 namespace cdm
 {
 BoundaryShape::BoundaryShape(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
@@ -10,17 +8,16 @@ BoundaryShape::BoundaryShape(const TriangleMesh& surface, const std::vector<Stru
   : Spheres(surface, keptEdges),
     PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
     Sharp(surface, edges, this->PointTriangles, sharpPlaneAngle),
-    Layers(surface, this->PointTriangles)
+    Layers(surface, this->PointTriangles), Surface(surface), Edges(edges)
 {
 }
 
-BoundaryShape::BoundaryShape(BoundaryShape&& coarse, const TriangleMesh& surface,
-  const std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges,
-  const std::vector<Id>& parents)
-  : Spheres(surface, keptEdges),
-    PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
-    Sharp(std::move(coarse.Sharp), edges, this->PointTriangles, parents),
-    Layers(coarse.Layers, this->PointTriangles, parents)
+void BoundaryShape::Follow(const BoundaryChange& change)
 {
+  this->Spheres.Follow(change.Triangles, change.Edges, change.Segments);
+  this->PointTriangles =
+    ListTrianglesAtPoints(this->Surface.Triangles, this->Surface.Points.size());
+  this->Sharp.Follow(this->Edges, change.Edges, change.Triangles, change.Parents);
+  this->Layers.Follow(change.Triangles, change.Parents);
 }
 } // namespace cdm

@@ -18,6 +18,19 @@
 
 namespace cdm
 {
+/** What splits and moves have changed in a boundary. */
+struct BoundaryChange
+{
+  /** Triangles that are new, or have got other points or positions. */
+  std::vector<Id> Triangles;
+  /** For each of them a triangle of the boundary as it was before, in the same surface facet. */
+  std::vector<Id> Parents;
+  /** Structural edges that are new, or have got other ends or positions. */
+  std::vector<Id> Edges;
+  /** For each structural edge a number that it keeps in other lists: at first its index. */
+  const std::vector<Id>& Segments;
+};
+
 /** Cannot be copied or moved: some members refer to others. */
 struct BoundaryShape
 {
@@ -30,21 +43,22 @@ struct BoundaryShape
   BoundaryShape(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
     const std::vector<StructuralEdge>& keptEdges, double sharpPlaneAngle);
   /**
-   * The shape after some triangles have been split. Tetrahedra that stay are in the same sharp
-   * angles and thin layers as before.
-   * @param parents for each triangle one of the coarse surface in the same surface facet
+   * Follows splits and moves of the boundary, whose kept edges are its structural edges.
+   * Tetrahedra that stay are in the same sharp angles and thin layers as before.
    */
-  BoundaryShape(BoundaryShape&& coarse, const TriangleMesh& surface,
-    const std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges,
-    const std::vector<Id>& parents);
+  void Follow(const BoundaryChange& change);
   BoundaryShape(const BoundaryShape&) = delete;
   BoundaryShape& operator=(const BoundaryShape&) = delete;
 
   BoundarySpheres Spheres;
   /** Triangles at each point of the surface. */
-  const IdLists PointTriangles;
+  IdLists PointTriangles;
   SharpAngles Sharp;
-  const ThinLayers Layers;
+  ThinLayers Layers;
+
+private:
+  const TriangleMesh& Surface;
+  const std::vector<StructuralEdge>& Edges;
 };
 } // namespace cdm
 

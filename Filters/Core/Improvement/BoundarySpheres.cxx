@@ -4,6 +4,8 @@
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 
+#include <algorithm>
+
 namespace cdm
 {
 namespace
@@ -19,19 +21,48 @@ BoundarySpheres::BoundarySpheres(
   const TriangleMesh& surface, const std::vector<StructuralEdge>& edges)
   : Surface(surface), Edges(edges)
 {
-  const Id count = static_cast<Id>(surface.Triangles.size());
-  for (Id t = 0; t < count; ++t)
+  for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()); ++t)
   {
-    const TriangleIds& ids = surface.Triangles[t];
-    const Vec3& a = surface.Points[ids[0]];
-    const Vec3 offset = GetCircumcenterOffset(a, surface.Points[ids[1]], surface.Points[ids[2]]);
-    this->Balls.Set(t, a + offset, Margin * Norm(offset));
+    this->SetTriangle(t);
   }
-  for (std::size_t e = 0; e < edges.size(); ++e)
+  for (Id e = 0; e < static_cast<Id>(edges.size()); ++e)
   {
-    const Vec3& a = surface.Points[edges[e].Points[0]];
-    const Vec3& b = surface.Points[edges[e].Points[1]];
-    this->Balls.Set(count + static_cast<Id>(e), 0.5 * (a + b), 0.5 * Margin * Distance(a, b));
+    this->SegmentEdges.push_back(e);
+    this->SetEdge(e, e);
+  }
+}
+
+void BoundarySpheres::SetTriangle(Id triangle)
+{
+  const TriangleIds& ids = this->Surface.Triangles[triangle];
+  const Vec3& a = this->Surface.Points[ids[0]];
+  const Vec3 offset =
+    GetCircumcenterOffset(a, this->Surface.Points[ids[1]], this->Surface.Points[ids[2]]);
+  this->Balls.Set(2 * triangle, a + offset, Margin * Norm(offset));
+}
+
+void BoundarySpheres::SetEdge(Id edge, Id segment)
+{
+  const Vec3& a = this->Surface.Points[this->Edges[edge].Points[0]];
+  const Vec3& b = this->Surface.Points[this->Edges[edge].Points[1]];
+  this->Balls.Set(2 * segment + 1, 0.5 * (a + b), 0.5 * Margin * Distance(a, b));
+}
+
+void BoundarySpheres::Follow(const std::vector<Id>& triangles, const std::vector<Id>& changedEdges,
+  const std::vector<Id>& segments)
+{
+  for (Id t : triangles)
+  {
+    this->SetTriangle(t);
+  }
+  this->SegmentEdges.resize(segments.size());
+  for (std::size_t e = 0; e < segments.size(); ++e)
+  {
+    this->SegmentEdges[segments[e]] = static_cast<Id>(e);
+  }
+  for (Id e : changedEdges)
+  {
+    this->SetEdge(e, segments[e]);
   }
 }
 
@@ -40,24 +71,25 @@ void BoundarySpheres::Find(const Vec3& position, Encroached& encroached)
   encroached.Triangles.clear();
   encroached.Edges.clear();
   this->Balls.Find(position, this->Near);
-  const Id count = static_cast<Id>(this->Surface.Triangles.size());
   const std::vector<Vec3>& points = this->Surface.Points;
   for (Id id : this->Near)
   {
-    if (id >= count)
+    if (id % 2 != 0)
     {
-      const EdgeIds& ends = this->Edges[id - count].Points;
+      const Id edge = this->SegmentEdges[id / 2];
+      const EdgeIds& ends = this->Edges[edge].Points;
       if (InDiametralSphere(points[ends[0]], points[ends[1]], position) >= 0)
       {
-        encroached.Edges.push_back(id - count);
+        encroached.Edges.push_back(edge);
       }
       continue;
     }
-    const TriangleIds& ids = this->Surface.Triangles[id];
+    const TriangleIds& ids = this->Surface.Triangles[id / 2];
     if (InEquatorialSphere(points[ids[0]], points[ids[1]], points[ids[2]], position) >= 0)
     {
-      encroached.Triangles.push_back(id);
+      encroached.Triangles.push_back(id / 2);
     }
   }
+  std::sort(encroached.Edges.begin(), encroached.Edges.end());
 }
 } // namespace cdm

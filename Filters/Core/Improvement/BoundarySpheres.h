@@ -9,7 +9,8 @@
  * thesis says "disturb" for encroach. If no point encroaches on them, all triangles and edges stay
  * part of the Delaunay mesh.
  *
- * Exact. Cost: O(1) for a point, in cells of BallIndex.h; about 100 bytes per triangle and edge.
+ * Exact. Cost: O(1) for a point, in cells of BallIndex.h, and for a triangle or edge that changes;
+ * about 100 bytes per triangle and edge.
  */
 #ifndef cdmBoundarySpheres_h
 #define cdmBoundarySpheres_h
@@ -38,11 +39,25 @@ public:
   };
   void Find(const Vec3& position, Encroached& encroached);
 
+  /**
+   * Follows splits and moves of the surface.
+   * @param triangles that are new, or have got other points or positions
+   * @param changedEdges the same for edges
+   * @param segments for each edge a number that it keeps in other lists: at first its index
+   */
+  void Follow(const std::vector<Id>& triangles, const std::vector<Id>& changedEdges,
+    const std::vector<Id>& segments);
+
 private:
+  void SetTriangle(Id triangle);
+  void SetEdge(Id edge, Id segment);
+
   const TriangleMesh& Surface;
   const std::vector<StructuralEdge>& Edges;
-  /** Balls around triangles, then around edges, a little too large. */
+  /** Balls around triangles t (2 t) and segments s (2 s + 1), a little too large. */
   BallIndex Balls;
+  /** The edge of each segment. */
+  std::vector<Id> SegmentEdges;
   std::vector<Id> Near;
 };
 } // namespace cdm

@@ -50,7 +50,8 @@ BoundarySplits::BoundarySplits(DynamicTetrahedralization& mesh, Id firstInside,
       this->SurfacePoints.push_back(NoId);
     }
   }
-  this->ListEdges();
+  this->Segments.resize(edges.size());
+  std::iota(this->Segments.begin(), this->Segments.end(), 0);
 }
 
 /** Tells the refinement which points have come, moved or gone since the last run. */
@@ -108,6 +109,7 @@ Status BoundarySplits::Run(
   std::vector<Id>& triangles, std::vector<EdgeIds>& edges, const ExecutionContext& context)
 {
   this->Changed.clear();
+  this->ChangedTriangles.clear();
   Status status = this->IsUsable() ? this->FollowPoints(context) : Status();
   this->CanGoOn = this->CanGoOn && status.IsOk() && this->Update();
   const Id numberOfPoints = static_cast<Id>(this->Surface.Points.size());
@@ -153,9 +155,10 @@ Status BoundarySplits::Run(
     }
   }
   triangles.erase(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(done));
+  SortUnique(this->ChangedTriangles);
   if (this->IsUsable())
   {
-    this->ListEdges();
+    this->UpdateEdges();
   }
   return status;
 }
@@ -188,6 +191,7 @@ bool BoundarySplits::Update()
   const std::vector<Id> pulled = this->Refinement.TakeTouched();
   touched.insert(touched.end(), pulled.begin(), pulled.end());
   SortUnique(touched);
+  this->ChangedTriangles.insert(this->ChangedTriangles.end(), touched.begin(), touched.end());
   this->CollectTriangles(touched);
   if (this->Triangles.empty() && this->Moved.empty())
   {
@@ -553,24 +557,64 @@ void BoundarySplits::Adopt(const std::vector<Vec3>& points)
   }
 }
 
-/** Lists the structural edges of the refinement, sorted, with their segments. */
-void BoundarySplits::ListEdges()
+/** Brings the pieces of segments that were split into the sorted list of structural edges. */
+void BoundarySplits::UpdateEdges()
 {
   const RefinableSurface& refined = this->Refinement.GetSurface();
-  std::vector<std::pair<EdgeIds, Id>> order;
-  for (Id s = 0; s < refined.GetNumberOfSegments(); ++s)
+  const Id count = refined.GetNumberOfSegments();
+  std::vector<Id> edges(count, NoId);
+  for (std::size_t e = 0; e < this->Segments.size(); ++e)
+  {
+    edges[this->Segments[e]] = static_cast<Id>(e);
+  }
+  std::vector<std::pair<EdgeIds, Id>> changed;
+  for (Id s = 0; s < count; ++s)
   {
     const EdgeIds& ends = refined.GetSegment(s).Points;
-    order.emplace_back(MakeEdge(this->SurfacePoints[ends[0]], this->SurfacePoints[ends[1]]), s);
+    const EdgeIds edge = MakeEdge(this->SurfacePoints[ends[0]], this->SurfacePoints[ends[1]]);
+    if (edges[s] == NoId || this->Edges[edges[s]].Points != edge)
+    {
+      changed.emplace_back(edge, s);
+      if (edges[s] != NoId)
+      {
+        this->Segments[edges[s]] = NoId;
+      }
+    }
   }
-  std::sort(order.begin(), order.end());
-  this->Edges.clear();
-  this->Segments.clear();
-  for (const auto& [ends, s] : order)
+  this->ChangedEdges.clear();
+  if (changed.empty())
   {
-    const RefinableSurface::Segment& segment = refined.GetSegment(s);
-    this->Edges.push_back({ ends, segment.Kind, segment.Chain, segment.DihedralAngle });
-    this->Segments.push_back(s);
+    return;
+  }
+  std::sort(changed.begin(), changed.end());
+  const std::vector<StructuralEdge> before = std::exchange(this->Edges, {});
+  const std::vector<Id> segments = std::exchange(this->Segments, {});
+  this->Edges.reserve(count);
+  this->Segments.reserve(count);
+  auto next = changed.begin();
+  const auto addChanged = [&]
+  {
+    const RefinableSurface::Segment& segment = refined.GetSegment(next->second);
+    this->ChangedEdges.push_back(static_cast<Id>(this->Edges.size()));
+    this->Edges.push_back({ next->first, segment.Kind, segment.Chain, segment.DihedralAngle });
+    this->Segments.push_back(next->second);
+    ++next;
+  };
+  for (std::size_t e = 0; e < before.size(); ++e)
+  {
+    if (segments[e] != NoId)
+    {
+      while (next != changed.end() && next->first < before[e].Points)
+      {
+        addChanged();
+      }
+      this->Edges.push_back(before[e]);
+      this->Segments.push_back(segments[e]);
+    }
+  }
+  while (next != changed.end())
+  {
+    addChanged();
   }
 }
 } // namespace cdm

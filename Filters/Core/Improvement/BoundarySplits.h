@@ -58,6 +58,12 @@ public:
 
   /** Tetrahedra that the last run has made; some may be gone again. */
   const std::vector<Id>& GetChanged() const { return this->Changed; }
+  /** Triangles of the surface that the last run has made or may have changed, ascending. */
+  const std::vector<Id>& GetChangedTriangles() const { return this->ChangedTriangles; }
+  /** The same for structural edges, by their indices. */
+  const std::vector<Id>& GetChangedEdges() const { return this->ChangedEdges; }
+  /** For each structural edge its segment, which keeps its number. At first that is its index. */
+  const std::vector<Id>& GetSegments() const { return this->Segments; }
 
 private:
   /** A triangle of the surface after the split. */
@@ -81,7 +87,7 @@ private:
   bool FindSides(const TriangleIds& ids);
   void Visit(Id tetrahedron, Id point, const Vec3& position);
   void Adopt(const std::vector<Vec3>& points);
-  void ListEdges();
+  void UpdateEdges();
 
   DynamicTetrahedralization& Mesh;
   const Id FirstInside;
@@ -98,6 +104,8 @@ private:
   /** Point of the surface for each point of the refinement, or NoId. */
   std::vector<Id> SurfacePoints;
   std::vector<Id> Changed;
+  std::vector<Id> ChangedTriangles;
+  std::vector<Id> ChangedEdges;
   /** Points of the surface, ascending, that have not been moved in the mesh yet. */
   std::vector<Id> Moved;
 

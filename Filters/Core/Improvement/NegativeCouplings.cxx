@@ -2,37 +2,61 @@
 #include "Core/Improvement/NegativeCouplings.h"
 
 #include "Core/Basics/SortedIds.h"
-#include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/VoronoiMeasures.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace cdm
 {
 namespace
 {
-/** Calls visit(tetrahedron, i, edge) for each edge i of a tetrahedron between two first points. */
+/** Calls visit(i, edge) for each edge i of a tetrahedron between two points of the boundary. */
 template <typename Visitor>
-void ForEachEdgeOfFirstPoints(const TetMesh& mesh, std::size_t numberOfPoints, Visitor&& visit)
+void ForEachBoundaryPair(const TetrahedronIds& ids, Id numberOfPoints, Visitor&& visit)
 {
-  const Id end = static_cast<Id>(numberOfPoints);
-  for (std::size_t t = 0; t < mesh.Tetrahedra.size(); ++t)
+  for (int i = 0; i < 6; ++i)
+  {
+    const Id a = ids[TetrahedronEdges[i][0]];
+    const Id b = ids[TetrahedronEdges[i][1]];
+    if (a < numberOfPoints && b < numberOfPoints)
+    {
+      visit(i, MakeEdge(a, b));
+    }
+  }
+}
+
+/**
+ * Calls visit(tetrahedron, i, edge) for edge i of each tetrahedron that may be one of the given
+ * edges of the boundary.
+ */
+template <typename Visitor>
+void ForEachCandidate(
+  const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfPoints, Visitor&& visit)
+{
+  std::vector<char> isEnd(numberOfPoints, 0);
+  for (const EdgeIds& edge : edges)
+  {
+    isEnd[edge[0]] = 1;
+    isEnd[edge[1]] = 1;
+  }
+  const auto isMarked = [&](Id id) { return id < numberOfPoints && isEnd[id] != 0; };
+  for (std::size_t t = 0; t < mesh.Tetrahedra.size() && !edges.empty(); ++t)
   {
     const TetrahedronIds& ids = mesh.Tetrahedra[t];
-    if (ids[0] == NoId)
+    if (ids[0] == NoId || std::count_if(ids.begin(), ids.end(), isMarked) < 2)
     {
       continue;
     }
-    for (int i = 0; i < 6; ++i)
-    {
-      const Id a = ids[TetrahedronEdges[i][0]];
-      const Id b = ids[TetrahedronEdges[i][1]];
-      if (a < end && b < end)
+    ForEachBoundaryPair(ids, numberOfPoints,
+      [&](int i, const EdgeIds& edge)
       {
-        visit(static_cast<Id>(t), i, MakeEdge(a, b));
-      }
-    }
+        if (isEnd[edge[0]] != 0 && isEnd[edge[1]] != 0)
+        {
+          visit(static_cast<Id>(t), i, edge);
+        }
+      });
   }
 }
 
@@ -47,11 +71,12 @@ bool IsSphereFilled(const TetMesh& mesh, Id tetrahedron, int edge)
   return isInside(TetrahedronEdges[5 - edge][0]) || isInside(TetrahedronEdges[5 - edge][1]);
 }
 
-/** Edges of the boundary whose smallest spheres are not empty, ascending. */
-std::vector<EdgeIds> FindFilledEdges(const TetMesh& mesh, const TriangleMesh& boundary)
+/** Those of the edges whose smallest spheres are not empty, ascending. */
+std::vector<EdgeIds> FindFilledEdges(
+  const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfPoints)
 {
   std::vector<EdgeIds> filled;
-  ForEachEdgeOfFirstPoints(mesh, boundary.Points.size(),
+  ForEachCandidate(mesh, edges, numberOfPoints,
     [&](Id tetrahedron, int i, const EdgeIds& edge)
     {
       if (IsSphereFilled(mesh, tetrahedron, i))
@@ -60,16 +85,10 @@ std::vector<EdgeIds> FindFilledEdges(const TetMesh& mesh, const TriangleMesh& bo
       }
     });
   SortUnique(filled);
-  std::vector<EdgeIds> edges;
-  for (const EdgeUse& use : SortEdgeUses(boundary.Triangles, boundary.Points.size()))
-  {
-    if (std::binary_search(filled.begin(), filled.end(), use.GetPoints()) &&
-      (edges.empty() || edges.back() != use.GetPoints()))
-    {
-      edges.push_back(use.GetPoints());
-    }
-  }
-  return edges;
+  std::vector<EdgeIds> found;
+  std::set_intersection(
+    filled.begin(), filled.end(), edges.begin(), edges.end(), std::back_inserter(found));
+  return found;
 }
 
 bool HasNegativeCouplingInAnyRegion(
@@ -85,14 +104,13 @@ bool HasNegativeCouplingInAnyRegion(
     [&](Id region)
     { return HasNegativeCoupling(mesh, edge, records.begin(), records.end(), region); });
 }
-} // namespace
-
-std::vector<EdgeIds> FindNegativeCouplings(const TetMesh& mesh, const TriangleMesh& boundary)
+/** Those of the edges with a negative coupling, ascending. */
+std::vector<EdgeIds> FindNegative(
+  const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfPoints)
 {
-  const std::vector<EdgeIds> edges = FindFilledEdges(mesh, boundary);
   // Of each edge the tetrahedra, as in SimplexIncidence.
   std::vector<std::pair<EdgeIds, Id>> simplices;
-  ForEachEdgeOfFirstPoints(mesh, edges.empty() ? 0 : boundary.Points.size(),
+  ForEachCandidate(mesh, edges, numberOfPoints,
     [&](Id tetrahedron, int i, const EdgeIds& edge)
     {
       if (std::binary_search(edges.begin(), edges.end(), edge))
@@ -118,5 +136,80 @@ std::vector<EdgeIds> FindNegativeCouplings(const TetMesh& mesh, const TriangleMe
     }
   }
   return negative;
+}
+
+void AddEdges(const TriangleIds& ids, std::vector<EdgeIds>& edges)
+{
+  for (int i = 0; i < 3; ++i)
+  {
+    edges.push_back(MakeEdge(ids[i], ids[(i + 1) % 3]));
+  }
+}
+} // namespace
+
+void NegativeCouplings::NoteTriangles(
+  const TriangleMesh& boundary, const std::vector<Id>& triangles)
+{
+  for (Id t : triangles)
+  {
+    AddEdges(boundary.Triangles[t], this->Noted);
+  }
+}
+
+/** Pairs of points of the boundary that may have got another coupling, ascending. */
+std::vector<EdgeIds> NegativeCouplings::TakeChanged(
+  const DynamicTetrahedralization& mesh, const TriangleMesh& boundary)
+{
+  std::vector<EdgeIds> changed = std::exchange(this->Noted, {});
+  if (this->NextStamp == 0)
+  {
+    for (const TriangleIds& ids : boundary.Triangles)
+    {
+      AddEdges(ids, changed);
+    }
+  }
+  for (Id t = 0; t < mesh.GetNumberOfTetrahedra() && this->NextStamp > 0; ++t)
+  {
+    if (mesh.GetStamp(t) >= this->NextStamp && !mesh.IsDead(t))
+    {
+      ForEachBoundaryPair(mesh.GetMesh().Tetrahedra[t], static_cast<Id>(boundary.Points.size()),
+        [&changed](int, const EdgeIds& edge) { changed.push_back(edge); });
+    }
+  }
+  this->NextStamp = mesh.GetNextStamp();
+  SortUnique(changed);
+  return changed;
+}
+
+const std::vector<EdgeIds>& NegativeCouplings::Update(const DynamicTetrahedralization& mesh,
+  const TriangleMesh& boundary, const IdLists& pointTriangles)
+{
+  const auto isNoEdge = [&](const EdgeIds& edge)
+  {
+    const IdLists::Range triangles = pointTriangles[edge[0]];
+    return std::none_of(triangles.begin(), triangles.end(),
+      [&](Id t)
+      {
+        const TriangleIds& ids = boundary.Triangles[t];
+        return std::find(ids.begin(), ids.end(), edge[1]) != ids.end();
+      });
+  };
+  std::vector<EdgeIds> changed = this->TakeChanged(mesh, boundary);
+  this->Negative.erase(
+    std::remove_if(this->Negative.begin(), this->Negative.end(),
+      [&](const EdgeIds& edge)
+      { return isNoEdge(edge) || std::binary_search(changed.begin(), changed.end(), edge); }),
+    this->Negative.end());
+  changed.erase(std::remove_if(changed.begin(), changed.end(), isNoEdge), changed.end());
+  this->NumberOfTests += static_cast<std::int64_t>(changed.size());
+
+  const Id numberOfPoints = static_cast<Id>(boundary.Points.size());
+  const std::vector<EdgeIds> filled = FindFilledEdges(mesh.GetMesh(), changed, numberOfPoints);
+  const std::vector<EdgeIds> found = FindNegative(mesh.GetMesh(), filled, numberOfPoints);
+  std::vector<EdgeIds> both;
+  std::merge(this->Negative.begin(), this->Negative.end(), found.begin(), found.end(),
+    std::back_inserter(both));
+  this->Negative = std::move(both);
+  return this->Negative;
 }
 } // namespace cdm

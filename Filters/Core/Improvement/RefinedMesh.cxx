@@ -3,7 +3,6 @@
 
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
-#include "Core/Improvement/NegativeCouplings.h"
 
 #include <algorithm>
 #include <limits>
@@ -202,7 +201,8 @@ bool RefinedMesh::RequestEncroached(const Vec3& position, bool isSizeKept)
 
 std::size_t RefinedMesh::RequestNegativeCouplings()
 {
-  const std::vector<EdgeIds> edges = FindNegativeCouplings(this->GetMesh(), this->Boundary.Surface);
+  const std::vector<EdgeIds>& edges =
+    this->Couplings.Update(this->Mesh, this->Boundary.Surface, this->Shape->PointTriangles);
   for (const EdgeIds& edge : edges)
   {
     this->Requests.AddEdgeOrTriangle(edge, this->Shape->PointTriangles);
@@ -220,6 +220,7 @@ bool RefinedMesh::SplitBoundary(const DelaunaySurfaceRefinerOptions& options,
   }
   const Id first = static_cast<Id>(this->Boundary.Surface.Points.size());
   const std::vector<Id> sourceTriangles = ListSourceTriangles(this->Boundary.Surface);
+  const std::vector<Id> moved = this->TakeMovedSurfacePoints();
   status = this->Splits->Run(this->Requests.Triangles, this->Requests.Edges, context);
   const Id end = static_cast<Id>(this->Boundary.Surface.Points.size());
   for (Id p = first; p < end; ++p)
@@ -238,20 +239,64 @@ bool RefinedMesh::SplitBoundary(const DelaunaySurfaceRefinerOptions& options,
   {
     return false;
   }
-  std::vector<Id> parents;
-  for (Id source : this->Boundary.Surface.SourceCells)
-  {
-    parents.push_back(sourceTriangles[source]);
-  }
-  this->Shape = std::make_unique<BoundaryShape>(std::move(*this->Shape), this->Boundary.Surface,
-    this->Boundary.Edges, this->Boundary.KeptEdges, parents);
-  if (this->AreFactsPreliminary)
-  {
-    this->Facts.Forget();
-    this->AreFactsPreliminary = false;
-  }
+  this->FollowBoundary(moved, sourceTriangles);
   this->Requests.Clear();
   return true;
+}
+
+/** Points of the surface that have been moved since the last call, ascending. */
+std::vector<Id> RefinedMesh::TakeMovedSurfacePoints()
+{
+  std::vector<Id> moved;
+  const std::vector<Vec3>& positions = this->Boundary.Surface.Points;
+  for (std::size_t p = 0; p < positions.size(); ++p)
+  {
+    if (this->Points[p].Position != positions[p])
+    {
+      this->Points[p].Position = positions[p];
+      moved.push_back(static_cast<Id>(p));
+    }
+  }
+  return moved;
+}
+
+/**
+ * Brings what is known of the boundary up to date.
+ * @param sourceTriangles ListSourceTriangles() of the surface before
+ */
+void RefinedMesh::FollowBoundary(
+  const std::vector<Id>& moved, const std::vector<Id>& sourceTriangles)
+{
+  const TriangleMesh& surface = this->Boundary.Surface;
+  BoundaryChange change{ this->Splits->GetChangedTriangles(), {}, this->Splits->GetChangedEdges(),
+    this->Splits->GetSegments() };
+  const auto isMoved = [&moved](Id id)
+  { return std::binary_search(moved.begin(), moved.end(), id); };
+  for (Id point : moved)
+  {
+    const IdLists::Range triangles = this->Shape->PointTriangles[point];
+    change.Triangles.insert(change.Triangles.end(), triangles.begin(), triangles.end());
+  }
+  for (std::size_t e = 0; e < this->Boundary.Edges.size() && !moved.empty(); ++e)
+  {
+    const EdgeIds& ends = this->Boundary.Edges[e].Points;
+    if (isMoved(ends[0]) || isMoved(ends[1]))
+    {
+      change.Edges.push_back(static_cast<Id>(e));
+    }
+  }
+  SortUnique(change.Triangles);
+  SortUnique(change.Edges);
+  for (Id t : change.Triangles)
+  {
+    change.Parents.push_back(sourceTriangles[surface.SourceCells[t]]);
+  }
+  this->Shape->Follow(change);
+  this->Couplings.NoteTriangles(surface, change.Triangles);
+  this->Facts.Forget(this->FirstPreliminary);
+  this->Flatter.Forget(this->FirstPreliminary);
+  this->Faulty.Forget(this->FirstPreliminary);
+  this->FirstPreliminary = std::numeric_limits<std::int64_t>::max();
 }
 
 bool RefinedMesh::IsFree(Id point) const
@@ -274,15 +319,45 @@ bool RefinedMesh::IsFlat(Id tetrahedron) const
 
 std::vector<Id> RefinedMesh::FindFlatTetrahedra() const
 {
-  std::vector<Id> flat;
-  for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
-  {
-    if (!this->Mesh.IsDead(t) && this->IsFlat(t))
-    {
-      flat.push_back(t);
-    }
-  }
+  std::vector<Id> flat = this->FindFlatter(FlatAngle);
+  flat.erase(std::remove_if(flat.begin(), flat.end(), [this](Id t) { return !this->IsFlat(t); }),
+    flat.end());
+  std::sort(flat.begin(), flat.end());
   return flat;
+}
+
+std::vector<Id> RefinedMesh::FindFlatter(double target) const
+{
+  if (target > this->FlatterTarget)
+  {
+    this->FlatterTarget = target;
+    this->Flatter.Forget(0);
+  }
+  std::vector<Id> found = this->Flatter.Update(
+    this->Mesh, [this](Id t) { return this->GetAngle(t) < this->FlatterTarget; });
+  found.erase(
+    std::remove_if(found.begin(), found.end(), [&](Id t) { return !(this->GetAngle(t) < target); }),
+    found.end());
+  return found;
+}
+
+bool RefinedMesh::IsFaulty(Id tetrahedron, bool isShapeTested) const
+{
+  double severity = 0.0;
+  const TetrahedronFault fault = this->GetFault(tetrahedron, severity);
+  return fault == TetrahedronFault::Size ||
+    (fault == TetrahedronFault::Shape && isShapeTested && !this->IsAcrossSharp(tetrahedron) &&
+      !this->IsInLayer(tetrahedron) && !this->IsFlat(tetrahedron));
+}
+
+const std::vector<Id>& RefinedMesh::FindFaulty(bool isShapeTested) const
+{
+  if (isShapeTested != this->IsFaultyShape)
+  {
+    this->IsFaultyShape = isShapeTested;
+    this->Faulty.Forget(0);
+  }
+  return this->Faulty.Update(this->Mesh, [&](Id t) { return this->IsFaulty(t, isShapeTested); });
 }
 
 bool RefinedMesh::BreaksLimit(Id tetrahedron) const
@@ -313,7 +388,10 @@ void RefinedMesh::NoteChanges()
 void RefinedMesh::NoteSurfaceMove()
 {
   this->NoteChanges();
-  this->AreFactsPreliminary = true;
+  for (Id t : this->Mesh.GetChanged())
+  {
+    this->FirstPreliminary = std::min(this->FirstPreliminary, this->Mesh.GetStamp(t));
+  }
 }
 
 TetrahedronIds RefinedMesh::GetNames(const TetrahedronIds& ids) const

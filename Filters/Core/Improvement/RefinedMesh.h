@@ -27,10 +27,14 @@
 #include "Core/Improvement/BoundaryRequests.h"
 #include "Core/Improvement/BoundaryShape.h"
 #include "Core/Improvement/BoundarySplits.h"
+#include "Core/Improvement/NegativeCouplings.h"
 #include "Core/Improvement/SliverMemory.h"
 #include "Core/Improvement/TetrahedronFacts.h"
+#include "Core/Improvement/TetrahedronWatch.h"
 #include "Core/Sizing/TetrahedronLimits.h"
 
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -157,7 +161,16 @@ public:
    * the surface; more points on the surface would only make more such tetrahedra.
    */
   bool IsFlat(Id tetrahedron) const;
+  /** Ascending. */
   std::vector<Id> FindFlatTetrahedra() const;
+  /** Tetrahedra with a dihedral angle below the target (degrees), in no order. */
+  std::vector<Id> FindFlatter(double target) const;
+  /**
+   * Tetrahedra that get a new point, in no order: those that are too large, and, if shapes are
+   * tested, badly shaped ones that are neither flat nor across sharp angles or thin layers.
+   */
+  const std::vector<Id>& FindFaulty(bool isShapeTested) const;
+  bool IsFaulty(Id tetrahedron, bool isShapeTested) const;
   /** Whether the tetrahedron breaks a limit that it is refined for. */
   bool BreaksLimit(Id tetrahedron) const;
   /** The same for a tetrahedron that might be made; ids of interior points do not matter. */
@@ -192,6 +205,8 @@ public:
   void NoteRemoval();
 
 private:
+  std::vector<Id> TakeMovedSurfacePoints();
+  void FollowBoundary(const std::vector<Id>& moved, const std::vector<Id>& sourceTriangles);
   void BoundSizes(const std::vector<Id>& tetrahedra);
   bool TouchesOpenFacet() const;
 
@@ -211,9 +226,18 @@ private:
   std::vector<InteriorPoint> Points;
   RefinedMeshReport Report;
   BoundaryRequests Requests;
+  NegativeCouplings Couplings;
   mutable TetrahedronFacts Facts;
-  /** Whether some facts are about surface points that have been moved in the mesh only. */
-  bool AreFactsPreliminary = false;
+  /**
+   * Facts about tetrahedra with this stamp or a later one may be about surface points that have
+   * been moved in the mesh only.
+   */
+  std::int64_t FirstPreliminary = std::numeric_limits<std::int64_t>::max();
+  /** Tetrahedra with an angle below FlatterTarget, and those of FindFaulty(). */
+  mutable TetrahedronWatch Flatter;
+  mutable double FlatterTarget = 0.0;
+  mutable TetrahedronWatch Faulty;
+  mutable bool IsFaultyShape = false;
   DynamicTetrahedralization::PointCavity FoundCavity;
   /** Work space. */
   BoundarySpheres::Encroached Encroached;

@@ -7,10 +7,10 @@ namespace cdm
 {
 namespace
 {
-bool IsSliver(double target, bool isSharp, Id tetrahedron, const RefinedMesh& mesh)
+/** Of those below the target. */
+bool IsSliver(bool isSharp, Id tetrahedron, const RefinedMesh& mesh)
 {
-  return !mesh.GetTetrahedra().IsDead(tetrahedron) && mesh.GetAngle(tetrahedron) < target &&
-    mesh.IsAcrossSharp(tetrahedron) == isSharp && !mesh.IsInLayer(tetrahedron);
+  return mesh.IsAcrossSharp(tetrahedron) == isSharp && !mesh.IsInLayer(tetrahedron);
 }
 } // namespace
 
@@ -18,9 +18,9 @@ std::vector<Sliver> FindSlivers(double target, bool isSharp, const RefinedMesh& 
 {
   const DynamicTetrahedralization& tetrahedra = mesh.GetTetrahedra();
   std::vector<Sliver> slivers;
-  for (Id t = 0; t < tetrahedra.GetNumberOfTetrahedra(); ++t)
+  for (Id t : mesh.FindFlatter(target))
   {
-    if (IsSliver(target, isSharp, t, mesh))
+    if (IsSliver(isSharp, t, mesh))
     {
       slivers.push_back({ mesh.GetAngle(t), t, tetrahedra.GetStamp(t) });
     }
@@ -33,12 +33,9 @@ std::vector<Sliver> FindSlivers(double target, bool isSharp, const RefinedMesh& 
 
 std::size_t CountSlivers(double target, const RefinedMesh& mesh)
 {
-  std::size_t count = 0;
-  for (Id t = 0; t < mesh.GetTetrahedra().GetNumberOfTetrahedra(); ++t)
-  {
-    count += IsSliver(target, false, t, mesh);
-  }
-  return count;
+  const std::vector<Id> flatter = mesh.FindFlatter(target);
+  return std::count_if(
+    flatter.begin(), flatter.end(), [&mesh](Id t) { return IsSliver(false, t, mesh); });
 }
 
 bool IsGone(const Sliver& sliver, const RefinedMesh& mesh)

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace cdm
 {
@@ -142,6 +143,27 @@ bool Perturbation::Move(Id point)
     angles.push_back(after.Other < floor ? 0.0 : after.Aimed);
     isBroken.push_back(this->Mesh.BreaksLimit(t));
   }
+  // Tetrahedra that stay as they are spoil most positions, the flattest first. It takes one test each
+  // to see that, and a walk and a cavity to find out by the search.
+  std::vector<std::size_t> flattest(filled.size());
+  std::iota(flattest.begin(), flattest.end(), std::size_t(0));
+  std::sort(flattest.begin(), flattest.end(),
+    [&angles](std::size_t a, std::size_t b) { return angles[a] < angles[b]; });
+  const auto leavesFlatter = [&](const Vec3& position, double required)
+  {
+    for (std::size_t i : flattest)
+    {
+      if (angles[i] > required)
+      {
+        return false;
+      }
+      if (!this->Tetrahedra.IsInConflict(filled[i], position, point))
+      {
+        return true;
+      }
+    }
+    return false;
+  };
   const auto findCavity = [&](const Vec3& position)
   {
     const Id first = this->Tetrahedra.Locate(position, filled.front());
@@ -149,7 +171,7 @@ bool Perturbation::Move(Id point)
   };
   const auto rate = [&](const Vec3& position, double required)
   {
-    if (!findCavity(position))
+    if (leavesFlatter(position, required) || !findCavity(position))
     {
       return 0.0;
     }

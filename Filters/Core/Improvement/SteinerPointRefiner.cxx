@@ -19,8 +19,14 @@ namespace
  * Guards against rounds without end, which would be an error of the rules. No input came near it.
  */
 constexpr Id MaximumRounds = 1000;
-/** Slivers wait until no more requests than these are left from badly shaped tetrahedra. */
+/**
+ * Slivers wait until no more requests than these are left from badly shaped tetrahedra, nor for more
+ * than this part of the boundary. Otherwise small surfaces, of which a tenth is split in each round,
+ * would have their slivers mended in vain while they become finer: a part of 56 triangles took 1.4 s
+ * for 2,800 tetrahedra.
+ */
 constexpr std::size_t FewRequests = 16;
+constexpr double FewRequestsRatio = 0.02;
 
 class SteinerPointRefinement
 {
@@ -39,6 +45,7 @@ private:
   Status RefineSizes();
   Status RefineShapes();
   RoundResult RunShapeRound();
+  bool HasFewRequests() const;
   Status RefineInside(bool isShapeTested);
   bool IsOutOfRounds() const { return this->Output.Report.Rounds >= MaximumRounds; }
   void FindFaults();
@@ -114,6 +121,14 @@ Status SteinerPointRefinement::RefineShapes()
   return round.Outcome;
 }
 
+bool SteinerPointRefinement::HasFewRequests() const
+{
+  const std::size_t triangles = this->Rounds.GetMesh().GetBoundary().Surface.Triangles.size();
+  const std::size_t requests = this->Rounds.CountRequests();
+  return requests <= FewRequests &&
+    static_cast<double>(requests) <= FewRequestsRatio * static_cast<double>(triangles);
+}
+
 RoundResult SteinerPointRefinement::RunShapeRound()
 {
   RoundResult round{ this->RefineInside(true), RoundEnd::Open };
@@ -126,8 +141,8 @@ RoundResult SteinerPointRefinement::RunShapeRound()
   {
     return { this->Schedule.Finish(), RoundEnd::Done };
   }
-  const bool isSliversTurn = this->Rounds.IsStuck() || this->Rounds.GetMesh().IsFull() ||
-    this->Rounds.CountRequests() <= FewRequests;
+  const bool isSliversTurn =
+    this->Rounds.IsStuck() || this->Rounds.GetMesh().IsFull() || this->HasFewRequests();
   return isSliversTurn ? this->Schedule.Run() : round;
 }
 

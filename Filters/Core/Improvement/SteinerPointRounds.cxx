@@ -411,23 +411,29 @@ std::size_t SteinerPointRounds::CollectSurfaceSizes()
 /** Bounds unknown sizes, which are negative, by known ones: from point to point along edges. */
 void SteinerPointRounds::SpreadSurfaceSizes()
 {
-  bool isDone = false;
-  while (!isDone)
+  std::vector<double>& sizes = this->SurfaceSizes;
+  std::vector<TriangleIds> around;
+  for (const TriangleIds& ids : this->Surface.Triangles)
   {
-    isDone = true;
-    std::vector<double> sizes = this->SurfaceSizes;
+    if (std::any_of(ids.begin(), ids.end(), [&sizes](Id id) { return sizes[id] < 0.0; }))
+    {
+      around.push_back(ids);
+    }
+  }
+  // Sizes found in one pass are those of the next.
+  std::vector<std::pair<Id, double>> found(1);
+  while (!found.empty())
+  {
+    found.clear();
     const auto spread = [&](Id p, Id q)
     {
-      if (this->SurfaceSizes[p] >= 0.0 || this->SurfaceSizes[q] < 0.0)
+      if (sizes[p] < 0.0 && sizes[q] >= 0.0)
       {
-        return;
+        found.emplace_back(
+          p, sizes[q] + Distance(this->Surface.Points[p], this->Surface.Points[q]));
       }
-      const double size =
-        this->SurfaceSizes[q] + Distance(this->Surface.Points[p], this->Surface.Points[q]);
-      sizes[p] = sizes[p] < 0.0 ? size : std::min(sizes[p], size);
-      isDone = false;
     };
-    for (const TriangleIds& ids : this->Surface.Triangles)
+    for (const TriangleIds& ids : around)
     {
       for (int i = 0; i < 3; ++i)
       {
@@ -435,7 +441,10 @@ void SteinerPointRounds::SpreadSurfaceSizes()
         spread(ids[i], ids[(i + 2) % 3]);
       }
     }
-    this->SurfaceSizes = std::move(sizes);
+    for (const auto& [point, size] : found)
+    {
+      sizes[point] = sizes[point] < 0.0 ? size : std::min(sizes[point], size);
+    }
   }
 }
 

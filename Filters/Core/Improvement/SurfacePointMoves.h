@@ -82,7 +82,7 @@ private:
   bool FindSupport(Id point, Support& support) const;
   std::vector<Id> FindEdgeEnds(Id point) const;
   bool ArePlanar(Id point, const std::vector<Id>& ends) const;
-  void CollectStar(Id point);
+  bool CollectStar(Id point);
   double MeasureStar(Id point, double& nearest) const;
   double Rate(Id point, const Vec3& position, double required);
   bool KeepsOrientations(Id point, const Vec3& position) const;

@@ -20,6 +20,17 @@ TetrahedronFacts::Known& TetrahedronFacts::Get(Id tetrahedron)
   return known;
 }
 
+void TetrahedronFacts::Forget(std::int64_t first)
+{
+  for (Known& known : this->Facts)
+  {
+    if (known.Stamp >= first)
+    {
+      known = {};
+    }
+  }
+}
+
 double TetrahedronFacts::GetAngle(Id tetrahedron)
 {
   Known& known = this->Get(tetrahedron);

@@ -38,7 +38,8 @@ public:
   bool IsInLayer(Id tetrahedron, const BoundaryShape& shape);
   bool IsAcrossSharp(Id tetrahedron, const BoundaryShape& shape);
 
-  void Forget() { this->Facts.clear(); }
+  /** Forgets facts about tetrahedra with this stamp or a later one. */
+  void Forget(std::int64_t first);
 
 private:
   struct Known

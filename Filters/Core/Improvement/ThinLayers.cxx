@@ -28,6 +28,8 @@ constexpr double AcrossCosine = 0.85;
 constexpr double ThinRatio = 0.75;
 /** ... and thickness of the layer if the edge is not upright. */
 constexpr double VeryThinRatio = 0.35;
+/** Smaller heights above a side are zero up to rounding, in lengths of the edge. */
+constexpr double FlatRatio = 1e-12;
 
 /** Normal to the front, twice as long as the area. */
 Vec3 GetNormal(const TriangleMesh& surface, Id t)
@@ -58,14 +60,20 @@ ThinLayers::ThinLayers(const TriangleMesh& surface, const IdLists& pointTriangle
   this->MeasureWidths();
 }
 
-ThinLayers::ThinLayers(
-  const ThinLayers& coarse, const IdLists& pointTriangles, const std::vector<Id>& parents)
-  : Surface(coarse.Surface), PointTriangles(pointTriangles)
+void ThinLayers::Follow(const std::vector<Id>& triangles, const std::vector<Id>& parents)
 {
+  // A parent may be among the triangles.
+  std::vector<Face> faces;
   for (Id parent : parents)
   {
-    this->Faces.push_back(coarse.Faces[2 * parent]);
-    this->Faces.push_back(coarse.Faces[2 * parent + 1]);
+    faces.push_back(this->Faces[2 * parent]);
+    faces.push_back(this->Faces[2 * parent + 1]);
+  }
+  this->Faces.resize(2 * this->Surface.Triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+  {
+    this->Faces[2 * triangles[i]] = faces[2 * i];
+    this->Faces[2 * triangles[i] + 1] = faces[2 * i + 1];
   }
 }
 
@@ -159,7 +167,7 @@ bool ThinLayers::IsAcross(const TetrahedronIds& ids, Id region) const
         // How far it is to the other side.
         const double height = first != nullptr ? -Dot(first->Normal, direction) : 0.0;
         const bool isUpright = height >= AcrossCosine * length && length <= ThinRatio * longest;
-        if (height <= 0.0 || AspectRatio * height > first->Width ||
+        if (height <= FlatRatio * length || AspectRatio * height > first->Width ||
           (!isUpright && height > VeryThinRatio * longest))
         {
           continue;

@@ -35,11 +35,11 @@ public:
    */
   ThinLayers(const TriangleMesh& surface, const IdLists& pointTriangles);
   /**
-   * The thin layers of the same surface after some triangles have been split.
-   * @param parents for each triangle one of the coarse surface in the same surface facet
+   * Follows splits of the surface: sides stay as wide as they were.
+   * @param triangles those that are new or changed
+   * @param parents for each of them one of the surface before in the same surface facet
    */
-  ThinLayers(
-    const ThinLayers& coarse, const IdLists& pointTriangles, const std::vector<Id>& parents);
+  void Follow(const std::vector<Id>& triangles, const std::vector<Id>& parents);
 
   /**
    * Whether a tetrahedron of a region is across a thin layer. Ids of interior points are larger

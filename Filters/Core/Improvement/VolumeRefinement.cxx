@@ -66,19 +66,11 @@ Status RefineByLimits(bool isShapeTested, const ExecutionContext& context, Refin
   {
     double severity = 0.0;
     const TetrahedronFault fault = mesh.GetFault(t, severity);
-    if (fault == TetrahedronFault::Size ||
-      (fault == TetrahedronFault::Shape && isShapeTested && !mesh.IsAcrossSharp(t) &&
-        !mesh.IsInLayer(t) && !mesh.IsFlat(t)))
-    {
-      tasks.push({ fault, severity, t, tetrahedra.GetStamp(t) });
-    }
+    tasks.push({ fault, severity, t, tetrahedra.GetStamp(t) });
   };
-  for (Id t = 0; t < tetrahedra.GetNumberOfTetrahedra(); ++t)
+  for (Id t : mesh.FindFaulty(isShapeTested))
   {
-    if (!tetrahedra.IsDead(t))
-    {
-      schedule(t);
-    }
+    schedule(t);
   }
   for (std::size_t done = 0; !tasks.empty() && !mesh.IsFull(); ++done)
   {
@@ -108,7 +100,10 @@ Status RefineByLimits(bool isShapeTested, const ExecutionContext& context, Refin
       mesh.Insert(target);
       for (Id t : tetrahedra.GetChanged())
       {
-        schedule(t);
+        if (mesh.IsFaulty(t, isShapeTested))
+        {
+          schedule(t);
+        }
       }
     }
   }

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace cdm
 {
@@ -74,31 +76,126 @@ IdLists ListNeighbors(const TriangleMesh& surface, const std::vector<StructuralE
 SharpAngles::SharpAngles(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
   const IdLists& pointTriangles, double sharpPlaneAngle)
   : Surface(surface), SharpPlaneCosine(GetCosine(sharpPlaneAngle - AngleTolerance)),
-    Neighbors(ListNeighbors(surface, edges)), IsCorner(surface.Points.size(), 0)
+    IsCorner(surface.Points.size(), 0)
 {
+  const IdLists neighbors = ListNeighbors(surface, edges);
   const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
   this->Facets = NumberFacets(uses, edges);
   this->FindFacetPairs(edges, uses);
-  this->FindTips(pointTriangles);
+  this->FindTips(pointTriangles, neighbors);
   this->MarkSharpEdges(edges);
-  this->FindArms(pointTriangles);
+  this->FindArms(pointTriangles, neighbors);
   this->ListFacets(pointTriangles);
 }
 
-SharpAngles::SharpAngles(SharpAngles&& coarse, const std::vector<StructuralEdge>& edges,
-  const IdLists& pointTriangles, const std::vector<Id>& parents)
-  : Surface(coarse.Surface), SharpPlaneCosine(coarse.SharpPlaneCosine),
-    Neighbors(ListNeighbors(this->Surface, edges)), IsCorner(std::move(coarse.IsCorner)),
-    FacetPairs(std::move(coarse.FacetPairs)), Tips(std::move(coarse.Tips))
+void SharpAngles::Follow(const std::vector<StructuralEdge>& edges,
+  const std::vector<Id>& changedEdges, const std::vector<Id>& triangles,
+  const std::vector<Id>& parents)
 {
-  for (Id parent : parents)
+  this->Facets.resize(this->Surface.Triangles.size(), NoId);
+  for (std::size_t i = 0; i < triangles.size(); ++i)
   {
-    this->Facets.push_back(coarse.Facets[parent]);
+    this->Facets[triangles[i]] = this->Facets[parents[i]];
   }
+  this->FollowFacets(triangles);
+  this->FollowArms(edges, changedEdges);
   this->IsCorner.resize(this->Surface.Points.size(), 0);
-  this->MarkSharpEdges(edges);
-  this->FindArms(pointTriangles);
-  this->ListFacets(pointTriangles);
+  for (Id e : changedEdges)
+  {
+    if (IsSharp(edges[e]))
+    {
+      this->IsCorner[edges[e].Points[0]] = 1;
+      this->IsCorner[edges[e].Points[1]] = 1;
+    }
+  }
+}
+
+/** Lists the surface facets at new points. */
+void SharpAngles::FollowFacets(const std::vector<Id>& triangles)
+{
+  const Id first = static_cast<Id>(this->IsCorner.size());
+  std::vector<std::pair<Id, Id>> pairs;
+  for (Id t : triangles)
+  {
+    for (Id point : this->Surface.Triangles[t])
+    {
+      if (point >= first && this->IsFacetSharp[this->Facets[t]] != 0)
+      {
+        pairs.emplace_back(point, this->Facets[t]);
+      }
+    }
+  }
+  SortUnique(pairs);
+  std::vector<Id> facets;
+  auto next = pairs.begin();
+  for (Id point = first; point < static_cast<Id>(this->Surface.Points.size()); ++point)
+  {
+    facets.clear();
+    for (; next != pairs.end() && next->first == point; ++next)
+    {
+      facets.push_back(next->second);
+    }
+    this->PointFacets.Append(facets);
+  }
+}
+
+/** The arms that a point lies on, and those that start at it; ascending. */
+std::vector<Id> SharpAngles::ListArmsAt(Id point) const
+{
+  std::vector<Id> arms(this->PointArms[point].begin(), this->PointArms[point].end());
+  const auto own = std::lower_bound(this->Arms.begin(), this->Arms.end(), point,
+    [](const Arm& arm, Id corner) { return arm.Corner < corner; });
+  for (auto arm = own; arm != this->Arms.end() && arm->Corner == point; ++arm)
+  {
+    arms.push_back(static_cast<Id>(arm - this->Arms.begin()));
+  }
+  std::sort(arms.begin(), arms.end());
+  return arms;
+}
+
+/** A new point lies on the arms that the next older points on both sides have in common. */
+void SharpAngles::FollowArms(
+  const std::vector<StructuralEdge>& edges, const std::vector<Id>& changedEdges)
+{
+  const Id first = static_cast<Id>(this->IsCorner.size());
+  const Id count = static_cast<Id>(this->Surface.Points.size()) - first;
+  std::vector<std::pair<Id, Id>> pairs;
+  for (Id e : changedEdges)
+  {
+    const EdgeIds& ends = edges[e].Points;
+    for (int i = 0; i < 2; ++i)
+    {
+      if (ends[i] >= first)
+      {
+        pairs.emplace_back(ends[i] - first, ends[1 - i]);
+      }
+    }
+  }
+  IdLists neighbors;
+  neighbors.Build(count, pairs);
+  const auto findOlder = [&](Id last, Id point)
+  {
+    while (point >= first)
+    {
+      const IdLists::Range ends = neighbors[point - first];
+      last = std::exchange(point, *ends.begin() != last ? *ends.begin() : *(ends.end() - 1));
+    }
+    return point;
+  };
+  std::vector<Id> common;
+  for (Id i = 0; i < count; ++i)
+  {
+    common.clear();
+    const IdLists::Range ends = neighbors[i];
+    if (!ends.empty())
+    {
+      const std::vector<Id> one = this->ListArmsAt(findOlder(first + i, *ends.begin()));
+      const std::vector<Id> other = this->ListArmsAt(findOlder(first + i, *(ends.end() - 1)));
+      std::set_intersection(
+        one.begin(), one.end(), other.begin(), other.end(), std::back_inserter(common));
+    }
+    this->PointArms.Append(common);
+  }
 }
 
 void SharpAngles::FindFacetPairs(
@@ -142,26 +239,26 @@ void SharpAngles::FindFacetPairs(
 }
 
 /** Facets that do not meet at an edge of a point have at least two structural edges there each. */
-void SharpAngles::FindTips(const IdLists& pointTriangles)
+void SharpAngles::FindTips(const IdLists& pointTriangles, const IdLists& neighbors)
 {
   for (Id corner = 0; corner < static_cast<Id>(this->IsCorner.size()); ++corner)
   {
-    if (this->Neighbors[corner].size() >= 4)
+    if (neighbors[corner].size() >= 4)
     {
-      this->FindTipsAt(corner, pointTriangles[corner]);
+      this->FindTipsAt(corner, pointTriangles[corner], neighbors[corner]);
     }
   }
   SortUnique(this->Tips);
 }
 
 /** The closest ways into two facets from the corner: at least one of them is an edge. */
-void SharpAngles::FindTipsAt(Id corner, const IdLists::Range& triangles)
+void SharpAngles::FindTipsAt(Id corner, const IdLists::Range& triangles, const IdLists::Range& ends)
 {
   const std::vector<Id>& facets = this->Facets;
   // Facets at each edge, and pairs that meet at one.
   std::vector<std::pair<Id, Id>> edgeFacets;
   std::vector<std::pair<Id, Id>> meeting;
-  for (Id end : this->Neighbors[corner])
+  for (Id end : ends)
   {
     const std::size_t first = edgeFacets.size();
     for (Id t : triangles)
@@ -213,7 +310,8 @@ void SharpAngles::MarkSharpEdges(const std::vector<StructuralEdge>& edges)
 
 void SharpAngles::ListFacets(const IdLists& pointTriangles)
 {
-  std::vector<char> isSharp(this->Surface.Triangles.size(), 0);
+  std::vector<char>& isSharp = this->IsFacetSharp;
+  isSharp.assign(this->Surface.Triangles.size(), 0);
   for (const auto& [first, second] : this->FacetPairs)
   {
     isSharp[first] = 1;
@@ -267,6 +365,9 @@ void SharpAngles::FindShadows(Id corner, Id first, Id other, const IdLists::Rang
     return way - Dot(way, along) * along;
   };
   const Vec3 height = getHeight(other);
+  // At a right angle rounding would decide.
+  const auto isOnSide = [&height](const Vec3& way)
+  { return Dot(height, way) > StraightSine * Norm(height) * Norm(way); };
   const double sine = Norm(Cross(along, GetDirection(this->Surface, corner, other)));
   std::vector<Id> own;
   for (Id t : triangles)
@@ -284,17 +385,16 @@ void SharpAngles::FindShadows(Id corner, Id first, Id other, const IdLists::Rang
       std::find_if(ids.begin(), ids.end(), [&](Id id) { return id != corner && id != first; });
     if (std::find(ids.begin(), ids.end(), first) != ids.end() &&
       std::find(own.begin(), own.end(), this->Facets[t]) == own.end() &&
-      Dot(height, getHeight(*apex)) > 0.0)
+      isOnSide(getHeight(*apex)))
     {
       shadows.push_back({ this->Facets[t], sine });
     }
   }
 }
 
-void SharpAngles::FindArms(const IdLists& pointTriangles)
+void SharpAngles::FindArms(const IdLists& pointTriangles, const IdLists& neighbors)
 {
   const TriangleMesh& surface = this->Surface;
-  const IdLists& neighbors = this->Neighbors;
   const Id numberOfPoints = static_cast<Id>(surface.Points.size());
   std::vector<std::pair<Id, Id>> pairs;
   for (Id corner = 0; corner < numberOfPoints; ++corner)

@@ -21,7 +21,8 @@
  * points as close to the other edge (PartnerPoints.h). A point in the shadow and a point of the
  * first edge are across, too.
  *
- * Cost: O(n log n) to build; O(1) for a tetrahedron. About 60 bytes per triangle.
+ * Cost: O(n log n) to build, O(k log k) to follow k changes; O(1) for a tetrahedron. About 60 bytes
+ * per triangle.
  */
 #ifndef cdmSharpAngles_h
 #define cdmSharpAngles_h
@@ -51,12 +52,14 @@ public:
   SharpAngles(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
     const IdLists& pointTriangles, double sharpPlaneAngle = UsualSharpPlaneAngle);
   /**
-   * The sharp angles of the same surface after some triangles have been split: points have been
-   * added, none was moved. This saves a sixth of the time of many small rounds.
-   * @param parents for each triangle one of the coarse surface in the same surface facet
+   * Follows splits of the surface, which make no angle sharp: new points lie in facets, or between
+   * two points of an edge and on its arms.
+   * @param edges those of the surface now, and which of them are new or changed
+   * @param triangles those that are new or changed
+   * @param parents for each of them one of the surface before in the same surface facet
    */
-  SharpAngles(SharpAngles&& coarse, const std::vector<StructuralEdge>& edges,
-    const IdLists& pointTriangles, const std::vector<Id>& parents);
+  void Follow(const std::vector<StructuralEdge>& edges, const std::vector<Id>& changedEdges,
+    const std::vector<Id>& triangles, const std::vector<Id>& parents);
 
   /** Whether a vertex is the corner of a sharp angle, or lies on its edge. */
   bool IsAtCorner(const TetrahedronIds& ids) const;
@@ -106,11 +109,14 @@ private:
   };
 
   void FindFacetPairs(const std::vector<StructuralEdge>& edges, const std::vector<EdgeUse>& uses);
-  void FindTips(const IdLists& pointTriangles);
-  void FindTipsAt(Id corner, const IdLists::Range& triangles);
+  void FindTips(const IdLists& pointTriangles, const IdLists& neighbors);
+  void FindTipsAt(Id corner, const IdLists::Range& triangles, const IdLists::Range& ends);
   void MarkSharpEdges(const std::vector<StructuralEdge>& edges);
   void ListFacets(const IdLists& pointTriangles);
-  void FindArms(const IdLists& pointTriangles);
+  void FollowFacets(const std::vector<Id>& triangles);
+  void FollowArms(const std::vector<StructuralEdge>& edges, const std::vector<Id>& changedEdges);
+  std::vector<Id> ListArmsAt(Id point) const;
+  void FindArms(const IdLists& pointTriangles, const IdLists& neighbors);
   void FindShadows(Id corner, Id first, Id other, const IdLists::Range& triangles,
     std::vector<Shadow>& shadows) const;
   bool AreAcrossFacets(Id p, Id q) const;
@@ -120,18 +126,19 @@ private:
 
   const TriangleMesh& Surface;
   const double SharpPlaneCosine;
-  /** Other ends of the structural edges at each point. */
-  IdLists Neighbors;
   /** The surface facet of each triangle. */
   std::vector<Id> Facets;
   /** One for each point of the surface. */
   std::vector<char> IsCorner;
+  /** Whether a surface facet has a sharp angle; one for each triangle of the first surface. */
+  std::vector<char> IsFacetSharp;
   /** Surface facets at each point; facets without a sharp angle are left out. */
   IdLists PointFacets;
   /** Pairs of facets with a sharp angle, the smaller one first; sorted. */
   std::vector<std::pair<Id, Id>> FacetPairs;
   /** Sorted. */
   std::vector<Tip> Tips;
+  /** By their corners. */
   std::vector<Arm> Arms;
   /** Arms that each point lies on. A corner is listed only on arms of other corners. */
   IdLists PointArms;

@@ -18,7 +18,7 @@ import simulation as sim
 from conforming_delaunay import devsim as cd_devsim
 from devsim.python_packages import simple_physics as physics
 
-WIDTH, DEPTH, THICKNESS, ACCEPTORS = 0.02, 0.4, 0.005, 1e17
+WIDTH, DEPTH, THICKNESS, ACCEPTORS = 0.008, 0.4, 0.005, 1e17
 AREA = (WIDTH * sim.MICROMETER) ** 2
 VOLTAGES = tuple(np.linspace(-2.0, 2.0, 17).tolist())
 SHORTEST, LONGEST = 0.0015, 0.02
@@ -31,8 +31,7 @@ def get_reference(voltages):
     holes = 0.5 * ACCEPTORS + np.sqrt(0.25 * ACCEPTORS**2 + physics.n_i**2)
     electrons = physics.n_i**2 / holes
     bulk = -thermal * np.log(holes / physics.n_i)
-    # Denser where the charge grows exponentially.
-    band = np.concatenate([np.linspace(-0.4, 1.4, 200001)])
+    band = np.linspace(-0.4, 1.4, 200001)
     band = band[np.abs(band) > 1e-7]
     u = band / thermal
     integral = holes * (np.exp(-u) + u - 1.0) + electrons * (np.exp(u) - u - 1.0)
@@ -135,10 +134,9 @@ def main(folder):
           float(np.abs(curve / reference - 1.0).mean()), iterations)
          for name, (points, curve, iterations) in results.items()])
     fine = np.linspace(VOLTAGES[0], VOLTAGES[-1], 400)
-    curves = {"closed form": (fine, get_reference(fine), "k-")}
-    for (name, (_, curve, _)), style in zip(results.items(), "v^o+x*"):
-        curves[name] = (VOLTAGES, curve, style)
-    sim.draw(os.path.join(folder, "mos_capacitor.png"), "MOS capacitor", ("V", "F/cm^2"), curves)
+    cases = {name: (VOLTAGES, curve, reference) for name, (_, curve, _) in results.items()}
+    sim.draw(os.path.join(folder, "mos_capacitor.png"), "MOS capacitor", ("V", "F/cm^2"),
+             ("closed form", fine, get_reference(fine)), cases)
 
 
 if __name__ == "__main__":

@@ -18,9 +18,11 @@ import simulation as sim
 from conforming_delaunay import devsim as cd_devsim
 
 #: In micrometers. The channel lies between the junctions at 0.1 and 0.3, 5 nm of oxide on it.
-LENGTH, DEPTH, WIDTH, THICKNESS = 0.4, 0.2, 0.02, 0.005
+LENGTH, DEPTH, WIDTH, THICKNESS = 0.4, 0.2, 0.012, 0.005
 GATE, SOURCE, DRAIN = (0.1, 0.3), (0.0, 0.05), (0.35, 0.4)
-LONGEST = 0.05
+LONGEST = 0.02
+#: Shortest edges of the three meshes.
+LENGTHS = (0.016, 0.0113, 0.008)
 #: Gate and drain voltages: Id-Vg, then Id-Vd.
 POINTS = ((0.5, 0.1), (1.0, 0.1), (1.5, 0.1), (1.5, 0.5), (1.5, 1.0))
 CONTACTS = ("source", "drain", "substrate")
@@ -41,7 +43,7 @@ def make_structure():
 
 
 def get_gmsh_contacts():
-    """The same contacts, by the corners of facets: triangles that reach over an end belong to none."""
+    """The same contacts, by the corners of facets."""
     def is_over(side):
         return lambda corners: ((corners[:, :, 2] == 0.0) & (corners[:, :, 0] >= side[0] - 1e-9)
                                 & (corners[:, :, 0] <= side[1] + 1e-9)).all(axis=1)
@@ -68,8 +70,8 @@ def get_currents(name, points, width):
     """Drain currents in A per micrometer of width, and the iterations."""
     currents, iterations = [], 0
     for gate, drain in points:
-        iterations += sim.ramp(name, "gate", gate, 0.25)
-        iterations += sim.ramp(name, "drain", drain, 0.25)
+        iterations += sim.ramp(name, "gate", gate, 0.5)
+        iterations += sim.ramp(name, "drain", drain, 0.5)
         currents.append(sim.get_current(name, "drain") / width)
     return np.array(currents), iterations
 
@@ -158,23 +160,24 @@ def refine(shortest):
     sim.delete("transistor")
     sim.add_array(grid, "Potential", solution["Potential"])
     sim.add_array(grid, "Electrons", np.log10(np.maximum(solution["Electrons"], 1e14)))
-    share = shortest / 0.004
+    share = shortest / LENGTHS[-1]
     sizing = sim.make_sizing(
         grid, {"Potential": 0.1 * share, "Electrons": share}, shortest, LONGEST)
     return (*sim.make_mesh(structure, LONGEST, sizing), sizing)
 
 
-def run(points, lengths=(0.008, 0.0056, 0.004), has_gmsh=True):
+def run(points, lengths=LENGTHS, has_gmsh=True):
     """Reference, and by case: points of the mesh, currents, iterations, range in the oxide."""
     reference, _ = get_reference(points)
     cases = {}
     for shortest in lengths:
         grid, boundary, sizing = refine(shortest)
         cases[f"ours, {1e3 * shortest:.3g} nm"] = (grid, boundary, True)
-    cases["ours, DEVSIM's boxes"] = (grid, boundary, False)
+        cases[f"ours, {1e3 * shortest:.3g} nm, DEVSIM's boxes"] = (grid, boundary, False)
     boxes = [(0.0, LENGTH, 0.0, WIDTH, -DEPTH, 0.0), (*GATE, 0.0, WIDTH, 0.0, THICKNESS)]
     gmsh = sim.make_gmsh_mesh(
-        boxes, sim.get_lengths(sizing), grid.GetNumberOfPoints()) if has_gmsh else None
+        boxes, sim.get_lengths(sizing), grid.GetNumberOfPoints(),
+        [(*side, 0.0, WIDTH) for side in (SOURCE, DRAIN)]) if has_gmsh else None
     if gmsh is not None:
         cases["Gmsh, DEVSIM's boxes"] = (gmsh, get_gmsh_contacts(), False)
         cases["Gmsh, signed boxes"] = (gmsh, get_gmsh_contacts(), True)
@@ -194,7 +197,8 @@ def run(points, lengths=(0.008, 0.0056, 0.004), has_gmsh=True):
         # At 1.5 V at the gate the potential of the oxide lies between those of its ends.
         silicon = np.array(devsim.get_node_model_values(
             device="transistor", region=sim.SILICON, name="Potential"))
-        excess = max(0.0, float(oxide.max() - max(1.5, silicon.max())))
+        excess = max(0.0, float(oxide.max() - max(1.5, silicon.max())),
+                     float(silicon.min() - oxide.min()))
         results[name] = (device.number_of_points, currents, iterations + more, excess)
         sim.delete("transistor")
     return reference, results
@@ -212,19 +216,20 @@ def main(folder):
         ("case", "points", "largest", "mean", "iterations", "beyond"),
         [(name, item[0], float(errors[name].max()), float(errors[name].mean()), *item[2:])
          for name, item in results.items()])
-    ours = [float(errors[name].mean()) for name in results if name.endswith("nm")]
-    if len(ours) > 1:
-        order = np.log(ours[0] / ours[-1]) / np.log(2.0 ** (0.5 * (len(ours) - 1)))
-        print(f"Order of convergence in the length of edges: {order:.2f}\n")
+    for boxes in ("nm", "nm, DEVSIM's boxes"):
+        ours = [float(errors[name].mean()) for name in results if name.endswith(boxes)]
+        if len(ours) == len(LENGTHS):
+            order = np.log(ours[0] / ours[-1]) / np.log(LENGTHS[0] / LENGTHS[-1])
+            print(f"Order of convergence in the length of edges, {boxes[4:] or 'signed boxes'}: {order:.2f}")
+    print()
     for title, index, fixed, picture in (
             ("Id-Vg at 0.1 V", 0, 0.1, "mos_transistor_vg.png"),
             ("Id-Vd, 1.5 V at the gate", 1, 1.5, "mos_transistor_vd.png")):
         chosen = [i for i, point in enumerate(POINTS) if point[1 - index] == fixed]
         x = [POINTS[i][index] for i in chosen]
-        curves = {"two dimensions": (x, reference[chosen], "k-")}
-        for (name, item), style in zip(results.items(), "v^o+x*"):
-            curves[name] = (x, item[1][chosen], style)
-        sim.draw(os.path.join(folder, picture), title, ("V", "A/um"), curves)
+        cases = {name: (x, item[1][chosen], reference[chosen]) for name, item in results.items()}
+        sim.draw(os.path.join(folder, picture), title, ("V", "A/um"),
+                 ("two dimensions", x, reference[chosen]), cases)
 
 
 if __name__ == "__main__":

@@ -23,6 +23,8 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkStaticPointLocator
 
 MICROMETER = 1e-4
 SILICON, OXIDE = "Silicon", "Oxide"
+#: Of a bias, in volts.
+SHORTEST_STEP = 1e-3
 THERMAL_VOLTAGE = simple_physics.k * 300.0 / simple_physics.q
 
 
@@ -84,27 +86,31 @@ def make_mesh(structure, longest, sizing=None):
     return mesher.GetOutput(), mesher.GetOutputDataObject(1)
 
 
-def make_gmsh_mesh(boxes, lengths, count):
+def make_gmsh_mesh(boxes, lengths, count, rectangles=()):
     """A mesh of Gmsh with about as many points, or None where it is not installed.
 
-    boxes: by region (x0, x1, y0, y1, z0, z1); lengths: of edges at points (n, 3), up to a factor.
+    boxes: by region (x0, x1, y0, y1, z0, z1); lengths: of edges at points (n, 3), up to a factor;
+    rectangles (x0, x1, y0, y1) at z = 0 whose edges are kept.
     """
     factor, mesh = 1.0, None
     for _ in range(4):
-        mesh = run_gmsh(boxes, lambda points, f=factor: f * lengths(points))
+        mesh = run_gmsh(boxes, rectangles, lambda points, f=factor: f * lengths(points))
         if mesh is None or abs(len(mesh.points) / count - 1.0) < 0.05:
             break
         factor *= (len(mesh.points) / count) ** (1.0 / 3.0)
     return mesh
 
 
-def run_gmsh(boxes, lengths):
+def run_gmsh(boxes, rectangles, lengths):
     lines = ['SetFactory("OpenCASCADE");']
     for number, (x0, x1, y0, y1, z0, z1) in enumerate(boxes, 1):
         lines.append(f"Box({number}) = {{{x0}, {y0}, {z0}, {x1 - x0}, {y1 - y0}, {z1 - z0}}};")
-    if len(boxes) > 1:
-        rest = ", ".join(str(number) for number in range(2, len(boxes) + 1))
-        lines.append(f"BooleanFragments{{ Volume{{1}}; Delete; }}{{ Volume{{{rest}}}; Delete; }}")
+    for number, (x0, x1, y0, y1) in enumerate(rectangles, 100):
+        lines.append(f"Rectangle({number}) = {{{x0}, {y0}, 0, {x1 - x0}, {y1 - y0}}};")
+    if len(boxes) > 1 or rectangles:
+        rest = "".join([f"Volume{{{number}}}; " for number in range(2, len(boxes) + 1)]
+                       + [f"Surface{{{number}}}; " for number in range(100, 100 + len(rectangles))])
+        lines.append(f"BooleanFragments{{ Volume{{1}}; Delete; }}{{ {rest}Delete; }}")
     lines += [f"Physical Volume({i}) = {{{i}}};" for i in range(1, len(boxes) + 1)]
     lines += ["Mesh.MeshSizeExtendFromBoundary = 0;", "Mesh.MeshSizeFromPoints = 0;",
               "Mesh.MshFileVersion = 2.2;", "Field[1] = PostView;", "Field[1].ViewIndex = 0;",
@@ -262,11 +268,23 @@ def get_bias(device, contact):
 
 
 def ramp(device, contact, voltage, step=0.1):
-    """Changes a bias in steps that Newton's method can follow; the number of iterations."""
-    begin, iterations = get_bias(device, contact), 0
-    for bias in np.linspace(begin, voltage, max(2, int(np.ceil(abs(voltage - begin) / step)) + 1))[1:]:
-        set_bias(device, contact, float(bias))
-        iterations += solve()
+    """Changes a bias in steps, halved where Newton's method cannot follow; the number of iterations.
+
+    Where it fails, DEVSIM goes back to the solution before.
+    """
+    bias, iterations = get_bias(device, contact), 0
+    while bias != voltage:
+        is_last = abs(voltage - bias) < 1.001 * step
+        target = voltage if is_last else bias + float(np.copysign(step, voltage - bias))
+        set_bias(device, contact, target)
+        try:
+            iterations += solve()
+            bias = target
+        except devsim.error:
+            set_bias(device, contact, bias)
+            step *= 0.5
+            if step < SHORTEST_STEP:
+                raise
     return iterations
 
 
@@ -288,8 +306,14 @@ def print_table(title, head, rows):
     print()
 
 
-def draw(path, title, labels, curves, is_logarithmic=False):
-    """A picture with matplotlib, where it is installed; curves: by name x, y and style."""
+STYLES = ("bo", "rx", "g+", "mv", "c^", "y*", "k.", "b1")
+
+
+def draw(path, title, labels, line, cases, is_logarithmic=False):
+    """A picture with matplotlib, where it is installed: curves above, errors below.
+
+    line: name, x and y of the reference; cases: by name x, y and the reference there.
+    """
     try:
         import matplotlib
     except ImportError:
@@ -298,14 +322,20 @@ def draw(path, title, labels, curves, is_logarithmic=False):
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    figure, axes = pyplot.subplots(figsize=(6.4, 4.4), layout="constrained")
-    for name, (x, y, style) in curves.items():
+    figure, (axes, errors) = pyplot.subplots(2, 1, sharex=True, figsize=(6.4, 6.0), layout="constrained")
+    name, x, y = line
+    axes.plot(x, np.abs(y) if is_logarithmic else y, "k-", label=name)
+    for (name, (x, y, reference)), style in zip(cases.items(), STYLES):
         axes.plot(x, np.abs(y) if is_logarithmic else y, style, label=name)
+        errors.plot(x, np.abs(y / reference - 1.0), style + ":", label=name)
     if is_logarithmic:
         axes.set_yscale("log")
-    axes.set(title=title, xlabel=labels[0], ylabel=labels[1])
-    axes.grid(alpha=0.3)
-    axes.legend()
-    figure.savefig(path, dpi=120)
+    axes.set(title=title, ylabel=labels[1])
+    axes.legend(fontsize="small")
+    errors.set_yscale("log")
+    errors.set(xlabel=labels[0], ylabel="relative error")
+    for each in (axes, errors):
+        each.grid(alpha=0.3)
+    figure.savefig(path, dpi=90)
     pyplot.close(figure)
     print(f"{path} has the curve.")

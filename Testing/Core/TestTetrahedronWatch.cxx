@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Improvement/TetrahedronWatch.h"
+#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+using namespace cdm;
+
+namespace
+{
+Vec3 DrawPoint(std::mt19937_64& generator)
+{
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  const double x = uniform(generator);
+  const double y = uniform(generator);
+  return { x, y, uniform(generator) };
+}
+
+/** The Delaunay mesh of random points. */
+DynamicTetrahedralization MakeMesh(int numberOfPoints, std::mt19937_64& generator)
+{
+  std::vector<Vec3> points;
+  for (int i = 0; i < numberOfPoints; ++i)
+  {
+    points.push_back(DrawPoint(generator));
+  }
+  AdvancingFrontTetrahedralizerInput input;
+  input.MeshPoints = &points;
+  AdvancingFrontTetrahedralizerOptions options;
+  options.CloseOpenBoundary = true;
+  AdvancingFrontTetrahedralizerOutput output;
+  EXPECT_TRUE(TetrahedralizeByAdvancingFront(input, options, {}, output).IsOk());
+  return DynamicTetrahedralization(std::move(output.Mesh));
+}
+
+bool Insert(const Vec3& position, DynamicTetrahedralization& mesh)
+{
+  DynamicTetrahedralization::PointCavity cavity;
+  Id first = 0;
+  while (mesh.IsDead(first))
+  {
+    ++first;
+  }
+  first = mesh.Locate(position, first);
+  if (first == NoId || !mesh.FindCavity(position, mesh.GetNumberOfPoints(), first, cavity))
+  {
+    return false;
+  }
+  mesh.Insert(position, cavity);
+  return true;
+}
+
+/** A third of all. */
+bool HasProperty(const DynamicTetrahedralization& mesh, Id t)
+{
+  const TetrahedronIds& ids = mesh.GetMesh().Tetrahedra[t];
+  return (ids[0] + ids[1] + ids[2] + ids[3]) % 3 == 0;
+}
+
+std::vector<Id> FindAll(const DynamicTetrahedralization& mesh)
+{
+  std::vector<Id> found;
+  for (Id t = 0; t < mesh.GetNumberOfTetrahedra(); ++t)
+  {
+    if (!mesh.IsDead(t) && HasProperty(mesh, t))
+    {
+      found.push_back(t);
+    }
+  }
+  return found;
+}
+
+std::vector<Id> Update(const DynamicTetrahedralization& mesh, TetrahedronWatch& watch)
+{
+  std::vector<Id> found = watch.Update(mesh, [&](Id t) { return HasProperty(mesh, t); });
+  std::sort(found.begin(), found.end());
+  return found;
+}
+} // namespace
+
+TEST(TetrahedronWatch, AsksForWhatIsNewOnly)
+{
+  std::mt19937_64 generator(1);
+  DynamicTetrahedralization mesh = MakeMesh(2000, generator);
+  TetrahedronWatch watch;
+  EXPECT_EQ(Update(mesh, watch), FindAll(mesh));
+  EXPECT_EQ(watch.GetNumberOfTests(), mesh.GetNumberOfTetrahedra());
+  for (int round = 0; round < 100; ++round)
+  {
+    const std::int64_t before = watch.GetNumberOfTests();
+    // Unchanged: nothing is asked.
+    EXPECT_EQ(Update(mesh, watch), FindAll(mesh));
+    EXPECT_EQ(watch.GetNumberOfTests(), before);
+    if (!Insert(DrawPoint(generator), mesh))
+    {
+      continue;
+    }
+    EXPECT_EQ(Update(mesh, watch), FindAll(mesh));
+    EXPECT_EQ(
+      watch.GetNumberOfTests() - before, static_cast<std::int64_t>(mesh.GetChanged().size()));
+  }
+}
+
+TEST(TetrahedronWatch, FollowsRemovalsThatAreUndone)
+{
+  std::mt19937_64 generator(2);
+  DynamicTetrahedralization mesh = MakeMesh(500, generator);
+  TetrahedronWatch watch;
+  Update(mesh, watch);
+  int removals = 0;
+  for (Id point = 0; point < 500; ++point)
+  {
+    if (mesh.Remove(point))
+    {
+      ++removals;
+      if (point % 2 == 0)
+      {
+        mesh.UndoRemove();
+      }
+      EXPECT_EQ(Update(mesh, watch), FindAll(mesh));
+    }
+  }
+  EXPECT_GT(removals, 200);
+}
+
+TEST(TetrahedronWatch, AsksAgainForWhatItHasToForget)
+{
+  std::mt19937_64 generator(3);
+  DynamicTetrahedralization mesh = MakeMesh(500, generator);
+  TetrahedronWatch watch;
+  Update(mesh, watch);
+  const std::int64_t stamp = mesh.GetNextStamp();
+  ASSERT_TRUE(Insert({ 0.5, 0.5, 0.5 }, mesh));
+  Update(mesh, watch);
+  const std::int64_t before = watch.GetNumberOfTests();
+  watch.Forget(stamp);
+  EXPECT_EQ(Update(mesh, watch), FindAll(mesh));
+  EXPECT_EQ(watch.GetNumberOfTests() - before, static_cast<std::int64_t>(mesh.GetChanged().size()));
+}
