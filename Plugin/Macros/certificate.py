@@ -38,6 +38,7 @@ def MakeCriteria(source):
     # Not by its name, which paraview.simple lacks if the plugin was loaded later.
     criteria = servermanager.filters.DelaunayMeshCriteria(Input=source)
     servermanager.ParaViewPipelineController().RegisterPipelineProxy(criteria.SMProxy)
+    criteria.UpdatePipeline()
     return criteria
 
 

@@ -384,8 +384,7 @@ void SharpAngles::FindShadows(Id corner, Id first, Id other, const IdLists::Rang
     const auto apex =
       std::find_if(ids.begin(), ids.end(), [&](Id id) { return id != corner && id != first; });
     if (std::find(ids.begin(), ids.end(), first) != ids.end() &&
-      std::find(own.begin(), own.end(), this->Facets[t]) == own.end() &&
-      isOnSide(getHeight(*apex)))
+      std::find(own.begin(), own.end(), this->Facets[t]) == own.end() && isOnSide(getHeight(*apex)))
     {
       shadows.push_back({ this->Facets[t], sine });
     }
