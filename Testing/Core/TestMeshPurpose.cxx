@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a mesh is for decides what is not given, and only that; the default size.
 #include "ComplexKinds.h"
+#include "Core/Meshes/VolumeSums.h"
 #include "Core/Pipeline/ConformingMesher.h"
 #include "Core/Sizing/DefaultSize.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 using namespace cdm;
@@ -168,6 +170,61 @@ TEST(MeshPurpose, FiniteVolumesAreTheDefault)
   }
 }
 
+/** A plate of many small triangles stays a plate: the bound is a tenth of its thickness. */
+TEST(MeshPurpose, ThePlateThatIsMadeCoarserKeepsItsThickness)
+{
+  constexpr int n = 20;
+  PolygonSoup plate;
+  for (int k = 0; k < 2; ++k)
+  {
+    for (int i = 0; i <= n; ++i)
+    {
+      for (int j = 0; j <= n; ++j)
+      {
+        // Waves as high as a third of the thickness.
+        plate.Points.push_back({ 1.0 * i, 1.0 * j, 0.3 * k + 0.1 * ((i + j) % 2) });
+      }
+    }
+  }
+  const auto point = [](int i, int j, int k) { return (k * (n + 1) + i) * (n + 1) + j; };
+  plate.Offsets.push_back(0);
+  const auto add = [&](Id a, Id b, Id c, Id d)
+  {
+    for (const Id id : { a, b, c, a, c, d })
+    {
+      plate.Connectivity.push_back(id);
+      if (plate.Connectivity.size() % 3 == 0)
+      {
+        plate.Offsets.push_back(static_cast<Id>(plate.Connectivity.size()));
+      }
+    }
+  };
+  for (int i = 0; i < n; ++i)
+  {
+    for (int j = 0; j < n; ++j)
+    {
+      add(point(i, j, 0), point(i, j + 1, 0), point(i + 1, j + 1, 0), point(i + 1, j, 0));
+      add(point(i, j, 1), point(i + 1, j, 1), point(i + 1, j + 1, 1), point(i, j + 1, 1));
+    }
+    add(point(i, 0, 0), point(i + 1, 0, 0), point(i + 1, 0, 1), point(i, 0, 1));
+    add(point(i, n, 0), point(i, n, 1), point(i + 1, n, 1), point(i + 1, n, 0));
+    add(point(0, i, 0), point(0, i, 1), point(0, i + 1, 1), point(0, i + 1, 0));
+    add(point(n, i, 0), point(n, i + 1, 0), point(n, i + 1, 1), point(n, i, 1));
+  }
+  ConformingMesherOptions options;
+  options.Choices.MaximumEdgeLength = 5.0;
+  const ConformingMesherOutput output = Mesh(plate, options);
+  CompensatedSum sixVolumes;
+  for (const TetrahedronIds& ids : output.Mesh.Tetrahedra)
+  {
+    const std::vector<Vec3>& points = output.Mesh.Points;
+    sixVolumes.Add(GetSixVolumes(points[ids[0]], points[ids[1]], points[ids[2]], points[ids[3]]));
+  }
+  // No point is farther than a tenth of the thickness from where it was, on either side.
+  EXPECT_NEAR(sixVolumes.Get() / 6.0 / (n * n * 0.3), 1.0, 0.2);
+  EXPECT_TRUE(output.Certificate.IsDelaunay()) << output.Certificate.GetText();
+}
+
 TEST(MeshPurpose, TheDefaultSizeFollowsTheThinnestRegion)
 {
   // A cube: a twentieth of the diagonal is less than a third of the side.
@@ -183,14 +240,17 @@ TEST(MeshPurpose, TheDefaultSizeFollowsTheThinnestRegion)
   AddBox(plate, { 0.0, 0.0, 0.0 }, { 1.0, 1.0, 0.04 });
   const double thickness = 2.0 * 0.04 / 2.16;
   EXPECT_NEAR(GetDefaultSize(plate), thickness, 1e-12);
+  EXPECT_NEAR(GetLeastThickness(plate), thickness, 1e-12);
   AddBox(plate, { 0.0, 0.0, 0.1 }, { 1.0, 0.1, 0.2 });
   EXPECT_NEAR(GetDefaultSize(plate), thickness, 1e-12);
   AddBox(plate, { 0.0, 0.0, 0.6 }, { 1.0, 1.0, 0.6001 });
   const double size = GetDefaultSize(plate);
   EXPECT_NEAR(size, thickness, 1e-12);
+  EXPECT_NEAR(GetLeastThickness(plate), 2.0 * 0.0001 / 2.0004, 1e-12);
   // Nothing, and a surface that is open.
   EXPECT_EQ(GetDefaultSize({}), 0.0);
   cube.Triangles.pop_back();
+  EXPECT_EQ(GetLeastThickness(cube), std::numeric_limits<double>::infinity());
   EXPECT_GT(GetDefaultSize(cube), 0.0);
   EXPECT_LE(GetDefaultSize(cube), 0.05 * std::sqrt(3.0) + 1e-12);
 }

@@ -2,6 +2,7 @@
 #include "Core/Pipeline/SurfaceCoarsener.h"
 
 #include "Core/Meshes/EdgeUses.h"
+#include "Core/Sizing/DefaultSize.h"
 #include "Core/Surface/StructuralEdges.h"
 #include "Core/Surface/SurfaceRemesher.h"
 
@@ -18,7 +19,7 @@ namespace
 {
 /** Of the maximum edge length: the wanted length of edges, which get a third longer or shorter. */
 constexpr double WantedLengthRatio = 0.75;
-/** The automatic bound, of the maximum edge length. */
+/** The automatic bound, of the maximum edge length and of the thickness of regions. */
 constexpr double AutomaticRatio = 0.1;
 /** What counts as many triangles, and as small ones: of the maximum edge length. */
 constexpr Id ManyTriangles = 500;
@@ -76,7 +77,8 @@ double GetAutomaticDeviation(const PolygonSoup& polygons, const SizingField& siz
     small += Distance(surface.Points[a], surface.Points[b]) <
       SmallEdgeRatio * std::min(lengths[a], lengths[b]);
   }
-  return 2 * small >= edges ? AutomaticRatio * *std::min_element(lengths.begin(), lengths.end())
+  return 2 * small >= edges ? AutomaticRatio *
+      std::min(*std::min_element(lengths.begin(), lengths.end()), GetLeastThickness(surface))
                             : 0.0;
 }
 
@@ -185,7 +187,8 @@ std::string Describe(
     " triangles became " + std::to_string(after) + ", nowhere farther than " + bound +
     " from each other" +
     (isAutomatic ? std::string(" (the maximum deviation, chosen as a tenth of the ") +
-          (hasSizing ? "smallest size" : "maximum edge length") + "; 0 keeps the surface as it is)."
+          (hasSizing ? "smallest size" : "maximum edge length") +
+          ", or of the thickness of the thinnest region; 0 keeps the surface as it is)."
                  : std::string(" (the maximum deviation)."));
 }
 } // namespace

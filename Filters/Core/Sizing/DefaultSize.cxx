@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace cdm
@@ -24,6 +25,9 @@ struct RegionExtent
 {
   CompensatedSum SixVolumes;
   double Area = 0.0;
+
+  double GetVolume() const { return std::abs(this->SixVolumes.Get()) / 6.0; }
+  double GetThickness() const { return 2.0 * this->GetVolume() / this->Area; }
 };
 
 /** By region. Empty if the regions are not known. */
@@ -84,19 +88,32 @@ double GetDefaultSize(const TriangleMesh& surface)
   double volume = regions.empty() ? sides.X * sides.Y * sides.Z : 0.0;
   for (const auto& [region, extent] : regions)
   {
-    volume += std::abs(extent.SixVolumes.Get()) / 6.0;
+    volume += extent.GetVolume();
   }
   const double least = std::max(std::cbrt(volume * TetrahedraPerVolume / Tetrahedra),
     std::sqrt(area * TetrahedraPerArea / Tetrahedra));
   double size = DiagonalRatio * Norm(sides);
   for (const auto& [region, extent] : regions)
   {
-    const double thickness = std::abs(extent.SixVolumes.Get()) / 3.0 / extent.Area;
+    const double thickness = extent.GetThickness();
     if (thickness >= least)
     {
       size = std::min(size, thickness);
     }
   }
   return std::max(size, least);
+}
+
+double GetLeastThickness(const TriangleMesh& surface)
+{
+  double least = std::numeric_limits<double>::infinity();
+  if (!surface.Triangles.empty())
+  {
+    for (const auto& [region, extent] : MeasureRegions(surface))
+    {
+      least = std::min(least, extent.GetThickness());
+    }
+  }
+  return least;
 }
 } // namespace cdm

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file DefaultSize.h
- * @brief A maximum edge length for a surface of which nothing else is known.
+ * @brief How thick regions are, and a maximum edge length for a surface of which nothing else is known.
  *
  * Method: a region of volume V and area A is 2 V / A thick: a plate as thick as it is, a ball a
  * third of its diameter. Edges are to be as long as the thinnest region is thick, but
@@ -28,6 +28,9 @@ namespace cdm
 {
 /** In model units. */
 double GetDefaultSize(const TriangleMesh& surface);
+
+/** How thick the thinnest region is, 2 V / A, in model units; infinite if regions are not known. */
+double GetLeastThickness(const TriangleMesh& surface);
 } // namespace cdm
 
 #endif
