@@ -392,7 +392,8 @@ Status SurfaceAttempts::Run()
     return first;
   }
   Status status;
-  for (const MatchingRules rules : { MatchingRules::Corners, MatchingRules::ThinLayers })
+  for (const MatchingRules rules :
+    { MatchingRules::Corners, MatchingRules::ThinLayers, MatchingRules::Stacks })
   {
     if (!status.IsAborted() && !this->IsSettled)
     {
