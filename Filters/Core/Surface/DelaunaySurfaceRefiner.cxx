@@ -288,8 +288,8 @@ Status SurfaceRefiner::Run()
 }
 
 /**
- * Attempts to refine one surface: with the usual rules, with those for corners and for thin layers,
- * and by the criterion Delaunay alone, until one attempt ends.
+ * Attempts to refine one surface: with the usual rules, with those for corners, thin layers and
+ * stacks, and by the criterion Delaunay alone, until one attempt ends.
  */
 class SurfaceAttempts
 {

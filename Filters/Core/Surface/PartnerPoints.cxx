@@ -55,7 +55,7 @@ constexpr double PassingWayRatio = 0.5;
 /** Used instead of NeedleGapRatio and CloseEndRatio. */
 constexpr double LayerGapRatio = 0.1;
 constexpr double LayerEndRatio = 0.1;
-/** In stacks, how far a match may be off for one facet in favor of others; 0.5 would spoil it. */
+/** In stacks, how far a match leans toward steeper facets, as a part of what others bear. */
 constexpr double LeanRatio = 0.25;
 } // namespace
 
@@ -401,8 +401,8 @@ bool PartnerPoints::Project(Id t, Id encroaching, Vec3& target) const
  * an edge has several planes. That closest to parallel counts: for another one with the angle b and
  * the height h of the point the match is off by no more than h b, which matters for triangles
  * larger than the distance h / b from where the planes meet. But planes of narrow facets are
- * steeper, and demand more of the match than their triangles need of its exactness. So it leans
- * towards them by as much as triangles of the radius R of this one allow: h / R.
+ * steeper: a match that is exact for the others is on the spheres of their triangles. So it leans
+ * toward them, by a part of the angle h / (2 R) that triangles of this one's radius R bear.
  */
 bool PartnerPoints::MirrorInStack(Id t, Id encroaching, Vec3& target) const
 {
