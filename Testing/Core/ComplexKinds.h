@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ComplexKinds.h
- * @brief Random valid complexes of eight kinds, by a seed: what every criterion has to end on.
+ * @brief Random valid complexes of nine kinds, by a seed: what every criterion has to end on.
  *
  * Bodies touch each other in facets, single edges and points; angles are what chance makes them.
  * Each complex is turned about a random axis, moved by up to 1e6 of its size, and scaled by a power
@@ -42,14 +42,18 @@ enum class ComplexKind
   /** Boxes beside and within each other, with widths of 1:1000. */
   Boxes,
   /** A box cut by planes that are almost parallel. */
-  TiltedPlates
+  TiltedPlates,
+  /** Slabs as above, of at most eight points. */
+  SmallSlabs
 };
-constexpr int NumberOfComplexKinds = 8;
+constexpr int NumberOfComplexKinds = 9;
+/** Seeds of one kind are so far apart. The kinds from there on take those of the first ones. */
+constexpr std::uint64_t SeedStep = 8;
 
 inline const char* GetComplexKindName(ComplexKind kind)
 {
   static const char* const names[NumberOfComplexKinds] = { "CubeTetrahedra", "GridTetrahedra",
-    "SlabTetrahedra", "Fan", "Pyramids", "VoronoiCells", "Boxes", "TiltedPlates" };
+    "SlabTetrahedra", "Fan", "Pyramids", "VoronoiCells", "Boxes", "TiltedPlates", "SmallSlabs" };
   return names[static_cast<int>(kind)];
 }
 
@@ -58,7 +62,7 @@ class ComplexMaker
 {
 public:
   ComplexMaker(ComplexKind kind, std::uint64_t seed)
-    : Kind(kind), Generator(seed * NumberOfComplexKinds + static_cast<std::uint64_t>(kind))
+    : Kind(kind), Generator(seed * SeedStep + static_cast<std::uint64_t>(kind))
   {
   }
 
@@ -84,6 +88,9 @@ public:
         return this->MakeBoxes();
       case ComplexKind::TiltedPlates:
         return this->MakeTiltedPlates();
+      case ComplexKind::SmallSlabs:
+        return this->MakeTetrahedra(this->MakePoints(
+          this->Choose(5, 8), { 1.0, 1.0, std::pow(10.0, -this->Pick(2.0, 5.0)) }));
     }
     return {};
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random complexes of eight kinds (ComplexKinds.h) with each criterion: all of them are meshed, and
+// Random complexes of nine kinds (ComplexKinds.h) with each criterion: all of them are meshed, and
 // the table that is printed says how many fulfil the criterion asked for, and at which price.
 //
 // CDM_COMPLEXES=12500 build/bin/TestComplexKinds makes so many of each kind, CDM_FIRST_SEED other
@@ -279,6 +279,11 @@ TEST(ComplexKinds, SlabTetrahedra)
   EXPECT_EQ(MeshComplexes(ComplexKind::SlabTetrahedra, 4)[0].Missed.size(), 0u);
 }
 
+TEST(ComplexKinds, SmallSlabs)
+{
+  EXPECT_EQ(MeshComplexes(ComplexKind::SmallSlabs, 4)[0].Missed.size(), 0u);
+}
+
 /** But for tilted plates: layers a thousand times as wide as thick get 100,000 tetrahedra each. */
 class SteinerPointsInComplexes : public testing::TestWithParam<int>
 {
@@ -308,5 +313,30 @@ TEST(ComplexKinds, EdgesThatPassEachOtherAreSplitThere)
     bool isFulfilled = false;
     EXPECT_LT(MeshComplex(triangulated.Surface, criterion, isFulfilled), 300u);
     EXPECT_TRUE(isFulfilled);
+  }
+}
+
+/**
+ * Seven triangles (25, 39) and 19 to 22 (2, 3, 28) in slabs. Criterion 3.2 missed all and 3.1 the
+ * last three: edges halved each other, and a point of an edge was matched for one of the facets
+ * there only.
+ */
+TEST(ComplexKinds, StacksAreRefinedFromTheirTriangles)
+{
+  for (const std::uint64_t seed : { 2, 3, 25, 28, 39 })
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    BoundaryTriangulatorOutput triangulated;
+    ASSERT_TRUE(
+      TriangulateBoundary(ComplexMaker(ComplexKind::SmallSlabs, seed).Make(), {}, {}, triangulated)
+        .IsOk());
+    for (const SurfaceCriterion criterion :
+      { SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
+    {
+      bool isFulfilled = false;
+      const std::size_t points = MeshComplex(triangulated.Surface, criterion, isFulfilled);
+      EXPECT_TRUE(isFulfilled) << "criterion " << static_cast<int>(criterion);
+      EXPECT_LT(points, triangulated.Surface.Triangles.size() == 7 ? 500u : 10000u);
+    }
   }
 }

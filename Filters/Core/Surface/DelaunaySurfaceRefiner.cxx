@@ -288,8 +288,8 @@ Status SurfaceRefiner::Run()
 }
 
 /**
- * Attempts to refine one surface: with the usual rules, with those for corners and for thin layers,
- * and by the criterion Delaunay alone, until one attempt ends.
+ * Attempts to refine one surface: with the usual rules, with those for corners, thin layers and
+ * stacks, and by the criterion Delaunay alone, until one attempt ends.
  */
 class SurfaceAttempts
 {
@@ -392,7 +392,8 @@ Status SurfaceAttempts::Run()
     return first;
   }
   Status status;
-  for (const MatchingRules rules : { MatchingRules::Corners, MatchingRules::ThinLayers })
+  for (const MatchingRules rules :
+    { MatchingRules::Corners, MatchingRules::ThinLayers, MatchingRules::Stacks })
   {
     if (!status.IsAborted() && !this->IsSettled)
     {

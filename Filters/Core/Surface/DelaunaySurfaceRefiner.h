@@ -12,7 +12,8 @@
  *  1. find the structural edges (Def. 6.2), flip to saturation (recursive triangle flip, Def. 6.1);
  *  2. test each triangle by the chosen criterion, with the double sphere (Crit. 6.1) in at most two
  *     searches of the point octree, and remember the sphere that proves it. For criterion 3.2 the
- *     structural edges come before all triangles, the shortest first, then the smallest triangle;
+ *     structural edges come before all triangles, but in stacks, the shortest first, then the
+ *     smallest triangle;
  *     for 3.1 only edges of triangles that fail are tested, and the edge comes first whose
  *     encroaching point is closest to its middle;
  *  3. for a triangle that fails: flip; or split an encroached structural edge, at the foot or the
@@ -22,8 +23,9 @@
  *     Points in facets come last, when no edge is left to split.
  *     Filters/Core/README.md has the rules, and says why they end;
  *  4. test again the triangles whose proving sphere holds the new point;
- *  5. if that does not end within the limits: start again with the rules for corners, then with
- *     those for thin layers (MatchingRules in PartnerPoints.h), then with the criterion Delaunay;
+ *  5. if that does not end within the limits: start again with the rules for corners, with those
+ *     for thin layers, with those for stacks (MatchingRules in PartnerPoints.h), then with the
+ *     criterion Delaunay;
  *  6. with an accuracy angle surface facets are curved, and points that mend one triangle may
  *     encroach on its neighbors without end. Where new points come much closer to each other than
  *     those of the input, the edges of the input triangles become structural, and the refinement

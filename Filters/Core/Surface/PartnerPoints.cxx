@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace cdm
 {
@@ -54,6 +55,8 @@ constexpr double PassingWayRatio = 0.5;
 /** Used instead of NeedleGapRatio and CloseEndRatio. */
 constexpr double LayerGapRatio = 0.1;
 constexpr double LayerEndRatio = 0.1;
+/** In stacks, how far a match leans toward steeper facets, as a part of what others bear. */
+constexpr double LeanRatio = 0.25;
 } // namespace
 
 /**
@@ -107,7 +110,7 @@ bool PartnerPoints::PlaceOnLine(
     way = foot + shift;
     along = 0.5 * (direction + line);
     passing = -1.0;
-    if (this->Rules == MatchingRules::ThinLayers && squaredSine > PassingSquaredSine)
+    if (AreForLayers(this->Rules) && squaredSine > PassingSquaredSine)
     {
       // Feet of the common perpendicular, here and on the other edge.
       const double foothold = way + distance;
@@ -189,7 +192,7 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id encroaching) const
   const Vec3& b = this->Points[ends[1]];
   const double length = Distance(a, b);
   const Vec3 direction = (1.0 / length) * (b - a);
-  const bool isLayered = this->Rules == MatchingRules::ThinLayers;
+  const bool isLayered = AreForLayers(this->Rules);
   const double needleGap = isLayered ? LayerGapRatio : NeedleGapRatio;
   const double closeEnd = isLayered ? LayerEndRatio : CloseEndRatio;
   for (int attempt = 0; encroaching != NoId; ++attempt)
@@ -392,6 +395,55 @@ bool PartnerPoints::Project(Id t, Id encroaching, Vec3& target) const
   return true;
 }
 
+/**
+ * Mirrors a point at the plane midway between its own plane and that of the triangle. It leaves all
+ * triangles alone whose circumcenters are on its side of the line where the planes meet. A point of
+ * an edge has several planes. That closest to parallel counts: for another one with the angle b and
+ * the height h of the point the match is off by no more than h b, which matters for triangles
+ * larger than the distance h / b from where the planes meet. But planes of narrow facets are
+ * steeper: a match that is exact for the others is on the spheres of their triangles. So it leans
+ * toward them, by a part of the angle h / (2 R) that triangles of this one's radius R bear.
+ */
+bool PartnerPoints::MirrorInStack(Id t, Id encroaching, Vec3& target) const
+{
+  const TriangleIds& ids = this->Surface.GetTriangle(t).Points;
+  const Vec3& a = this->Points[ids[0]];
+  const Vec3& b = this->Points[ids[1]];
+  const Vec3& c = this->Points[ids[2]];
+  const Vec3& p = this->Points[encroaching];
+  Vec3 normal = Cross(b - a, c - a);
+  normal = (1.0 / Norm(normal)) * normal;
+  const double height = Dot(p - a, normal);
+  const double largestLean = LeanRatio * std::abs(height) / Norm(GetCircumcenterOffset(a, b, c));
+
+  std::vector<Vec3> others;
+  std::size_t closest = 0;
+  for (Id facet : this->Incidences.GetFacets(encroaching))
+  {
+    const Vec3& own = this->Incidences.GetNormal(facet);
+    if (std::abs(Dot(own, normal)) > MirrorCosine)
+    {
+      others.push_back(Dot(own, normal) < 0.0 ? -1.0 * own : own);
+      closest = SquaredNorm(others.back() - normal) < SquaredNorm(others[closest] - normal)
+        ? others.size() - 1
+        : closest;
+    }
+  }
+  if (others.empty())
+  {
+    return false;
+  }
+  Vec3 across = normal + others[closest];
+  for (const Vec3& other : others)
+  {
+    const Vec3 tilt = other - others[closest];
+    const double angle = Norm(tilt);
+    across = angle > 0.0 ? across + std::min(1.0, largestLean / angle) * tilt : across;
+  }
+  target = p - (height / Dot(across, normal)) * across;
+  return InEquatorialSphere(a, b, c, target) > 0;
+}
+
 bool PartnerPoints::PlaceInFacet(Id t, Id encroaching, Vec3& target) const
 {
   // The point lies in the same (curved) facet: matches would come ever closer to it.
@@ -401,7 +453,8 @@ bool PartnerPoints::PlaceInFacet(Id t, Id encroaching, Vec3& target) const
     return false;
   }
   // However close to other points: only points that match exactly leave each other alone.
-  return this->RotateAboutEdge(t, encroaching, target) ||
+  return (this->Rules == MatchingRules::Stacks && this->MirrorInStack(t, encroaching, target)) ||
+    this->RotateAboutEdge(t, encroaching, target) ||
     this->RotateAboutCorner(t, encroaching, target) || this->Project(t, encroaching, target);
 }
 

@@ -15,7 +15,8 @@
  *     two of the unit of length (concentric shells), so that all edges there end up alike;
  *     otherwise in the middle.
  *  2. Partner in a facet: the encroaching point is rotated about the edge that the two facets
- *     share, or about a corner that they share, or projected along the normal, in this order.
+ *     share, or about a corner that they share, or projected along the normal, in this order. In
+ *     stacks it is mirrored between the two planes, wherever they meet.
  *  3. The last bits are chosen so that the two points match exactly (MatchingPoints.h).
  *
  * Cost: constant, but for the search of shared edges and corners.
@@ -52,8 +53,20 @@ enum class MatchingRules : char
    * of other sheets. Around corners, new points in facets keep to the distances that are there
    * already.
    */
-  ThinLayers
+  ThinLayers,
+  /**
+   * The rules for thin layers, for stacks of many sheets, some of them narrow. A point of an edge
+   * is matched for all facets there. A new point in a facet gives way to edges that pass above or
+   * below. Edges are only then made to have empty diametral spheres when all triangles have.
+   */
+  Stacks
 };
+
+/** Whether the rules are those for thin layers, or more. */
+inline bool AreForLayers(MatchingRules rules)
+{
+  return rules == MatchingRules::ThinLayers || rules == MatchingRules::Stacks;
+}
 
 class PartnerPoints
 {
@@ -94,6 +107,7 @@ private:
   bool RotateAboutEdge(Id triangle, Id encroaching, Vec3& target) const;
   bool RotateAboutCorner(Id triangle, Id encroaching, Vec3& target) const;
   bool Project(Id triangle, Id encroaching, Vec3& target) const;
+  bool MirrorInStack(Id triangle, Id encroaching, Vec3& target) const;
 
   const RefinableSurface& Surface;
   SurfaceIncidences& Incidences;

@@ -32,6 +32,14 @@ constexpr double OverrefinementRatio = 1.0 / 8.0;
 constexpr double CloseMatchRatio = 0.1;
 /** A plan that may give up does so after this part as many needles that are bad as points. */
 constexpr Id NeedlePart = 4;
+/** A segment passes a new point if it is closer above or below than this, in circumradii ... */
+constexpr double PassingRadiusRatio = 0.5;
+/** ... and in lengths of the segment, ... */
+constexpr double PassingLengthRatio = 0.25;
+/** ... and if the sine of its angle with the facet is no larger than this. */
+constexpr double PassingSine = 0.5;
+/** A point matches a corner of a triangle if it is no farther from it than this, in heights. */
+constexpr double MatchRatio = 1.1;
 /** Distances from a corner that are as equal as that count as equal. */
 constexpr double EqualRadii = 1.01;
 } // namespace
@@ -103,6 +111,10 @@ void SurfaceRefinement::CollectIncidences()
     this->Octree, this->Diagonal, this->Plan.Rules);
   this->Walk = std::make_unique<FacetWalk>(
     *this->Surface, *this->Partners, this->Points, this->Octree, this->Diagonal);
+  for (Id segment = 0; segment < this->Surface->GetNumberOfSegments(); ++segment)
+  {
+    this->NoteSegment(segment);
+  }
 }
 
 void SurfaceRefinement::Enqueue(Id t)
@@ -125,9 +137,9 @@ void SurfaceRefinement::Enqueue(Id t)
   // would refine almost flat surfaces down to the smallest triangles.
   const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
   this->Enqueue(t, QueueState::First,
-    this->AreEdgesTested() ? Norm(GetCircumcenterOffset(
-                               this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]))
-                           : this->GetNextNumber());
+    this->AreEdgesFirst() ? Norm(GetCircumcenterOffset(
+                              this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]))
+                          : this->GetNextNumber());
 }
 
 void SurfaceRefinement::Enqueue(Id t, QueueState state, double order)
@@ -555,6 +567,8 @@ bool SurfaceRefinement::SplitSegment(Id segment, Id encroaching)
       ++this->NumberOfEdgePoints;
       std::vector<Id> uses;
       this->Surface->SplitSegment(segment, point, uses);
+      this->NoteSegment(segment);
+      this->NoteSegment(this->Surface->GetNumberOfSegments() - 1);
       if (this->AreEdgesTested())
       {
         this->EmptyEdges.Remove(segment);
@@ -615,6 +629,57 @@ SurfaceRefinement::EncroachedEdge SurfaceRefinement::FindEncroachedEdge(Id t) co
   return best;
 }
 
+/** Remembers the diametral sphere of a segment if new points in facets have to give way to it. */
+void SurfaceRefinement::NoteSegment(Id segment)
+{
+  if (this->Plan.Rules == MatchingRules::Stacks)
+  {
+    const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
+    const Vec3& a = this->Points[ends[0]];
+    const Vec3& b = this->Points[ends[1]];
+    this->SegmentBalls.Set(segment, 0.5 * (a + b), 0.5 * Distance(a, b));
+  }
+}
+
+/**
+ * Of the segments that pass close above or below a new point in a facet, the one on which it would
+ * encroach most, or none. What matches the points of that segment would come close to the new one.
+ */
+Id SurfaceRefinement::FindPassingSegment(Id t, const Vec3& position)
+{
+  if (this->Plan.Rules != MatchingRules::Stacks)
+  {
+    return NoId;
+  }
+  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+  const Vec3& corner = this->Points[ids[0]];
+  Vec3 normal = Cross(this->Points[ids[1]] - corner, this->Points[ids[2]] - corner);
+  normal = (1.0 / Norm(normal)) * normal;
+  const double radius = Distance(this->FindCircumcenter(t), corner);
+  this->SegmentBalls.Find(position, this->Reached);
+  Id found = NoId;
+  double nearest = Infinity;
+  for (Id segment : this->Reached)
+  {
+    const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
+    const Vec3& a = this->Points[ends[0]];
+    const Vec3& b = this->Points[ends[1]];
+    const double length = Distance(a, b);
+    const Vec3 direction = (1.0 / length) * (b - a);
+    const Vec3 arm = a + Dot(position - a, direction) * direction - position;
+    const double height = std::abs(Dot(arm, normal));
+    const double distance = Norm(arm) / length;
+    if (distance < nearest && height <= PassingRadiusRatio * radius &&
+      height <= PassingLengthRatio * length && std::abs(Dot(direction, normal)) <= PassingSine &&
+      InDiametralSphere(a, b, position) >= 0)
+    {
+      nearest = distance;
+      found = segment;
+    }
+  }
+  return found;
+}
+
 bool SurfaceRefinement::ResolveInFacet(Id t, Id encroaching, const Vec3& target, bool isMirrored)
 {
   const RefinableSurface& surface = *this->Surface;
@@ -651,7 +716,7 @@ bool SurfaceRefinement::ResolveInFacet(Id t, Id encroaching, const Vec3& target,
   {
     return false;
   }
-  if (isMirrored && this->Plan.Rules == MatchingRules::ThinLayers)
+  if (isMirrored && AreForLayers(this->Plan.Rules))
   {
     const double reach = CloseMatchRatio * Distance(position, this->Points[encroaching]);
     NearestPointVisitor visitor(position, encroaching, reach);
@@ -678,6 +743,11 @@ bool SurfaceRefinement::ResolveInFacet(Id t, Id encroaching, const Vec3& target,
       return false;
     }
     return this->SplitSegment(encroached, isMirrored ? encroaching : NoId);
+  }
+  const Id passing = isMirrored ? NoId : this->FindPassingSegment(t, position);
+  if (passing != NoId && this->SplitSegment(passing, NoId))
+  {
+    return true;
   }
 
   const TriangleIds ids = surface.GetTriangle(current).Points;
@@ -794,17 +864,52 @@ bool SurfaceRefinement::IsMatchedByEnd(Id segment, Id encroaching, const Vec3& p
 }
 
 /**
+ * Whether a triangle with a corner of the input is too long, as seen from there: a point that
+ * matches another of its points encroaches on it, as the match is not exact in the direction of the
+ * corner.
+ */
+bool SurfaceRefinement::IsTooLong(Id t, int corner, Id encroaching) const
+{
+  if (this->Plan.Rules != MatchingRules::Stacks || encroaching == NoId)
+  {
+    return false;
+  }
+  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+  const Vec3& q = this->Points[encroaching];
+  const Vec3 first = this->Points[ids[(corner + 1) % 3]] - this->Points[ids[corner]];
+  const Vec3 second = this->Points[ids[(corner + 2) % 3]] - this->Points[ids[corner]];
+  const Vec3 normal = Cross(first, second);
+  const double height = std::abs(Dot(q - this->Points[ids[corner]], normal)) / Norm(normal);
+  Vec3 outward = (1.0 / Norm(first)) * first + (1.0 / Norm(second)) * second;
+  outward = (1.0 / Norm(outward)) * outward;
+  const Vec3 center = this->FindCircumcenter(t);
+  for (const Id point : { ids[(corner + 1) % 3], ids[(corner + 2) % 3] })
+  {
+    // How much nearer the match is to the circumcenter than the point, along the way and across.
+    const Vec3 offset = q - this->Points[point];
+    const Vec3 arm = center - this->Points[point];
+    const double along = Dot(offset, outward) * Dot(arm, outward);
+    const double across = Dot(offset, arm) - along;
+    if (Norm(offset) < MatchRatio * height && along > 0.0 && along > across)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/**
  * Finds a point on a shell around a corner of the input, to be used instead of the circumcenter of
  * a triangle at that corner. Only with the rules for thin layers. The triangle's other two points
  * have to be about as far from the corner as the nearest points on its edges: then the point midway
  * between them at that distance is taken. If one is farther away, the point at that distance on the
  * way to it is taken. Nearer points would ask for nearer ones in all sheets that meet in the
- * corner.
+ * corner, and are made only for a triangle that is too long.
  */
-bool SurfaceRefinement::FindShellPoint(Id t, Vec3& target) const
+bool SurfaceRefinement::FindShellPoint(Id t, Id encroaching, Vec3& target) const
 {
   const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-  for (int i = 0; i < 3 && this->Plan.Rules == MatchingRules::ThinLayers; ++i)
+  for (int i = 0; i < 3 && AreForLayers(this->Plan.Rules); ++i)
   {
     const Id v = ids[i];
     if (v >= this->NumberOfSurfacePoints || this->Incidences->GetEdges(v).size() < 2)
@@ -822,8 +927,10 @@ bool SurfaceRefinement::FindShellPoint(Id t, Vec3& target) const
     if (radius <= EqualRadii * this->Incidences->GetInnerRadius(v))
     {
       const double farther = Norm(far);
-      const Vec3 direction = farther > EqualRadii * radius ? far : near + (radius / farther) * far;
-      target = corner + (radius / Norm(direction)) * direction;
+      const bool isTooLong = this->IsTooLong(t, i, encroaching);
+      const Vec3 direction =
+        farther > EqualRadii * radius && !isTooLong ? far : near + (radius / farther) * far;
+      target = corner + ((isTooLong ? 0.5 : 1.0) * radius / Norm(direction)) * direction;
       return true;
     }
   }
@@ -877,7 +984,8 @@ void SurfaceRefinement::Process(Id t, QueueState state)
   this->IsBad[t] = 0;
   const EncroachedEdge edge = this->FindEncroachedEdge(t);
   if (edge.Segment != NoId && state == QueueState::First &&
-    this->Options.Criterion == SurfaceCriterion::SmallestSphere && !this->IsRescuing())
+    this->Options.Criterion != SurfaceCriterion::Delaunay && !this->AreEdgesFirst() &&
+    !this->IsRescuing())
   {
     this->Enqueue(t, QueueState::Edge, edge.Distance);
     return;
@@ -887,7 +995,7 @@ void SurfaceRefinement::Process(Id t, QueueState state)
     this->Enqueue(t);
     return;
   }
-  if (state != QueueState::Last && !this->AreEdgesTested())
+  if (state != QueueState::Last && !this->AreEdgesFirst())
   {
     this->Enqueue(t, QueueState::Last, this->GetNextNumber());
     return;
@@ -902,7 +1010,8 @@ void SurfaceRefinement::Process(Id t, QueueState state)
   const bool isMirrored =
     encroaching != NoId && this->Partners->PlaceInFacet(t, encroaching, target);
   if ((isMirrored && this->ResolveInFacet(t, encroaching, target, true)) ||
-    (this->FindShellPoint(t, target) && this->ResolveInFacet(t, encroaching, target, false)) ||
+    (this->FindShellPoint(t, encroaching, target) &&
+      this->ResolveInFacet(t, encroaching, target, false)) ||
     this->ResolveInFacet(t, encroaching, this->FindCircumcenter(t), false) ||
     this->SplitLongestEdge(t))
   {
@@ -925,8 +1034,8 @@ void SurfaceRefinement::EnqueueEdge(Id segment)
 }
 
 /**
- * Edges whose diametral spheres have to be empty come before any triangle: facets are refined from
- * a fine enough outline. The shortest first: what it needs is given by the surface around it, and
+ * Edges whose diametral spheres have to be empty come before any triangle, but in stacks: facets are
+ * refined from a fine enough outline. The shortest first: what it needs is given by the surface around it, and
  * the partners of its points are the points that longer edges need.
  */
 void SurfaceRefinement::ProcessEdge()
@@ -981,7 +1090,7 @@ Status SurfaceRefinement::Refine(const ExecutionContext& context)
     {
       this->Plan.GivesUp ? this->GiveUp() : this->StartRescue();
     }
-    if (!this->EdgeQueue.empty())
+    if (!this->EdgeQueue.empty() && (this->AreEdgesFirst() || this->Queue.empty()))
     {
       this->ProcessEdge();
       continue;

@@ -203,6 +203,11 @@ private:
   {
     return this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges;
   }
+  /** Whether all edges are made fine enough before the first triangle is. */
+  bool AreEdgesFirst() const
+  {
+    return this->AreEdgesTested() && this->Plan.Rules != MatchingRules::Stacks;
+  }
   bool IsGood(Id t, SurfaceDelaunayTest::Result& found) const
   {
     return this->IsGood(t, found, this->IsStrong());
@@ -233,8 +238,11 @@ private:
   Id AddPoint(const Vec3& position, const PointParents& parents, Id facet, Id inputEdge);
   void TestAgainAround(const Vec3& position);
   void Touch(Id t);
+  void NoteSegment(Id segment);
+  Id FindPassingSegment(Id t, const Vec3& position);
   Vec3 FindCircumcenter(Id t) const;
-  bool FindShellPoint(Id t, Vec3& target) const;
+  bool IsTooLong(Id t, int corner, Id encroaching) const;
+  bool FindShellPoint(Id t, Id encroaching, Vec3& target) const;
   bool IsMatchedByEnd(Id segment, Id encroaching, const Vec3& position) const;
   void Enqueue(Id t);
   void Enqueue(Id t, QueueState state, double order);
@@ -304,6 +312,8 @@ private:
    */
   std::vector<std::pair<double, Id>> EdgeQueue;
   BallIndex EmptyEdges;
+  /** Diametral spheres of all segments; only with the rules for stacks. */
+  BallIndex SegmentBalls;
   /** Marks segments that are encroached on and cannot be split. */
   std::vector<char> IsEncroached;
 };
