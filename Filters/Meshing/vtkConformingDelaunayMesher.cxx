@@ -378,6 +378,7 @@ cdm::Status vtkConformingDelaunayMesher::MakeOptions(
   options.RegionSizes.Growth = this->Growth;
   options.CloseOpenBoundary = this->CloseOpenBoundary;
   options.MaximumVolume = this->MaximumVolume;
+  options.SmoothingRounds = this->SmoothingRounds;
   return this->MakeChoices(options.Choices)
     .Then(
       [&]
@@ -505,4 +506,5 @@ void vtkConformingDelaunayMesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "RadiusEdgeRatio: " << this->RadiusEdgeRatio << "\n";
   os << indent << "MaximumVolume: " << this->MaximumVolume << "\n";
   os << indent << "DihedralAngleTarget: " << this->DihedralAngleTarget << "\n";
+  os << indent << "SmoothingRounds: " << this->SmoothingRounds << "\n";
 }

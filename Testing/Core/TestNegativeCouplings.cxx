@@ -33,6 +33,31 @@ std::vector<EdgeIds> FindByCertificate(const TetMesh& mesh, const TriangleMesh& 
   SortUnique(edges);
   return edges;
 }
+
+/** From each tetrahedron at each edge of the boundary. */
+std::vector<EdgeIds> FindOneByOne(const TetMesh& mesh, const TriangleMesh& boundary)
+{
+  const DynamicTetrahedralization dynamic(mesh);
+  const IdLists pointTriangles = ListTrianglesAtPoints(boundary.Triangles, boundary.Points.size());
+  const Id count = static_cast<Id>(boundary.Points.size());
+  std::vector<EdgeIds> edges;
+  for (std::size_t t = 0; t < mesh.Tetrahedra.size(); ++t)
+  {
+    for (int i = 0; i < 6; ++i)
+    {
+      const EdgeIds edge = MakeEdge(
+        mesh.Tetrahedra[t][TetrahedronEdges[i][0]], mesh.Tetrahedra[t][TetrahedronEdges[i][1]]);
+      if (edge[1] < count && IsBoundaryEdge(boundary, pointTriangles, edge) &&
+        HasNegativeCoupling(dynamic, static_cast<Id>(t), i))
+      {
+        edges.push_back(edge);
+      }
+    }
+  }
+  SortUnique(edges);
+  return edges;
+}
+
 std::vector<EdgeIds> FindAll(const TetMesh& mesh, const TriangleMesh& boundary)
 {
   return NegativeCouplings().Update(DynamicTetrahedralization(mesh), boundary,
@@ -79,6 +104,7 @@ TEST(NegativeCouplings, AreThoseOfTheCertificate)
     made.Boundary.Points = refined.Surface.Points;
     const std::vector<EdgeIds> edges = FindAll(made.Mesh, made.Boundary);
     EXPECT_EQ(edges, FindByCertificate(made.Mesh, made.Boundary));
+    EXPECT_EQ(edges, FindOneByOne(made.Mesh, made.Boundary));
     total += edges.size();
   }
   std::cout << total << " edges\n";

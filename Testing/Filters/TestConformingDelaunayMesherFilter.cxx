@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "../Core/ComplexKinds.h"
 #include "FilterTesting.h"
+#include "MeshCertificate.h"
 
 #include <vtkCleanPolyData.h>
 #include <vtkConformingDelaunayMesher.h>
@@ -13,6 +14,7 @@
 #include <vtkSphereSource.h>
 #include <vtkStringArray.h>
 #include <vtkSuperquadricSource.h>
+#include <vtkTechnologyStructureSource.h>
 #include <vtkTriangleFilter.h>
 
 #include <algorithm>
@@ -611,6 +613,37 @@ TEST(ConformingDelaunayMesherFilter, SteinerPointsRemoveSliversIfAsked)
     EXPECT_TRUE(std::none_of(recorder->Texts.begin(), recorder->Texts.end(),
       [](const std::string& text) { return Contains(text, "Sliver removal"); }));
   }
+}
+
+/** In the bulk, where points can move; the gate oxide has none. */
+TEST(ConformingDelaunayMesherFilter, SmoothsForSolversWithoutSigns)
+{
+  vtkNew<vtkTechnologyStructureSource> source;
+  source->SetStructure(vtkTechnologyStructureSource::MOS_TRANSISTOR);
+  vtkNew<vtkConformingDelaunayMesher> mesher;
+  mesher->SetInputConnection(source->GetOutputPort());
+  mesher->SetSmoothingRounds(-1);
+  EXPECT_EQ(mesher->GetSmoothingRounds(), 0);
+  mesher->SetSmoothingRounds(101);
+  EXPECT_EQ(mesher->GetSmoothingRounds(), 100);
+  std::vector<std::array<double, 2>> found;
+  for (const int rounds : { 0, 4 })
+  {
+    mesher->SetSmoothingRounds(rounds);
+    mesher->Update();
+    vtkFieldData* fields = mesher->GetOutput()->GetFieldData();
+    EXPECT_TRUE(Contains(GetCertificate(mesher->GetOutput()), "CLEAN FOR FINITE VOLUMES"));
+    vtkNew<vtkDelaunayMeshCriteria> criteria;
+    criteria->SetInputConnection(0, mesher->GetOutputPort(0));
+    criteria->SetInputConnection(1, mesher->GetOutputPort(1));
+    criteria->Update();
+    found.push_back({ fields->GetArray("RegionUnsignedBoxRatios")->GetComponent(0, 0),
+      static_cast<double>(CountSlivers(criteria)) });
+    std::cout << rounds << " rounds: ratio " << found.back()[0] << "\n";
+  }
+  EXPECT_GT(found[0][0], 1.1);
+  EXPECT_LT(found[1][0], 1.04);
+  EXPECT_LE(found[1][1], found[0][1]);
 }
 
 namespace

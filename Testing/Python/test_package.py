@@ -273,7 +273,7 @@ class NumPyAlone(unittest.TestCase):
             minimum_angle=31, maximum_area=-1, accuracy_angle=181, merge_tolerance=-1,
             maximum_gap_edges=-1, mesh_for="best", criterion=3, placement=4, threads=-1,
             add_steiner_points=2, remove_slivers="yes", spacing=-1.0, growth=0.0,
-            maximum_deviation=-1,
+            maximum_deviation=-1, smoothing_rounds=101,
         )
         for name, value in wrong.items():
             others = {"generate_mesh_points": True} if name in ("spacing", "placement") else {}
@@ -281,10 +281,23 @@ class NumPyAlone(unittest.TestCase):
             with self.assertRaisesRegex(cd.MeshingError, "(?i)" + name, msg=name) as caught:
                 cd.mesh((CUBE_POINTS, CUBE_QUADS), **{name: value}, **others)
             self.assertEqual(caught.exception.code, cd.ErrorCode.INVALID_OPTION, name)
-        for name, value in (("maximum_gap_edges", 1.5), ("edge_length", "long"),
+        for name, value in (("maximum_gap_edges", 1.5), ("smoothing_rounds", 0.5), ("edge_length", "long"),
                             ("edge_length", float("nan"))):
             with self.assertRaisesRegex(ValueError, name):
                 cd.mesh((CUBE_POINTS, CUBE_QUADS), **{name: value})
+
+    def test_smoothing(self):
+        rough, smooth = (
+            cd.mesh((CUBE_POINTS, CUBE_QUADS), edge_length=0.2, smoothing_rounds=rounds)
+            for rounds in (0, 3)
+        )
+        self.assertTrue(smooth.certificate.is_clean)
+        self.assertEqual(len(rough.points), len(smooth.points))
+        self.assertLessEqual(lengths(smooth).max(), 0.2)
+        self.assertFalse(np.array_equal(rough.points, smooth.points))
+        corners = [np.sort(mesh.points[mesh.boundary.triangles], axis=1).tolist()
+                   for mesh in (rough, smooth)]
+        self.assertEqual(*map(sorted, corners))
 
     def test_purposes(self):
         fewest = cd.mesh((CUBE_POINTS, CUBE_QUADS), mesh_for="fewest points")

@@ -133,6 +133,7 @@ void ReadOptions(InputReader& reader, ConformingMesherOptions& options)
   reader.Read("generate_mesh_points", options.GeneratesMeshPoints);
   reader.Read("close_open_boundary", options.CloseOpenBoundary);
   reader.Read("maximum_volume", options.MaximumVolume, 0.0, Infinity);
+  reader.Read("smoothing_rounds", options.SmoothingRounds, 0, 100);
 }
 
 //--------------------------------------------------------------------------------------------------

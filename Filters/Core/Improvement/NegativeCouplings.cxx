@@ -104,6 +104,7 @@ bool HasNegativeCouplingInAnyRegion(
     [&](Id region)
     { return HasNegativeCoupling(mesh, edge, records.begin(), records.end(), region); });
 }
+
 /** Those of the edges with a negative coupling, ascending. */
 std::vector<EdgeIds> FindNegative(
   const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfPoints)
@@ -136,6 +137,48 @@ std::vector<EdgeIds> FindNegative(
     }
   }
   return negative;
+}
+
+/** Which edge of a tetrahedron joins two of its points. */
+int FindEdge(const TetrahedronIds& ids, const EdgeIds& points)
+{
+  int edge = 0;
+  while (MakeEdge(ids[TetrahedronEdges[edge][0]], ids[TetrahedronEdges[edge][1]]) != points)
+  {
+    ++edge;
+  }
+  return edge;
+}
+
+/** The tetrahedra around an edge, in both directions up to other regions, as in SimplexIncidence. */
+std::vector<SimplexIncidence::Record> FindAroundEdge(
+  const DynamicTetrahedralization& mesh, Id tetrahedron, int edge)
+{
+  const TetMesh& tetrahedra = mesh.GetMesh();
+  const TetrahedronIds& firstIds = tetrahedra.Tetrahedra[tetrahedron];
+  const EdgeIds points =
+    MakeEdge(firstIds[TetrahedronEdges[edge][0]], firstIds[TetrahedronEdges[edge][1]]);
+  std::vector<SimplexIncidence::Record> records{ { points[1], NoId, 6 * tetrahedron + edge } };
+  for (int direction = 0; direction < 2; ++direction)
+  {
+    Id t = tetrahedron;
+    int facet = TetrahedronEdges[5 - edge][direction];
+    Id next = firstIds[TetrahedronEdges[5 - edge][1 - direction]];
+    while (!mesh.IsBoundary(t, facet))
+    {
+      const Id entered = tetrahedra.Neighbors[t][facet];
+      t = entered / 4;
+      if (t == tetrahedron)
+      {
+        return records;
+      }
+      const TetrahedronIds& ids = tetrahedra.Tetrahedra[t];
+      records.push_back({ points[1], NoId, 6 * t + FindEdge(ids, points) });
+      facet = static_cast<int>(std::find(ids.begin(), ids.end(), next) - ids.begin());
+      next = ids[entered % 4];
+    }
+  }
+  return records;
 }
 
 void AddEdges(const TriangleIds& ids, std::vector<EdgeIds>& edges)
@@ -185,15 +228,7 @@ const std::vector<EdgeIds>& NegativeCouplings::Update(const DynamicTetrahedraliz
   const TriangleMesh& boundary, const IdLists& pointTriangles)
 {
   const auto isNoEdge = [&](const EdgeIds& edge)
-  {
-    const IdLists::Range triangles = pointTriangles[edge[0]];
-    return std::none_of(triangles.begin(), triangles.end(),
-      [&](Id t)
-      {
-        const TriangleIds& ids = boundary.Triangles[t];
-        return std::find(ids.begin(), ids.end(), edge[1]) != ids.end();
-      });
-  };
+  { return !IsBoundaryEdge(boundary, pointTriangles, edge); };
   std::vector<EdgeIds> changed = this->TakeChanged(mesh, boundary);
   this->Negative.erase(
     std::remove_if(this->Negative.begin(), this->Negative.end(),
@@ -211,5 +246,30 @@ const std::vector<EdgeIds>& NegativeCouplings::Update(const DynamicTetrahedraliz
     std::back_inserter(both));
   this->Negative = std::move(both);
   return this->Negative;
+}
+
+bool IsBoundaryEdge(
+  const TriangleMesh& boundary, const IdLists& pointTriangles, const EdgeIds& edge)
+{
+  const IdLists::Range triangles = pointTriangles[edge[0]];
+  return std::any_of(triangles.begin(), triangles.end(),
+    [&](Id t)
+    {
+      const TriangleIds& ids = boundary.Triangles[t];
+      return std::find(ids.begin(), ids.end(), edge[1]) != ids.end();
+    });
+}
+
+bool HasNegativeCoupling(const DynamicTetrahedralization& mesh, Id tetrahedron, int edge)
+{
+  const std::vector<SimplexIncidence::Record> records = FindAroundEdge(mesh, tetrahedron, edge);
+  const TetMesh& tetrahedra = mesh.GetMesh();
+  const TetrahedronIds& ids = tetrahedra.Tetrahedra[tetrahedron];
+  return std::any_of(records.begin(), records.end(),
+           [&](const SimplexIncidence::Record& record)
+           { return IsSphereFilled(tetrahedra, record.Simplex / 6, record.Simplex % 6); }) &&
+    HasNegativeCoupling(tetrahedra,
+      MakeEdge(ids[TetrahedronEdges[edge][0]], ids[TetrahedronEdges[edge][1]]), records.begin(),
+      records.end(), tetrahedra.Regions[tetrahedron]);
 }
 } // namespace cdm

@@ -56,6 +56,16 @@ private:
   std::int64_t NextStamp = 0;
   std::int64_t NumberOfTests = 0;
 };
+
+/** Whether two points are joined by an edge of the boundary, whose triangles at each point are given. */
+bool IsBoundaryEdge(
+  const TriangleMesh& boundary, const IdLists& pointTriangles, const EdgeIds& edge);
+
+/**
+ * Whether the coupling of edge i of a tetrahedron is negative: within the tetrahedra around it up to
+ * those of other regions.
+ */
+bool HasNegativeCoupling(const DynamicTetrahedralization& mesh, Id tetrahedron, int edge);
 } // namespace cdm
 
 #endif

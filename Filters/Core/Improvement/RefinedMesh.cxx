@@ -491,7 +491,12 @@ void RefinedMesh::Insert(const Vec3& position)
 void RefinedMesh::Restore(Id point, const Vec3& position)
 {
   this->Mesh.Restore(point, position, this->FoundCavity);
-  this->Points[point].Position = position;
+  this->NoteMove(point);
+}
+
+void RefinedMesh::NoteMove(Id point)
+{
+  this->Points[point].Position = this->Mesh.GetPoint(point);
   this->Points[point].Source = NoId;
   ++this->Report.MovedPoints;
   this->NoteChanges();

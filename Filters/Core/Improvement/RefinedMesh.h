@@ -16,7 +16,7 @@
  * size limit asks for it. Sharp input angles would be refined without end: a tetrahedron across one
  * (SharpAngles.h) or across a thin layer (ThinLayers.h) is refined for its size only.
  *
- * VolumeRefinement.h and SliverPerturbation.h work on this mesh.
+ * VolumeRefinement.h, SliverPerturbation.h and OptimalDelaunaySmoothing.h work on this mesh.
  */
 #ifndef cdmRefinedMesh_h
 #define cdmRefinedMesh_h
@@ -201,6 +201,8 @@ public:
   void Insert(const Vec3& position);
   /** Inserts a free point again, which was removed, at another position. */
   void Restore(Id point, const Vec3& position);
+  /** Notes that a free point has been moved in the tetrahedra. */
+  void NoteMove(Id point);
   /** Counts a free point that was removed and is not restored. */
   void NoteRemoval();
 

@@ -2,6 +2,7 @@
 #include "Core/Improvement/SteinerPointRefiner.h"
 
 #include "Core/Geometry/Measures.h"
+#include "Core/Improvement/OptimalDelaunaySmoothing.h"
 #include "Core/Improvement/SliverSchedule.h"
 #include "Core/Improvement/SteinerPointChecks.h"
 #include "Core/Improvement/SteinerPointRounds.h"
@@ -47,6 +48,7 @@ private:
   RoundResult RunShapeRound();
   bool HasFewRequests() const;
   Status RefineInside(bool isShapeTested);
+  Status Smooth();
   bool IsOutOfRounds() const { return this->Output.Report.Rounds >= MaximumRounds; }
   void FindFaults();
   SteinerFault FindFault(const TetrahedronIds& ids, Id region) const;
@@ -67,7 +69,9 @@ Status SteinerPointRefinement::Run()
   if (status.IsOk() && this->Output.Report.WeakTriangles == 0)
   {
     RemoveClosePoints(this->Options.MinimumEdgeLength, this->Input.Sizing, this->Rounds.GetMesh());
-    status = this->RefineSizes().Then([this] { return this->RefineShapes(); });
+    status = this->RefineSizes()
+               .Then([this] { return this->RefineShapes(); })
+               .Then([this] { return this->Smooth(); });
   }
   if (status.IsOk())
   {
@@ -81,6 +85,19 @@ Status SteinerPointRefinement::Run()
 Status SteinerPointRefinement::RefineInside(bool isShapeTested)
 {
   return RefineByLimits(isShapeTested, this->Rounds.GetContext(), this->Rounds.GetMesh());
+}
+
+/** As the last step: what follows would not know that there are to be no slivers. */
+Status SteinerPointRefinement::Smooth()
+{
+  Status status = SmoothOptimalDelaunay(this->Options.SmoothingRounds,
+    this->Options.DihedralAngleTarget, this->Rounds.GetContext(), this->Rounds.GetMesh());
+  if (this->Options.SmoothingRounds > 0)
+  {
+    this->Output.Report.NegativeCouplings =
+      static_cast<Id>(this->Rounds.GetMesh().RequestNegativeCouplings());
+  }
+  return status;
 }
 
 /** Refines until no tetrahedron is too large. */

@@ -14,7 +14,8 @@
  * little is requested any more, points of slivers are moved, taken out or added, first those
  * inside, then those of the surface within their facets and along their edges; and the boundary is
  * split for slivers that nothing else helps. At last edges of the boundary with a negative coupling
- * are split (SliverSchedule.h).
+ * are split (SliverSchedule.h). If rounds of smoothing are asked for, points inside are then moved to
+ * where fewer circumcenters lie outside (OptimalDelaunaySmoothing.h).
  *
  * A round is in one of these states. "Next" starts another round: it splits what is requested.
  *
@@ -88,6 +89,8 @@ struct SteinerPointRefinerOptions
    * reached.
    */
   Id MaximumNewPoints = 0;
+  /** Rounds of OptimalDelaunaySmoothing.h. 0: none. */
+  int SmoothingRounds = 0;
 };
 
 struct SteinerPointRefinerInput

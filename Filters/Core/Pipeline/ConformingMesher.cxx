@@ -376,6 +376,7 @@ Status ConformingMesher::AddSteinerPoints()
     ? std::min(this->Settings.DihedralAngleTarget, LargestSteinerAngle)
     : 0.0;
   options.MaximumVolume = this->Options.MaximumVolume;
+  options.SmoothingRounds = this->Options.SmoothingRounds;
   options.MaximumEdgeLength = this->Settings.MaximumEdgeLength;
   SteinerPointRefinerOutput refined;
   Status status =

@@ -67,6 +67,11 @@ struct ConformingMesherOptions
   bool CloseOpenBoundary = false;
   /** With Steiner points. Cubic model units; 0: off. */
   double MaximumVolume = 0.0;
+  /**
+   * With Steiner points: rounds in which free points inside go to where fewer circumcenters lie
+   * outside of their tetrahedra, see OptimalDelaunaySmoothing.h. 0 (none) to 100.
+   */
+  int SmoothingRounds = 0;
 };
 
 struct ConformingMesherInput

@@ -195,6 +195,7 @@ class vtkConformingDelaunayMesher(_Stage):
         "GenerateMeshPoints": False,
         "CloseOpenBoundary": False,
         "MaximumVolume": 0.0,
+        "SmoothingRounds": 0,
         "Growth": 0.3,
         **dict.fromkeys(automatic, -1),
     }

@@ -51,6 +51,7 @@ WHOLE_NUMBERS = (
     "maximum_number_of_tetrahedra",
     "seed",
     "smoothing_iterations",
+    "smoothing_rounds",
 )
 FLAGS = (
     "add_steiner_points",
@@ -218,6 +219,7 @@ def mesh(
     radius_edge_ratio: Optional[float] = None,
     dihedral_angle_target: Optional[float] = None,
     maximum_volume: float = 0.0,
+    smoothing_rounds: int = 0,
     remove_slivers: Optional[bool] = None,
     mesh_points: Any = None,
     generate_mesh_points: bool = False,
@@ -285,6 +287,9 @@ def mesh(
         count as 40; None: 20 for finite elements, else 15.
     maximum_volume : float, default: 0
         Of a tetrahedron, with Steiner points. Cubic model units; 0: no limit.
+    smoothing_rounds : int, default: 0
+        How many times each point inside may go to where fewer circumcenters lie outside of their
+        tetrahedra, with Steiner points: for solvers that take absolute values of couplings. 0 to 100.
     remove_slivers : bool, optional
         Whether slivers are removed.
     mesh_points : array_like, optional
@@ -359,6 +364,7 @@ def mesh(
                 radius_edge_ratio=radius_edge_ratio,
                 dihedral_angle_target=dihedral_angle_target,
                 maximum_volume=maximum_volume,
+                smoothing_rounds=smoothing_rounds,
                 remove_slivers=remove_slivers,
                 generate_mesh_points=generate_mesh_points,
                 placement=placement,

@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How much too large boxes without signs are, where that comes from, and what moving points changes.
 
-    python unsigned_boxes.py [ROUNDS]
+    python unsigned_boxes.py [ROUNDS ...]
 
 Three tables: right prisms, as in layers one tetrahedron thick; the sample transistors, by the number of
-points of a tetrahedron on boundaries; and the same meshes after rounds in which each point inside goes
-to the mean of the circumcenters around it, weighted by volumes. That is the optimal Delaunay
-triangulation of P. Alliez, D. Cohen-Steiner, M. Yvinec, M. Desbrun, 2005, doi:10.1145/1073204.1073238,
-for a boundary that stays: points do not go where they would encroach on it. At last slivers are removed.
+points of a tetrahedron on boundaries; and the same devices with as many SmoothingRounds of the mesher.
 Needs no DEVSIM.
 """
 
@@ -17,13 +14,8 @@ import time
 
 import conforming_delaunay as cd
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkStaticPointLocator, vtkUnstructuredGrid
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkCleanPolyData
-
-#: A point moves by no more than this part of the distance to its nearest neighbor.
-LONGEST_MOVE = 0.25
 
 
 def certify(grid):
@@ -74,12 +66,13 @@ def get_prism_ratios(angle, height):
 
 # The sample transistors
 
-def make_mesh(structure):
-    """The mesh with all defaults."""
+def make_mesh(structure, rounds=0):
+    """The mesh with all defaults but the rounds, its boundary, and the time of the processor."""
     source = cd.vtkTechnologyStructureSource()
     source.SetStructure(structure)
     mesher = cd.vtkConformingDelaunayMesher()
     mesher.SetInputConnection(source.GetOutputPort())
+    mesher.SetSmoothingRounds(rounds)
     begin = time.process_time()
     mesher.Update()
     seconds = time.process_time() - begin
@@ -134,83 +127,6 @@ def get_border(grid, boundary):
     return [places[point] for point in map(tuple, vtk_to_numpy(boundary.GetPoints().GetData()).tolist())]
 
 
-# Moves
-
-def get_steps(points, tetrahedra):
-    """From each point to the mean of the circumcenters around it, weighted by volumes."""
-    corners = points[tetrahedra]
-    edges = corners[:, 1:] - corners[:, :1]
-    volumes = np.abs(np.linalg.det(edges))
-    centers = corners[:, 0] + np.linalg.solve(2.0 * edges, (edges**2).sum(axis=2)[:, :, None])[:, :, 0]
-    sums, weights, nearest = np.zeros_like(points), np.zeros(len(points)), np.full(len(points), np.inf)
-    for i in range(4):
-        np.add.at(sums, tetrahedra[:, i], volumes[:, None] * centers)
-        np.add.at(weights, tetrahedra[:, i], volumes)
-        for j in range(i):
-            lengths = np.linalg.norm(corners[:, i] - corners[:, j], axis=1)
-            np.minimum.at(nearest, tetrahedra[:, i], lengths)
-            np.minimum.at(nearest, tetrahedra[:, j], lengths)
-    steps = sums / weights[:, None] - points
-    lengths = np.linalg.norm(steps, axis=1)
-    return steps * np.minimum(1.0, LONGEST_MOVE * nearest / np.maximum(lengths, 1e-300))[:, None]
-
-
-def get_spheres(boundary):
-    """Centers and radii of the smallest spheres of the triangles (of their circumcircles)."""
-    corners = vtk_to_numpy(boundary.GetPoints().GetData())[
-        vtk_to_numpy(boundary.GetPolys().GetConnectivityArray()).reshape(-1, 3)]
-    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    normals = np.cross(u, v)
-    centers = (np.cross(normals, u) * (v**2).sum(axis=1)[:, None] + np.cross(v, normals)
-               * (u**2).sum(axis=1)[:, None]) / (2.0 * (normals**2).sum(axis=1))[:, None]
-    return corners[:, 0] + centers, np.linalg.norm(centers, axis=1)
-
-
-def find_encroaching(points, spheres):
-    cloud, positions = vtkPolyData(), vtkPoints()
-    positions.SetData(numpy_to_vtk(points, deep=True))
-    cloud.SetPoints(positions)
-    locator, ids, found = vtkStaticPointLocator(), vtkIdList(), set()
-    locator.SetDataSet(cloud)
-    locator.BuildLocator()
-    for center, radius in zip(*spheres):
-        locator.FindPointsWithinRadius(1.000001 * radius, center, ids)
-        found.update(ids.GetId(i) for i in range(ids.GetNumberOfIds()))
-    return sorted(found)
-
-
-def move_points(grid, boundary, rounds):
-    """The mesh after each round, by stage 3 on the same boundary."""
-    spheres = get_spheres(boundary)
-    front = cd.vtkAdvancingFrontTetrahedralizer()
-    front.SetInputData(boundary)
-    for _ in range(rounds):
-        points = vtk_to_numpy(grid.GetPoints().GetData())
-        tetrahedra = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4)
-        is_inside = np.ones(len(points), bool)
-        is_inside[get_border(grid, boundary)] = False
-        old, new = points[is_inside], (points + get_steps(points, tetrahedra))[is_inside]
-        bad = find_encroaching(new, spheres)
-        new[bad] = old[bad]
-        cloud, positions = vtkPolyData(), vtkPoints()
-        positions.SetData(numpy_to_vtk(new, deep=True))
-        cloud.SetPoints(positions)
-        front.SetInputData(1, cloud)
-        front.Update()
-        grid = vtkUnstructuredGrid()
-        grid.DeepCopy(front.GetOutput())
-        yield grid
-
-
-def remove_slivers(grid):
-    """By moves of points inside that keep the mesh Delaunay."""
-    remover = cd.vtkSliverRemover()
-    remover.SetInputData(grid)
-    remover.FreeInteriorPointsOn()
-    remover.Update()
-    return remover.GetOutput()
-
-
 def print_state(name, seconds, grid):
     ratios, slivers = get_ratios(grid)
     fields = certify(grid).GetFieldData()
@@ -227,22 +143,17 @@ def main(rounds):
             for height in (0.1, 1.0)))
     for structure, name in ((cd.vtkTechnologyStructureSource.MOS_TRANSISTOR, "MOS transistor"),
                             (cd.vtkTechnologyStructureSource.NMOS_WITH_FIELD_OXIDE, "NMOS")):
-        grid, boundary, seconds = make_mesh(structure)
+        grid, boundary, _ = make_mesh(structure)
         print(f"\n{name}, {grid.GetNumberOfPoints()} points: ratio, then share of the volume and part of the "
               "ratio by points on boundaries: none, 1 to 3, all 4; with an obtuse triangle of the boundary")
         for region, count, ratio, *classes in get_classes(grid, boundary):
             print(f"  {region:18s} {count:6d} tetrahedra {ratio:.3f}  " + "  ".join(
                 f"{100.0 * share:3.0f}% {part:.3f}" for share, part in zip(classes[::2], classes[1::2])))
-        print("  Points moved: time of the processor, ratios by region")
-        print_state("as it is", seconds, grid)
-        begin = time.process_time()
-        for number, moved in enumerate(move_points(grid, boundary, rounds), 1):
-            print_state(f"round {number}", time.process_time() - begin, moved)
-            begin = time.process_time()
-        begin = time.process_time()
-        moved = remove_slivers(moved)
-        print_state("slivers removed", time.process_time() - begin, moved)
+        print("  Smoothed: time of the processor, ratios by region")
+        for number in (0, *rounds):
+            grid, _, seconds = make_mesh(structure, number)
+            print_state(f"{number} rounds", seconds, grid)
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 8)
+    main([int(number) for number in sys.argv[1:]] or [1, 3, 8])
