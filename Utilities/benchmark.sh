@@ -18,14 +18,5 @@ for option in "$@"; do
   fi
 done
 source "$(dirname "${BASH_SOURCE[0]}")/build.sh" ON BenchmarkSuite
-
-echo "== measuring"
-project="$PWD"
-cd "$start"
-export PYTHONPATH="$project/build/lib/python3/dist-packages:$project/Testing/Support"
-export PYTHONDONTWRITEBYTECODE=1
-# The one that the package was built for.
-python=$(sed -n 's/^_Python3_EXECUTABLE:INTERNAL=//p' "$project/build/CMakeCache.txt")
-exec "$project/Testing/Support/with-display" "$python" "$project/Testing/Benchmarks/Suite.py" \
-  run --programs "$project/build/bin" --output "$project/build/benchmark" \
-  ${options[@]+"${options[@]}"}
+source Utilities/measure.sh "$start" Suite.py run --programs "$PWD/build/bin" \
+  --output "$PWD/build/benchmark" ${options[@]+"${options[@]}"}

@@ -22,9 +22,9 @@
  * certificate has all of it.
  *
  * Inputs: port 0: vtkPolyData, any list of polygons, optionally with the two-component cell array
- * BoundaryLabels (region ids on the front and back side, -1 outside) and the field array RegionNames.
- * Port 1, optional: vtkPointSet, mesh points, beside those that are generated. Port 2, optional:
- * vtkDataSet with the point array Sizing: target edge length in model units.
+ * BoundaryLabels (region ids on the front and back side, -1 outside) and the field array
+ * RegionNames. Port 1, optional: vtkPointSet, mesh points, beside those that are generated. Port 2,
+ * optional: vtkDataSet with the point array Sizing: target edge length in model units.
  *
  * Blocks: port 0 may be a vtkPartitionedDataSetCollection or a vtkMultiBlockDataSet of vtkPolyData.
  * Each block is meshed by itself; all get the same mesh points and sizing. On several processes
@@ -34,12 +34,12 @@
  * others.
  *
  * Outputs: port 0: vtkUnstructuredGrid of VTK_TETRA with the cell array RegionId (int), the point
- * data of the input, interpolated at new points, and in the field data the certificate with the arrays
- * of vtkDelaunayMeshCriteria: couplings are looked at with the two stronger criteria only. Port 1: the boundary of the mesh and its regions
- * as triangles, with BoundaryLabels (int, 2 components), StructuralFacetId (int: see
- * vtkDelaunaySurfaceRefiner) and the cell data of the input polygons; where the criterion is missed
- * also Unresolved (unsigned char), 1 for triangles that miss it.
- * Port 2: the problems found in the input, see vtkBoundaryTriangulator.
+ * data of the input, interpolated at new points, and in the field data the certificate with the
+ * arrays of vtkDelaunayMeshCriteria: couplings are looked at with the two stronger criteria only.
+ * Port 1: the boundary of the mesh and its regions as triangles, with BoundaryLabels (int, 2
+ * components), StructuralFacetId (int: see vtkDelaunaySurfaceRefiner) and the cell data of the input
+ * polygons; where the criterion is missed also Unresolved (unsigned char), 1 for triangles that miss
+ * it. Port 2: the problems found in the input, see vtkBoundaryTriangulator.
  *
  * Guarantees: those of the stages. Tetrahedra are positively oriented, none is flat, circumspheres
  * are empty, the boundary is kept, points of the input keep their coordinates. A result that the
@@ -87,7 +87,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** The tetrahedra; and the output of a port, null for blocks: 1 is the boundary, 2 the problems. */
+  /** The tetrahedra; the output of a port (1: boundary, 2: problems), null for blocks. */
   vtkUnstructuredGrid* GetOutput() { return this->Superclass::GetOutput(); }
   vtkPointSet* GetOutput(int port);
   ///@}

@@ -56,13 +56,21 @@ public:
 
   void Read(const char* name, bool& value);
   void Read(const char* name, double& value, double low, double high);
-  template <class Integer,
-    std::enable_if_t<std::is_integral_v<Integer> || std::is_enum_v<Integer>, int> = 0>
+  template <class Integer, std::enable_if_t<std::is_integral_v<Integer>, int> = 0>
   void Read(const char* name, Integer& value, std::int64_t low, std::int64_t high)
   {
     std::int64_t read = static_cast<std::int64_t>(value);
     this->ReadInteger(name, read, low, high);
     value = static_cast<Integer>(read);
+  }
+  /** A number of one of the enumerators from the first to the last. */
+  template <class Enumeration, std::enable_if_t<std::is_enum_v<Enumeration>, int> = 0>
+  void Read(const char* name, Enumeration& value, Enumeration first, Enumeration last)
+  {
+    std::int64_t read = static_cast<std::int64_t>(value);
+    this->ReadInteger(
+      name, read, static_cast<std::int64_t>(first), static_cast<std::int64_t>(last));
+    value = static_cast<Enumeration>(read);
   }
   void Read(const char* name, std::vector<double>& values);
   void Read(const char* name, std::vector<Id>& values);

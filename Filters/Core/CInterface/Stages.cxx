@@ -53,7 +53,8 @@ void ReadLimits(InputReader& reader, DelaunaySurfaceRefinerOptions& options)
 
 void ReadOptions(InputReader& reader, DelaunaySurfaceRefinerOptions& options)
 {
-  reader.Read("criterion", options.Criterion, 0, 2);
+  reader.Read("criterion", options.Criterion, SurfaceCriterion::Delaunay,
+    SurfaceCriterion::SmallestSphereAndEdges);
   reader.Read("maximum_edge_length", options.MaximumEdgeLength, 0.0, Infinity);
   ReadLimits(reader, options);
 }
@@ -67,8 +68,8 @@ void ReadOptions(InputReader& reader, MeshPointGeneratorOptions& options)
   {
     options.Spacing[axis] = spacing[axis];
   }
-  reader.Read("placement", options.Placement, 0, 3);
-  reader.Read("template", options.Template, 0, 3);
+  reader.Read("placement", options.Placement, PointPlacement::Octree, PointPlacement::None);
+  reader.Read("template", options.Template, PointTemplate::Corners, PointTemplate::FaceCentered);
   std::vector<double> layers;
   reader.Read("layers", layers);
   if (layers.size() % 5 != 0)
@@ -90,7 +91,8 @@ void ReadOptions(InputReader& reader, SteinerPointRefinerOptions& options)
   reader.Read("maximum_volume", options.MaximumVolume, 0.0, Infinity);
   reader.Read("maximum_edge_length", options.MaximumEdgeLength, 0.0, Infinity);
   reader.Read("minimum_edge_length", options.MinimumEdgeLength, 0.0, Infinity);
-  reader.Read("criterion", options.Criterion, 1, 2);
+  reader.Read("criterion", options.Criterion, SurfaceCriterion::SmallestSphere,
+    SurfaceCriterion::SmallestSphereAndEdges);
   reader.Read("maximum_new_points", options.MaximumNewPoints, 0, LargestId);
   ReadOptions(reader, options.StructuralEdges);
 }
@@ -111,9 +113,10 @@ void ReadOptions(InputReader& reader, ConformingMesherOptions& options)
   ReadOptions(reader, options.Boundary);
   ReadLimits(reader, options.Surface);
   ReadOptions(reader, options.MeshPoints);
-  reader.Read("mesh_for", options.MeshFor, 0, NumberOfMeshPurposes - 1);
+  reader.Read("mesh_for", options.MeshFor, MeshPurpose::FiniteVolumes, MeshPurpose::FewestPoints);
   MeshOptionChoices& choices = options.Choices;
-  ReadChoice(reader, "criterion", choices.Criterion, 0, 2);
+  ReadChoice(reader, "criterion", choices.Criterion, SurfaceCriterion::Delaunay,
+    SurfaceCriterion::SmallestSphereAndEdges);
   ReadChoice(reader, "add_steiner_points", choices.AddsSteinerPoints);
   ReadChoice(reader, "remove_slivers", choices.RemovesSlivers);
   ReadChoice(reader, "dihedral_angle_target", choices.DihedralAngleTarget, 0.0, 70.0);

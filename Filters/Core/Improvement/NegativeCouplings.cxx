@@ -150,7 +150,7 @@ int FindEdge(const TetrahedronIds& ids, const EdgeIds& points)
   return edge;
 }
 
-/** The tetrahedra around an edge, in both directions up to other regions, as in SimplexIncidence. */
+/** The tetrahedra of one region around an edge, in both directions, as in SimplexIncidence. */
 std::vector<SimplexIncidence::Record> FindAroundEdge(
   const DynamicTetrahedralization& mesh, Id tetrahedron, int edge)
 {
@@ -253,11 +253,7 @@ bool IsBoundaryEdge(
 {
   const IdLists::Range triangles = pointTriangles[edge[0]];
   return std::any_of(triangles.begin(), triangles.end(),
-    [&](Id t)
-    {
-      const TriangleIds& ids = boundary.Triangles[t];
-      return std::find(ids.begin(), ids.end(), edge[1]) != ids.end();
-    });
+    [&](Id t) { return Contains(boundary.Triangles[t], edge[1]); });
 }
 
 bool HasNegativeCoupling(const DynamicTetrahedralization& mesh, Id tetrahedron, int edge)

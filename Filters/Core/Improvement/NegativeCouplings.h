@@ -57,7 +57,10 @@ private:
   std::int64_t NumberOfTests = 0;
 };
 
-/** Whether two points are joined by an edge of the boundary, whose triangles at each point are given. */
+/**
+ * Whether two points are joined by an edge of the boundary.
+ * @param pointTriangles the triangles at each point of the boundary
+ */
 bool IsBoundaryEdge(
   const TriangleMesh& boundary, const IdLists& pointTriangles, const EdgeIds& edge);
 

@@ -47,11 +47,6 @@ double GetExcess(const std::array<Vec3, 4>& corners)
   return GetUnsignedBoxVolume(a, b, c, d) - GetSignedVolume(a, b, c, d);
 }
 
-bool Holds(const std::vector<Id>& tetrahedra, Id tetrahedron)
-{
-  return std::find(tetrahedra.begin(), tetrahedra.end(), tetrahedron) != tetrahedra.end();
-}
-
 class Smoothing
 {
 public:
@@ -80,7 +75,7 @@ private:
   const double Target;
   RefinedMesh& Mesh;
   DynamicTetrahedralization& Tetrahedra;
-  /** Of each point: the next stamp of the mesh when it was last tried in vain. */
+  /** When each point was last tried in vain: the next stamp of the mesh then. */
   std::vector<std::int64_t> NextStamps;
   /** The tetrahedra around the point. */
   std::vector<Id> Star;
@@ -174,7 +169,7 @@ bool Smoothing::Fits(const Vec3& position, const std::vector<Id>& filled, Measur
   }
   for (Id t : filled)
   {
-    if (!Holds(cavity.Tetrahedra, t))
+    if (!Contains(cavity.Tetrahedra, t))
     {
       made.push_back(this->Tetrahedra.GetCorners(t));
       this->AddTetrahedron(t, after);
@@ -182,7 +177,7 @@ bool Smoothing::Fits(const Vec3& position, const std::vector<Id>& filled, Measur
   }
   for (Id t : cavity.Tetrahedra)
   {
-    if (!Holds(filled, t))
+    if (!Contains(filled, t))
     {
       before.Excess += this->GetExcess(t);
       this->AddTetrahedron(t, before.Shapes);
@@ -226,7 +221,7 @@ bool Smoothing::Place(Id point, const Vec3& position, const std::vector<Id>& fil
   const Vec3 old = this->Tetrahedra.GetPoint(point);
   std::vector<Id> made;
   std::copy_if(filled.begin(), filled.end(), std::back_inserter(made),
-    [&](Id t) { return !Holds(this->Mesh.GetCavity().Tetrahedra, t); });
+    [&](Id t) { return !Contains(this->Mesh.GetCavity().Tetrahedra, t); });
   this->Tetrahedra.Restore(point, position, this->Mesh.GetCavity());
   made.insert(
     made.end(), this->Tetrahedra.GetChanged().begin(), this->Tetrahedra.GetChanged().end());

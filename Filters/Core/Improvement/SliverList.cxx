@@ -7,7 +7,7 @@ namespace cdm
 {
 namespace
 {
-/** Of those below the target. */
+/** Whether a tetrahedron with an angle below the target counts as a sliver. */
 bool IsSliver(bool isSharp, Id tetrahedron, const RefinedMesh& mesh)
 {
   return mesh.IsAcrossSharp(tetrahedron) == isSharp && !mesh.IsInLayer(tetrahedron);

@@ -143,8 +143,8 @@ bool Perturbation::Move(Id point)
     angles.push_back(after.Other < floor ? 0.0 : after.Aimed);
     isBroken.push_back(this->Mesh.BreaksLimit(t));
   }
-  // Tetrahedra that stay as they are spoil most positions, the flattest first. It takes one test each
-  // to see that, and a walk and a cavity to find out by the search.
+  // Tetrahedra that stay as they are spoil most positions, the flattest first. One test of each
+  // shows that; the search would need a walk and a cavity.
   std::vector<std::size_t> flattest(filled.size());
   std::iota(flattest.begin(), flattest.end(), std::size_t(0));
   std::sort(flattest.begin(), flattest.end(),

@@ -87,16 +87,17 @@ Status SteinerPointRefinement::RefineInside(bool isShapeTested)
   return RefineByLimits(isShapeTested, this->Rounds.GetContext(), this->Rounds.GetMesh());
 }
 
-/** As the last step: what follows would not know that there are to be no slivers. */
+/** Smoothing is the last step: what follows would not know that there are to be no slivers. */
 Status SteinerPointRefinement::Smooth()
 {
+  if (this->Options.SmoothingRounds == 0)
+  {
+    return {};
+  }
   Status status = SmoothOptimalDelaunay(this->Options.SmoothingRounds,
     this->Options.DihedralAngleTarget, this->Rounds.GetContext(), this->Rounds.GetMesh());
-  if (this->Options.SmoothingRounds > 0)
-  {
-    this->Output.Report.NegativeCouplings =
-      static_cast<Id>(this->Rounds.GetMesh().RequestNegativeCouplings());
-  }
+  this->Output.Report.NegativeCouplings =
+    static_cast<Id>(this->Rounds.GetMesh().RequestNegativeCouplings());
   return status;
 }
 

@@ -30,18 +30,7 @@ public:
   template <typename Property>
   const std::vector<Id>& Update(const DynamicTetrahedralization& mesh, Property&& hasProperty)
   {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < this->Found.size(); ++i)
-    {
-      const Id t = this->Found[i];
-      if (mesh.GetStamp(t) == this->Stamps[i])
-      {
-        this->Found[kept] = t;
-        this->Stamps[kept++] = this->Stamps[i];
-      }
-    }
-    this->Found.resize(kept);
-    this->Stamps.resize(kept);
+    this->Keep([&mesh](Id t, std::int64_t stamp) { return mesh.GetStamp(t) == stamp; });
     for (Id t = 0; t < mesh.GetNumberOfTetrahedra(); ++t)
     {
       const std::int64_t stamp = mesh.GetStamp(t);
@@ -62,17 +51,7 @@ public:
   /** Asks again for tetrahedra with this stamp or a later one. */
   void Forget(std::int64_t first)
   {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < this->Found.size(); ++i)
-    {
-      if (this->Stamps[i] < first)
-      {
-        this->Found[kept] = this->Found[i];
-        this->Stamps[kept++] = this->Stamps[i];
-      }
-    }
-    this->Found.resize(kept);
-    this->Stamps.resize(kept);
+    this->Keep([first](Id, std::int64_t stamp) { return stamp < first; });
     this->NextStamp = std::min(this->NextStamp, first);
   }
 
@@ -80,6 +59,23 @@ public:
   std::int64_t GetNumberOfTests() const { return this->NumberOfTests; }
 
 private:
+  /** Drops all others of those that were found. */
+  template <typename Condition>
+  void Keep(const Condition& isKept)
+  {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < this->Found.size(); ++i)
+    {
+      if (isKept(this->Found[i], this->Stamps[i]))
+      {
+        this->Found[kept] = this->Found[i];
+        this->Stamps[kept++] = this->Stamps[i];
+      }
+    }
+    this->Found.resize(kept);
+    this->Stamps.resize(kept);
+  }
+
   std::vector<Id> Found;
   std::vector<std::int64_t> Stamps;
   /** Tetrahedra with this stamp or a later one are new. */

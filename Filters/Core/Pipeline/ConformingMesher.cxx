@@ -99,7 +99,7 @@ private:
   ConformingMesherOutput& Output;
   /** What the choices became. */
   MeshSettings Settings;
-  /** That of the input, and those of regions. */
+  /** The sizing of the input, lowered to the sizes of regions. */
   SizingField Sizing;
   /** The surface as it is now; its source cells are polygons of the input. */
   TriangleMesh Surface;

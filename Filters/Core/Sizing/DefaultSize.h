@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file DefaultSize.h
- * @brief How thick regions are, and a maximum edge length for a surface of which nothing else is known.
+ * @brief How thick regions are, and a maximum edge length for a surface of which nothing else is
+ *   known.
  *
  * Method: a region of volume V and area A is 2 V / A thick: a plate as thick as it is, a ball a
  * third of its diameter. Edges are to be as long as the thinnest region is thick, but

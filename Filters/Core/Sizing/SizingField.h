@@ -134,7 +134,7 @@ private:
     const std::array<Vec3, Size>& corners, double length, const Predicate& isSought) const;
 
   Function Spacing;
-  /** Of Spacing alone. */
+  /** Where Spacing is smallest; Lengths do not count. */
   std::shared_ptr<const SizingMinima> Minima;
   LengthFunction Lengths;
 };

@@ -1034,9 +1034,9 @@ void SurfaceRefinement::EnqueueEdge(Id segment)
 }
 
 /**
- * Edges whose diametral spheres have to be empty come before any triangle, but in stacks: facets are
- * refined from a fine enough outline. The shortest first: what it needs is given by the surface around it, and
- * the partners of its points are the points that longer edges need.
+ * Edges whose diametral spheres have to be empty come before any triangle, but in stacks: facets
+ * are refined from a fine enough outline. The shortest first: what it needs is given by the surface
+ * around it, and the partners of its points are the points that longer edges need.
  */
 void SurfaceRefinement::ProcessEdge()
 {

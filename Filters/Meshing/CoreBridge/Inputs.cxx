@@ -5,6 +5,7 @@
 #include "CoreBridge/Execution.h"
 #include "CoreBridge/Reports.h"
 #include "CoreBridge/Texts.h"
+#include "vtkConformingDelaunayCompatibility.h"
 
 #include "Core/Basics/IdLimits.h"
 #include "Core/Meshes/MeshInvariants.h"
@@ -29,7 +30,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <string>
@@ -554,13 +554,8 @@ cdm::Status FindRegion(vtkDataSet* data, const std::string& name, cdm::Id& regio
 //--------------------------------------------------------------------------------------------------
 LayerRow MakeLayerRow(double region, double neighbor, const std::array<double, 3>& numbers)
 {
-  const auto toText = [](double value)
-  {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.17g", value);
-    return std::string(text);
-  };
-  return { { toText(region), toText(neighbor) }, numbers };
+  using vtkConformingDelaunayCompatibility::ToText;
+  return { { ToText(region), ToText(neighbor) }, numbers };
 }
 
 //--------------------------------------------------------------------------------------------------
