@@ -165,6 +165,28 @@ TEST(SharpAngles, BetweenEdges)
   }
 }
 
+TEST(SharpAngles, ForSliversOnlySmallPlaneAnglesAreSharp)
+{
+  for (double angle : { 1.0, 11.0, 13.0, 29.0 })
+  {
+    SCOPED_TRACE(angle);
+    for (double limit : { UsualSharpPlaneAngle, SharpPlaneAngleOfEmptySpheres })
+    {
+      const Sharp made = MakeArms(angle);
+      const Sharp sharp(made.Surface, made.Edges, limit);
+      EXPECT_TRUE(sharp.Angles.IsAcross({ 1, 3, Inside, Inside + 1 }));
+      EXPECT_EQ(sharp.Angles.IsAcross({ 1, 3, Inside, Inside + 1 }, SharpAngleUse::Sliver),
+        angle < SharpPlaneAngleOfSlivers);
+    }
+    EXPECT_EQ(MakeShadow(angle, true, 80.0, 0.5 * angle)
+                .Angles.IsAcross({ 1, 4, Inside, Inside + 1 }, SharpAngleUse::Sliver),
+      angle < SharpPlaneAngleOfSlivers);
+  }
+  // Dihedral angles are sharp for both.
+  EXPECT_TRUE(
+    MakeFacets(40.0).Angles.IsAcross({ 2, 3, Inside, Inside + 1 }, SharpAngleUse::Sliver));
+}
+
 TEST(SharpAngles, LimitsOfPlaneAnglesAreNotSharp)
 {
   for (double limit : { UsualSharpPlaneAngle, SharpPlaneAngleOfEmptySpheres })

@@ -91,6 +91,23 @@ PolygonSoup MakePrism(const std::vector<Vec3>& outline, double length)
   return soup;
 }
 
+/** A pyramid over a square; its faces have an angle in degrees at the apex. */
+PolygonSoup MakePyramid(double angle)
+{
+  PolygonSoup soup;
+  // A face is as high as the apex is far from the middle of an edge of the base.
+  const double faceHeight = 1.0 / std::tan(0.5 * angle * Pi / 180.0);
+  soup.Points = { { -1.0, -1.0, 0.0 }, { 1.0, -1.0, 0.0 }, { 1.0, 1.0, 0.0 }, { -1.0, 1.0, 0.0 },
+    { 0.0, 0.0, std::sqrt(faceHeight * faceHeight - 1.0) } };
+  for (const std::vector<Id>& polygon : std::vector<std::vector<Id>>{
+         { 0, 3, 2, 1 }, { 0, 1, 4 }, { 1, 2, 4 }, { 2, 3, 4 }, { 3, 0, 4 } })
+  {
+    soup.Connectivity.insert(soup.Connectivity.end(), polygon.begin(), polygon.end());
+    soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+  }
+  return soup;
+}
+
 /** A prism whose side facets meet at an angle in degrees. */
 PolygonSoup MakeWedge(double angle)
 {
@@ -333,6 +350,32 @@ TEST(SteinerPointRefiner, ThinLayersStayThinAndSharpWedgesEnd)
     const SteinerPointRefinerOutput output = Refine(input, SteinerPointRefinerOptions());
     EXPECT_EQ(output.Report.Slivers, 0);
     EXPECT_LT(output.Mesh.Points.size(), 3000u);
+  }
+}
+
+TEST(SteinerPointRefiner, PlaneAnglesExcuseNoSlivers)
+{
+  // Edges that meet at the apex make faces narrow there, but no dihedral angle has to be small.
+  for (double angle : { 13.0, 17.0, 20.0, 25.0 })
+  {
+    SCOPED_TRACE(angle);
+    const Stage3 stage = MakeMesh(MakePyramid(angle));
+    SteinerPointRefinerInput input;
+    input.Mesh = &stage.Output.Mesh;
+    SteinerPointRefinerOptions options;
+    options.MaximumEdgeLength = 0.7;
+    SteinerPointRefinerOutput output;
+    ASSERT_TRUE(RefineBySteinerPoints(input, options, {}, output).IsOk());
+    ExpectRight(input, options, output);
+    double smallest = 180.0;
+    for (const TetrahedronIds& ids : output.Mesh.Tetrahedra)
+    {
+      const std::array<Vec3, 4> v = GetCorners(output.Mesh.Points, ids);
+      smallest = std::min(smallest, GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]));
+    }
+    EXPECT_GE(smallest, options.DihedralAngleTarget);
+    std::printf("%g degrees: %zu tetrahedra, smallest angle %.1f\n", angle,
+      output.Mesh.Tetrahedra.size(), smallest);
   }
 }
 

@@ -346,8 +346,9 @@ bool RefinedMesh::IsFaulty(Id tetrahedron, bool isShapeTested) const
   double severity = 0.0;
   const TetrahedronFault fault = this->GetFault(tetrahedron, severity);
   return fault == TetrahedronFault::Size ||
-    (fault == TetrahedronFault::Shape && isShapeTested && !this->IsAcrossSharp(tetrahedron) &&
-      !this->IsInLayer(tetrahedron) && !this->IsFlat(tetrahedron));
+    (fault == TetrahedronFault::Shape && isShapeTested &&
+      !this->IsAcrossSharp(tetrahedron, SharpAngleUse::Shape) && !this->IsInLayer(tetrahedron) &&
+      !this->IsFlat(tetrahedron));
 }
 
 const std::vector<Id>& RefinedMesh::FindFaulty(bool isShapeTested) const
@@ -365,7 +366,7 @@ bool RefinedMesh::BreaksLimit(Id tetrahedron) const
   double severity = 0.0;
   const TetrahedronFault fault = this->Facts.GetFault(tetrahedron, severity);
   return fault == TetrahedronFault::Size ||
-    (fault == TetrahedronFault::Shape && !this->IsAcrossSharp(tetrahedron));
+    (fault == TetrahedronFault::Shape && !this->IsAcrossSharp(tetrahedron, SharpAngleUse::Shape));
 }
 
 bool RefinedMesh::BreaksLimit(const TetrahedronIds& ids, const std::array<Vec3, 4>& corners) const

@@ -14,7 +14,8 @@
  * size (FeatureSizes.h) if that is smaller. It is at most the size of another point plus the
  * distance from there. No point is inserted closer to it than a twentieth of its size, unless a
  * size limit asks for it. Sharp input angles would be refined without end: a tetrahedron across one
- * (SharpAngles.h) or across a thin layer (ThinLayers.h) is refined for its size only.
+ * (SharpAngles.h) or across a thin layer (ThinLayers.h) is refined for its size only. Slivers are
+ * mended at all but the sharpest of these angles.
  *
  * VolumeRefinement.h, SliverPerturbation.h and OptimalDelaunaySmoothing.h work on this mesh.
  */
@@ -152,9 +153,9 @@ public:
     return this->Facts.GetFault(tetrahedron, severity);
   }
   bool IsInLayer(Id tetrahedron) const { return this->Facts.IsInLayer(tetrahedron, *this->Shape); }
-  bool IsAcrossSharp(Id tetrahedron) const
+  bool IsAcrossSharp(Id tetrahedron, SharpAngleUse use) const
   {
-    return this->Facts.IsAcrossSharp(tetrahedron, *this->Shape);
+    return this->Facts.IsAcrossSharp(tetrahedron, *this->Shape, use);
   }
   /**
    * Whether a tetrahedron is numerically flat, as happens in rotated devices. All its points are on

@@ -10,7 +10,8 @@ namespace
 /** Whether a tetrahedron with an angle below the target counts as a sliver. */
 bool IsSliver(bool isSharp, Id tetrahedron, const RefinedMesh& mesh)
 {
-  return mesh.IsAcrossSharp(tetrahedron) == isSharp && !mesh.IsInLayer(tetrahedron);
+  return mesh.IsAcrossSharp(tetrahedron, SharpAngleUse::Sliver) == isSharp &&
+    !mesh.IsInLayer(tetrahedron);
 }
 } // namespace
 

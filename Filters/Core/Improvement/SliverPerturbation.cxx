@@ -16,6 +16,11 @@ namespace
 constexpr std::size_t ReportInterval = 16;
 /** First step of the search for a new point's position, in radii of the sphere that it destroys. */
 constexpr double FirstInsertion = 0.3;
+/**
+ * How many steps of a search for a position may find nothing at a sharp angle. Most searches there
+ * are in vain; with the other steps they take twice as long, and find little more.
+ */
+constexpr int PatienceAtSharpAngles = 2;
 
 /** Which tetrahedra the changes are to improve, and by which means. */
 struct Aim
@@ -50,8 +55,8 @@ private:
   void Include(Id tetrahedron, SmallestAngles& smallest) const;
   double GetFloor(const SmallestAngles& before) const;
   double RateCavity(const Vec3& position, double floor, double required) const;
-  bool Move(Id point);
-  bool InsertBest(Id tetrahedron);
+  bool Move(Id point, int patience);
+  bool InsertBest(Id tetrahedron, int patience);
 
   const Aim Goal;
   RefinedMesh& Mesh;
@@ -62,8 +67,8 @@ private:
 void Perturbation::Include(Id tetrahedron, SmallestAngles& smallest) const
 {
   const double angle = this->Mesh.GetAngle(tetrahedron);
-  const bool isAimed =
-    angle >= this->Goal.Target || this->Mesh.IsAcrossSharp(tetrahedron) == this->Goal.IsSharp;
+  const bool isAimed = angle >= this->Goal.Target ||
+    this->Mesh.IsAcrossSharp(tetrahedron, SharpAngleUse::Sliver) == this->Goal.IsSharp;
   double& one = isAimed ? smallest.Aimed : smallest.Other;
   one = std::min(one, angle);
 }
@@ -89,7 +94,8 @@ double Perturbation::RateCavity(const Vec3& position, double floor, double requi
     const double angle = GetSmallestDihedralAngle(this->Tetrahedra.GetPoint(facet[0]),
       this->Tetrahedra.GetPoint(facet[1]), this->Tetrahedra.GetPoint(facet[2]), position);
     const bool isAimed = angle >= this->Goal.Target ||
-      sharp.IsAcross({ facet[0], facet[1], facet[2], inside }) == this->Goal.IsSharp;
+      sharp.IsAcross({ facet[0], facet[1], facet[2], inside }, SharpAngleUse::Sliver) ==
+        this->Goal.IsSharp;
     if (isAimed ? angle <= required : angle < floor)
     {
       return 0.0;
@@ -99,7 +105,7 @@ double Perturbation::RateCavity(const Vec3& position, double floor, double requi
   return smallest;
 }
 
-bool Perturbation::Move(Id point)
+bool Perturbation::Move(Id point, int patience)
 {
   std::vector<Id> star;
   if (!this->Tetrahedra.FindStar(point, star))
@@ -198,7 +204,7 @@ bool Perturbation::Move(Id point)
       : 0.0;
   };
   Place best{ old, before.Aimed + SmallestGain, false };
-  SearchMove(old, (1.0 / count) * sum, nearest, this->Goal.Target, rate, best);
+  SearchMove(old, (1.0 / count) * sum, nearest, this->Goal.Target, patience, rate, best);
 
   if (this->Goal.Means != SliverMeans::Moves &&
     std::count(isBroken.begin(), isBroken.end(), 1) <= broken &&
@@ -217,7 +223,7 @@ bool Perturbation::Move(Id point)
   return true;
 }
 
-bool Perturbation::InsertBest(Id tetrahedron)
+bool Perturbation::InsertBest(Id tetrahedron, int patience)
 {
   const auto [a, b, c, d] = this->Tetrahedra.GetCorners(tetrahedron);
   const Vec3 center = GetCircumcenter(a, b, c, d);
@@ -245,7 +251,7 @@ bool Perturbation::InsertBest(Id tetrahedron)
   Place best{ center, this->Mesh.GetAngle(tetrahedron) + SmallestGain, false };
   TryPlace(center, rate, best);
   SearchPlace(center, FirstInsertion * Distance(center, a), MakeCubeDirections(), this->Goal.Target,
-    rate, best);
+    patience, rate, best);
   if (!best.IsFound || !this->Mesh.FindCavity(best.Position, tetrahedron))
   {
     return false;
@@ -262,9 +268,12 @@ bool Perturbation::Mend(const Sliver& sliver, SliverAttempt last)
   {
     return false;
   }
-  if (std::any_of(
-        ids.begin(), ids.end(), [&](Id id) { return this->Mesh.IsFree(id) && this->Move(id); }) ||
-    (last == SliverAttempt::Insertion && this->InsertBest(sliver.Tetrahedron)))
+  const int patience = this->Mesh.IsAcrossSharp(sliver.Tetrahedron, SharpAngleUse::Shape)
+    ? PatienceAtSharpAngles
+    : MaximumSearchSteps;
+  if (std::any_of(ids.begin(), ids.end(),
+        [&](Id id) { return this->Mesh.IsFree(id) && this->Move(id, patience); }) ||
+    (last == SliverAttempt::Insertion && this->InsertBest(sliver.Tetrahedron, patience)))
   {
     return true;
   }

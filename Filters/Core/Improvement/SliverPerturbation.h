@@ -9,8 +9,8 @@
  * it would make, before the mesh is changed. If no move helps, a new point is tried in the same
  * way. At last a split of the boundary is requested. Each change increases the smallest angle of
  * the tetrahedra that it replaces, and breaks no limit that all of them kept. Tetrahedra across
- * sharp input angles do not count as slivers, but must not get worse; PerturbSharp() treats them
- * last.
+ * input angles that are sharp for slivers (SharpAngles.h) do not count as such, but must not get
+ * worse; PerturbSharp() treats them last.
  *
  * Reference: J. Tournois, R. Srinivasan, P. Alliez, "Perturbing slivers in 3D Delaunay meshes",
  * 2009, doi:10.1007/978-3-642-04319-2_10.

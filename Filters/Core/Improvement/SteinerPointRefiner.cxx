@@ -52,7 +52,7 @@ private:
   bool IsOutOfRounds() const { return this->Output.Report.Rounds >= MaximumRounds; }
   void FindFaults();
   SteinerFault FindFault(const TetrahedronIds& ids, Id region) const;
-  bool IsInevitable(const TetrahedronIds& ids, Id region) const;
+  bool IsInevitable(const TetrahedronIds& ids, Id region, SharpAngleUse use) const;
 
   const SteinerPointRefinerInput& Input;
   const SteinerPointRefinerOptions& Options;
@@ -165,11 +165,12 @@ RoundResult SteinerPointRefinement::RunShapeRound()
 }
 
 /** Whether a tetrahedron of the output is in a thin layer or at a sharp angle. */
-bool SteinerPointRefinement::IsInevitable(const TetrahedronIds& ids, Id region) const
+bool SteinerPointRefinement::IsInevitable(
+  const TetrahedronIds& ids, Id region, SharpAngleUse use) const
 {
   const BoundaryShape& shape = this->Rounds.GetMesh().GetShape();
   return shape.Layers.IsAcross(ids, region) || shape.Sharp.IsAtCorner(ids) ||
-    shape.Sharp.IsAcross(ids);
+    shape.Sharp.IsAcross(ids, use);
 }
 
 SteinerFault SteinerPointRefinement::FindFault(const TetrahedronIds& ids, Id region) const
@@ -183,14 +184,17 @@ SteinerFault SteinerPointRefinement::FindFault(const TetrahedronIds& ids, Id reg
     return SteinerFault::Size;
   }
   const bool isBadlyShaped = fault == TetrahedronFault::Shape;
-  if (!isBadlyShaped &&
-    !(GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]) < this->Options.DihedralAngleTarget))
+  const bool isSliver =
+    GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]) < this->Options.DihedralAngleTarget;
+  if (isBadlyShaped && !this->IsInevitable(ids, region, SharpAngleUse::Shape))
   {
-    return SteinerFault::None;
+    return SteinerFault::Shape;
   }
-  return this->IsInevitable(ids, region) ? SteinerFault::Inevitable
-    : isBadlyShaped                      ? SteinerFault::Shape
-                                         : SteinerFault::Sliver;
+  if (isSliver && !this->IsInevitable(ids, region, SharpAngleUse::Sliver))
+  {
+    return SteinerFault::Sliver;
+  }
+  return isBadlyShaped || isSliver ? SteinerFault::Inevitable : SteinerFault::None;
 }
 
 void SteinerPointRefinement::FindFaults()

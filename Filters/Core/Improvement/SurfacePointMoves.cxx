@@ -451,7 +451,7 @@ bool SurfacePointMoves::Move(Id point, const TetrahedronIds& sliver, double targ
       TryPlace(Project(this->Mesh.GetPoint(other), old, support.Axis, support.IsLine), rate, best);
     }
   }
-  SearchPlace(old, FirstMove * nearest, support.Directions, target, rate, best);
+  SearchPlace(old, FirstMove * nearest, support.Directions, target, MaximumSearchSteps, rate, best);
   if (!best.IsFound)
   {
     return false;
@@ -471,7 +471,9 @@ std::vector<Vec3> MoveSurfacePoints(
   const BoundaryShape& shape = mesh.GetShape();
   SurfacePointMoves::Rules rules;
   rules.HasAngle = [&shape](const TetrahedronIds& ids, Id region)
-  { return !shape.Layers.IsAcross(ids, region) && !shape.Sharp.IsAcross(ids); };
+  {
+    return !shape.Layers.IsAcross(ids, region) && !shape.Sharp.IsAcross(ids, SharpAngleUse::Sliver);
+  };
   rules.BreaksLimit = [&mesh](const TetrahedronIds& ids, const std::array<Vec3, 4>& corners)
   { return mesh.BreaksLimit(ids, corners); };
   rules.GetClearance = [&mesh](Id point) { return mesh.GetClearance(point); };

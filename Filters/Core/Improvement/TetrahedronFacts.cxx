@@ -67,13 +67,15 @@ bool TetrahedronFacts::IsInLayer(Id tetrahedron, const BoundaryShape& shape)
   return *known.IsInLayer;
 }
 
-bool TetrahedronFacts::IsAcrossSharp(Id tetrahedron, const BoundaryShape& shape)
+bool TetrahedronFacts::IsAcrossSharp(Id tetrahedron, const BoundaryShape& shape, SharpAngleUse use)
 {
   Known& known = this->Get(tetrahedron);
-  if (!known.IsAcrossSharp)
+  std::optional<bool>& isAcross =
+    use == SharpAngleUse::Sliver ? known.IsSharpSliver : known.IsAcrossSharp;
+  if (!isAcross)
   {
-    known.IsAcrossSharp = shape.Sharp.IsAcross(this->Mesh.GetMesh().Tetrahedra[tetrahedron]);
+    isAcross = shape.Sharp.IsAcross(this->Mesh.GetMesh().Tetrahedra[tetrahedron], use);
   }
-  return *known.IsAcrossSharp;
+  return *isAcross;
 }
 } // namespace cdm

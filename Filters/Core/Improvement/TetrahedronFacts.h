@@ -36,7 +36,7 @@ public:
   TetrahedronFault GetFault(Id tetrahedron, double& severity);
   /** Splits of the boundary do not change these two, see BoundaryShape. */
   bool IsInLayer(Id tetrahedron, const BoundaryShape& shape);
-  bool IsAcrossSharp(Id tetrahedron, const BoundaryShape& shape);
+  bool IsAcrossSharp(Id tetrahedron, const BoundaryShape& shape, SharpAngleUse use);
 
   /** Forgets facts about tetrahedra with this stamp or a later one. */
   void Forget(std::int64_t first);
@@ -51,6 +51,7 @@ private:
     std::optional<TetrahedronFault> Fault;
     std::optional<bool> IsInLayer;
     std::optional<bool> IsAcrossSharp;
+    std::optional<bool> IsSharpSliver;
   };
   Known& Get(Id tetrahedron);
 

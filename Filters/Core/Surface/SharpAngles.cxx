@@ -73,9 +73,15 @@ IdLists ListNeighbors(const TriangleMesh& surface, const std::vector<StructuralE
 }
 } // namespace
 
+SharpAngles::PlaneLimit::PlaneLimit(double degrees)
+  : Cosine(GetCosine(degrees - AngleTolerance)),
+    Sine(std::sin((degrees - AngleTolerance) / DegreesPerRadian))
+{
+}
+
 SharpAngles::SharpAngles(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
   const IdLists& pointTriangles, double sharpPlaneAngle)
-  : Surface(surface), SharpPlaneCosine(GetCosine(sharpPlaneAngle - AngleTolerance)),
+  : Surface(surface), ForShapes(sharpPlaneAngle), ForSlivers(SharpPlaneAngleOfSlivers),
     IsCorner(surface.Points.size(), 0)
 {
   const IdLists neighbors = ListNeighbors(surface, edges);
@@ -287,7 +293,7 @@ void SharpAngles::FindTipsAt(Id corner, const IdLists::Range& triangles, const I
       const std::pair<Id, Id> pair = std::minmax(facet, facets[t]);
       if (facet != facets[t] && !std::binary_search(meeting.begin(), meeting.end(), pair) &&
         GetSectorCosine(GetDirection(this->Surface, corner, end), first, second) >
-          this->SharpPlaneCosine)
+          this->ForShapes.Cosine)
       {
         this->IsCorner[corner] = 1;
         this->Tips.push_back({ pair, corner });
@@ -406,7 +412,7 @@ void SharpAngles::FindArms(const IdLists& pointTriangles, const IdLists& neighbo
       for (Id other : neighbors[corner])
       {
         if (other != first &&
-          Dot(direction, GetDirection(surface, corner, other)) > this->SharpPlaneCosine)
+          Dot(direction, GetDirection(surface, corner, other)) > this->ForShapes.Cosine)
         {
           isSharp = true;
           this->FindShadows(corner, first, other, pointTriangles[corner], shadows);
@@ -444,16 +450,18 @@ bool SharpAngles::IsAtCorner(const TetrahedronIds& ids) const
     [this](Id id) { return id < static_cast<Id>(this->IsCorner.size()) && this->IsCorner[id]; });
 }
 
-bool SharpAngles::IsAcross(const TetrahedronIds& ids) const
+bool SharpAngles::IsAcross(const TetrahedronIds& ids, SharpAngleUse use) const
 {
+  const PlaneLimit& limit = use == SharpAngleUse::Sliver ? this->ForSlivers : this->ForShapes;
   const Id numberOfPoints = static_cast<Id>(this->IsCorner.size());
   for (std::size_t i = 0; i < ids.size(); ++i)
   {
     for (std::size_t j = 0; j < i; ++j)
     {
       if (std::max(ids[i], ids[j]) < numberOfPoints &&
-        (this->AreAcrossFacets(ids[i], ids[j]) || this->AreAcrossArms(ids[i], ids[j]) ||
-          this->IsInShadow(ids[i], ids[j]) || this->IsInShadow(ids[j], ids[i])))
+        (this->AreAcrossFacets(ids[i], ids[j], limit) ||
+          this->AreAcrossArms(ids[i], ids[j], limit) || this->IsInShadow(ids[i], ids[j], limit) ||
+          this->IsInShadow(ids[j], ids[i], limit)))
       {
         return true;
       }
@@ -462,7 +470,7 @@ bool SharpAngles::IsAcross(const TetrahedronIds& ids) const
   return false;
 }
 
-bool SharpAngles::AreAcrossFacets(Id p, Id q) const
+bool SharpAngles::AreAcrossFacets(Id p, Id q, const PlaneLimit& limit) const
 {
   const IdLists::Range first = this->PointFacets[p];
   const IdLists::Range second = this->PointFacets[q];
@@ -476,7 +484,7 @@ bool SharpAngles::AreAcrossFacets(Id p, Id q) const
       }
       const std::pair<Id, Id> pair = std::minmax(f, g);
       if (std::binary_search(this->FacetPairs.begin(), this->FacetPairs.end(), pair) ||
-        this->AreAcrossTip(pair, p, q))
+        this->AreAcrossTip(pair, p, q, limit))
       {
         return true;
       }
@@ -485,7 +493,8 @@ bool SharpAngles::AreAcrossFacets(Id p, Id q) const
   return false;
 }
 
-bool SharpAngles::AreAcrossTip(const std::pair<Id, Id>& facets, Id p, Id q) const
+bool SharpAngles::AreAcrossTip(
+  const std::pair<Id, Id>& facets, Id p, Id q, const PlaneLimit& limit) const
 {
   const auto tips = std::equal_range(this->Tips.begin(), this->Tips.end(), facets);
   return std::any_of(tips.first, tips.second,
@@ -493,18 +502,18 @@ bool SharpAngles::AreAcrossTip(const std::pair<Id, Id>& facets, Id p, Id q) cons
     {
       return tip.Point != p && tip.Point != q &&
         Dot(GetDirection(this->Surface, tip.Point, p), GetDirection(this->Surface, tip.Point, q)) >
-        this->SharpPlaneCosine;
+        limit.Cosine;
     });
 }
 
-bool SharpAngles::AreAcrossArms(Id p, Id q) const
+bool SharpAngles::AreAcrossArms(Id p, Id q, const PlaneLimit& limit) const
 {
   for (Id i : this->PointArms[p])
   {
     for (Id j : this->PointArms[q])
     {
       if (i != j && this->Arms[i].Corner == this->Arms[j].Corner &&
-        Dot(this->Arms[i].Direction, this->Arms[j].Direction) > this->SharpPlaneCosine)
+        Dot(this->Arms[i].Direction, this->Arms[j].Direction) > limit.Cosine)
       {
         return true;
       }
@@ -514,7 +523,7 @@ bool SharpAngles::AreAcrossArms(Id p, Id q) const
 }
 
 /** Points of an angle are matched by points of its shadow. */
-bool SharpAngles::IsInShadow(Id armPoint, Id point) const
+bool SharpAngles::IsInShadow(Id armPoint, Id point, const PlaneLimit& limit) const
 {
   const IdLists::Range facets = this->PointFacets[point];
   for (Id i : this->PointArms[armPoint])
@@ -522,7 +531,8 @@ bool SharpAngles::IsInShadow(Id armPoint, Id point) const
     const Arm& arm = this->Arms[i];
     for (const Shadow& shadow : arm.Shadows)
     {
-      if (point == arm.Corner || !HasId(facets, shadow.Facet) || HasId(this->PointArms[point], i))
+      if (shadow.Sine > limit.Sine || point == arm.Corner || !HasId(facets, shadow.Facet) ||
+        HasId(this->PointArms[point], i))
       {
         continue;
       }

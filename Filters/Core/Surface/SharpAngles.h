@@ -13,6 +13,10 @@
  * points of the other side that are closer to the corner, without end. So refinement for shape
  * stops there, and tetrahedra from one side to the other ("across") keep the shape that they have.
  *
+ * A face with the plane angle a makes the radius-edge ratio of its tetrahedron at least
+ * 1 / (2 sin a), but leaves the dihedral angles free. So for slivers plane angles and tips are sharp
+ * below 12 degrees only. Below that nearly all attempts are in vain, and take most of the time.
+ *
  * A side is a surface facet (triangles that no structural edge separates), or a structural edge
  * with the edges that go straight on from it. Facets that meet in a tip may be far apart elsewhere:
  * two points are across only if the tip sees them less than the sharp angle apart. Each of two
@@ -41,6 +45,15 @@ namespace cdm
 constexpr double UsualSharpPlaneAngle = 30.0;
 /** The same where the smallest spheres of structural edges have to be empty. */
 constexpr double SharpPlaneAngleOfEmptySpheres = 60.0;
+/** The same for slivers. */
+constexpr double SharpPlaneAngleOfSlivers = 12.0;
+
+/** What a sharp angle excuses: a large radius-edge ratio, or a small dihedral angle. */
+enum class SharpAngleUse
+{
+  Shape,
+  Sliver
+};
 
 class SharpAngles
 {
@@ -65,11 +78,21 @@ public:
   bool IsAtCorner(const TetrahedronIds& ids) const;
   /**
    * Whether one vertex lies on one side of a sharp angle, and another one on the other side. Only
-   * the surface's points lie on sides; ids of other points are larger.
+   * the surface's points lie on sides; ids of other points are larger. A tetrahedron that is across
+   * for slivers is across for shapes.
    */
-  bool IsAcross(const TetrahedronIds& ids) const;
+  bool IsAcross(const TetrahedronIds& ids, SharpAngleUse use = SharpAngleUse::Shape) const;
 
 private:
+  /** Smaller plane angles and angles at tips are sharp. */
+  struct PlaneLimit
+  {
+    explicit PlaneLimit(double degrees);
+
+    double Cosine;
+    double Sine;
+  };
+
   /**
    * The shadow that an edge casts on a surface facet of another edge with which it makes a sharp
    * plane angle.
@@ -119,13 +142,14 @@ private:
   void FindArms(const IdLists& pointTriangles, const IdLists& neighbors);
   void FindShadows(Id corner, Id first, Id other, const IdLists::Range& triangles,
     std::vector<Shadow>& shadows) const;
-  bool AreAcrossFacets(Id p, Id q) const;
-  bool AreAcrossTip(const std::pair<Id, Id>& facets, Id p, Id q) const;
-  bool AreAcrossArms(Id p, Id q) const;
-  bool IsInShadow(Id armPoint, Id point) const;
+  bool AreAcrossFacets(Id p, Id q, const PlaneLimit& limit) const;
+  bool AreAcrossTip(const std::pair<Id, Id>& facets, Id p, Id q, const PlaneLimit& limit) const;
+  bool AreAcrossArms(Id p, Id q, const PlaneLimit& limit) const;
+  bool IsInShadow(Id armPoint, Id point, const PlaneLimit& limit) const;
 
   const TriangleMesh& Surface;
-  const double SharpPlaneCosine;
+  const PlaneLimit ForShapes;
+  const PlaneLimit ForSlivers;
   /** The surface facet of each triangle. */
   std::vector<Id> Facets;
   /** One for each point of the surface. */
