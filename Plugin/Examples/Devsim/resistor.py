@@ -44,7 +44,7 @@ def get_current(mesh, name, has_own_boxes=False):
                                 edge_current_model="Current")
     sim.solve(absolute=1.0)
     potential = cd_devsim.get_solution(device, ["Potential"])["Potential"]
-    points = mesh.points if hasattr(mesh, "points") else sim.get_points(mesh)
+    points = sim.get_points(mesh)
     current = devsim.get_contact_current(device=name, contact="right", equation="Continuity")
     sim.delete(name)
     return current, np.abs(potential - points[:, 0] / LENGTH).max()
@@ -62,7 +62,7 @@ def run():
         meshes["Gmsh"] = gmsh
     rows = []
     for name, mesh in meshes.items():
-        count = len(mesh.points) if hasattr(mesh, "points") else mesh.GetNumberOfPoints()
+        count = len(sim.get_points(mesh))
         for boxes in ("signed", "DEVSIM's"):
             current, error = get_current(mesh, "resistor", boxes != "signed")
             rows.append((name, count, boxes, float(current / EXACT - 1.0), float(error)))

@@ -167,8 +167,11 @@ def add_array(grid, name, values):
     grid.GetPointData().AddArray(array)
 
 
-def get_points(grid):
-    return vtk_to_numpy(grid.GetPoints().GetData())
+def get_points(mesh):
+    """Of a VTK data set, which has "points" of its own from VTK 9.3 on, or a mesh of the package."""
+    if hasattr(mesh, "GetPoints"):
+        return vtk_to_numpy(mesh.GetPoints().GetData())
+    return mesh.points
 
 
 def make_sizing(grid, increases, shortest, longest, gradation=0.4):
