@@ -50,6 +50,14 @@ AbortBehavior::AbortBehavior(QObject* parent) : QObject(parent)
     this->Watch(source);
   }
   this->connect(model, &pqServerManagerModel::sourceAdded, this, &AbortBehavior::Watch);
+  this->connect(model, &pqServerManagerModel::sourceRemoved, this,
+    [this](pqPipelineSource* source)
+    {
+      if (source == this->Aborted)
+      {
+        this->ClearMessage();
+      }
+    });
   this->connect(core->getProgressManager(), &pqProgressManager::abort, this,
     [this]()
     {
@@ -87,11 +95,7 @@ void AbortBehavior::OnStart(vtkObject* algorithm, unsigned long, void*)
       this->Button = button;
     }
   }
-  QStatusBar* bar = this->FindStatusBar();
-  if (bar && bar->currentMessage() == AbortedText)
-  {
-    bar->clearMessage();
-  }
+  this->ClearMessage();
   this->Running = vtkAlgorithm::SafeDownCast(algorithm);
   this->Pressed = false;
   this->SinceEvents.start();
@@ -160,6 +164,16 @@ QStatusBar* AbortBehavior::FindStatusBar() const
 }
 
 //--------------------------------------------------------------------------------------------------
+void AbortBehavior::ClearMessage()
+{
+  QStatusBar* bar = this->FindStatusBar();
+  if (bar && bar->currentMessage() == AbortedText)
+  {
+    bar->clearMessage();
+  }
+}
+
+//--------------------------------------------------------------------------------------------------
 void AbortBehavior::OfferAgain(pqPipelineSource* source, vtkAlgorithm* algorithm)
 {
   // No warning: the window of those would lie upon the button in the next run.
@@ -167,6 +181,7 @@ void AbortBehavior::OfferAgain(pqPipelineSource* source, vtkAlgorithm* algorithm
   {
     // There is room for no more.
     bar->showMessage(AbortedText);
+    this->Aborted = source;
   }
   source->setModifiedState(pqProxy::MODIFIED);
   const auto applied = std::make_shared<QMetaObject::Connection>();

@@ -13,8 +13,8 @@
  *     arrived. Of the user's input only that for the button gets through, and no timer goes off:
  *     nothing else may change or draw the pipeline that is at work;
  *  3. a press sets the filter's flag AbortExecute. The run ends soon; then the flag is taken back,
- *     a message says what happened until the next run, and Apply can be pressed: it runs the
- *     filter again.
+ *     a message says what happened until the next run, or until the filter is deleted, and Apply can
+ *     be pressed: it runs the filter again.
  */
 #ifndef AbortBehavior_h
 #define AbortBehavior_h
@@ -54,9 +54,13 @@ private:
 
   /** That of the window with the button; null without one. */
   QStatusBar* FindStatusBar() const;
+  /** Takes the message back if it is still there. */
+  void ClearMessage();
 
   QMap<vtkObject*, QPointer<pqPipelineSource>> Sources;
   vtkSmartPointer<vtkAlgorithm> Running;
+  /** The source that the message is about. */
+  QPointer<pqPipelineSource> Aborted;
   bool Pressed = false;
   QElapsedTimer SinceEvents;
   QPointer<QWidget> Button;

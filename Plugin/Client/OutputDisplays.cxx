@@ -10,14 +10,19 @@
 #include <pqServerManagerModel.h>
 #include <pqView.h>
 
+#include <vtkClientServerStream.h>
 #include <vtkDataObject.h>
+#include <vtkNew.h>
 #include <vtkPVArrayInformation.h>
 #include <vtkPVDataInformation.h>
+#include <vtkSMOutputPort.h>
 #include <vtkSMPVRepresentationProxy.h>
+#include <vtkSMParaViewPipelineControllerWithRendering.h>
 #include <vtkSMPropertyHelper.h>
+#include <vtkSMSession.h>
+#include <vtkSMSourceProxy.h>
 #include <vtkSMViewProxy.h>
 
-#include <QPointer>
 #include <QTimer>
 
 #include <cstring>
@@ -26,10 +31,18 @@ namespace
 {
 constexpr const char* RegionIdName = "RegionId";
 
-/** The cell array by which an output is colored; null if it has none of them. */
-const char* FindColors(vtkPVDataInformation* information)
+constexpr const char* ProblemKindName = "ProblemKind";
+
+vtkSMSourceProxy* GetProxy(pqPipelineSource* source)
 {
-  for (const char* name : { "ProblemKind", "Fault", RegionIdName })
+  return vtkSMSourceProxy::SafeDownCast(source->getProxy());
+}
+
+/** The cell array by which an output is colored; null if it has none of them. */
+const char* FindColors(pqOutputPort* port)
+{
+  vtkPVDataInformation* information = port->getDataInformation();
+  for (const char* name : { ProblemKindName, "Fault", RegionIdName })
   {
     if (information->GetArrayInformation(name, vtkDataObject::CELL))
     {
@@ -41,8 +54,7 @@ const char* FindColors(vtkPVDataInformation* information)
 
 bool HasCells(pqOutputPort* port)
 {
-  vtkPVDataInformation* information = port->getDataInformation();
-  return information && information->GetNumberOfCells() > 0;
+  return port->getDataInformation()->GetNumberOfCells() > 0;
 }
 
 /** Thick lines, in front of the polygons that they are on. */
@@ -61,6 +73,46 @@ bool IsColoredBy(vtkSMProxy* proxy, const char* name)
     vtkSMPropertyHelper(proxy, "ColorArrayName", true).GetInputArrayNameToProcess();
   return colors && std::strcmp(colors, name) == 0;
 }
+
+/**
+ * A display whose filter failed waits for data, and shows the former ones. ParaView takes it for
+ * told already, so that its object has to be told itself.
+ */
+void AskAgain(vtkSMProxy* display)
+{
+  vtkClientServerStream stream;
+  stream << vtkClientServerStream::Invoke << VTKOBJECT(display) << "MarkModified"
+         << vtkClientServerStream::End;
+  display->GetSession()->ExecuteStream(display->GetLocation(), stream);
+  display->MarkDirty(display);
+}
+
+/** Shows or hides the problems of a mesh in a view, if ParaView leaves that to others. */
+void ShowProblems(pqPipelineSource* source, vtkSMViewProxy* view, bool isShown)
+{
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  for (pqOutputPort* port : source->getOutputPorts())
+  {
+    const char* name = FindColors(port);
+    const char* type = controller->GetPreferredViewType(GetProxy(source), port->getPortNumber());
+    if (!name || std::strcmp(name, ProblemKindName) != 0 || !type || std::strcmp(type, "None") != 0)
+    {
+      continue;
+    }
+    if (!isShown)
+    {
+      controller->Hide(GetProxy(source), port->getPortNumber(), view);
+    }
+    else if (HasCells(port))
+    {
+      if (auto* display = vtkSMPVRepresentationProxy::SafeDownCast(
+            controller->Show(GetProxy(source), port->getPortNumber(), view)))
+      {
+        display->SetScalarBarVisibility(view, true);
+      }
+    }
+  }
+}
 } // namespace
 
 //--------------------------------------------------------------------------------------------------
@@ -76,53 +128,92 @@ void OutputDisplays::Start()
 OutputDisplays::OutputDisplays(QObject* parent) : QObject(parent)
 {
   pqServerManagerModel* model = pqApplicationCore::instance()->getServerManagerModel();
-  this->connect(model, &pqServerManagerModel::representationAdded, this, &OutputDisplays::Watch);
-}
-
-//--------------------------------------------------------------------------------------------------
-void OutputDisplays::Watch(pqRepresentation* representation)
-{
-  const QPointer<pqDataRepresentation> data = qobject_cast<pqDataRepresentation*>(representation);
-  if (!data)
+  for (pqView* view : model->findItems<pqView*>())
   {
-    return;
+    this->Watch(view);
   }
-  const auto update = [this, data]()
-  {
-    // Not while ParaView is at work on the same display.
-    QTimer::singleShot(0, this,
-      [this, data]()
-      {
-        if (data)
-        {
-          this->Update(data);
-        }
-      });
-  };
-  update();
-  this->connect(data, &pqDataRepresentation::dataUpdated, this, update);
-  this->connect(
-    data, &QObject::destroyed, this, [this](QObject* object) { this->Displays.remove(object); });
+  this->connect(model, &pqServerManagerModel::viewAdded, this, &OutputDisplays::Watch);
 }
 
 //--------------------------------------------------------------------------------------------------
-void OutputDisplays::Update(pqDataRepresentation* representation)
+void OutputDisplays::Watch(pqView* view)
+{
+  this->connect(view, &pqView::updateDataEvent, this,
+    [this, view]()
+    {
+      // Not while ParaView is at work on the same displays, nor while a filter runs: AbortBehavior
+      // holds back timers, though not those of no time at all.
+      QTimer::singleShot(1, view, [this, view]() { this->Update(view); });
+    });
+}
+
+//--------------------------------------------------------------------------------------------------
+void OutputDisplays::Update(pqView* view)
+{
+  QList<pqDataRepresentation*> displays;
+  for (pqRepresentation* representation : view->getRepresentations())
+  {
+    auto* display = qobject_cast<pqDataRepresentation*>(representation);
+    pqOutputPort* port = display ? display->getOutputPortFromInput() : nullptr;
+    if (port && OwnSources::IsOurs(port->getSource()))
+    {
+      displays.append(display);
+      for (pqOutputPort* output : port->getSource()->getOutputPorts())
+      {
+        output->getOutputPortProxy()->InvalidateDataInformation();
+      }
+    }
+  }
+  bool isChanged = false;
+  for (pqDataRepresentation* display : displays)
+  {
+    isChanged = this->UpdateDisplay(display) || isChanged;
+  }
+  if (isChanged)
+  {
+    view->forceRender();
+  }
+}
+
+//--------------------------------------------------------------------------------------------------
+bool OutputDisplays::UpdateDisplay(pqDataRepresentation* representation)
 {
   pqOutputPort* port = representation->getOutputPortFromInput();
-  auto* proxy = vtkSMPVRepresentationProxy::SafeDownCast(representation->getProxy());
-  vtkPVDataInformation* information = port ? port->getDataInformation() : nullptr;
-  if (!proxy || !information || !OwnSources::IsOurs(port->getSource()))
-  {
-    return;
-  }
+  pqPipelineSource* source = port->getSource();
   const bool isNew = !this->Displays.contains(representation);
+  if (isNew)
+  {
+    this->connect(representation, &QObject::destroyed, this,
+      [this](QObject* object) { this->Displays.remove(object); });
+  }
   Display& known = this->Displays[representation];
   const Display before = known;
   known.HasCells = HasCells(port);
-  known.HasMesh = HasCells(port->getSource()->getOutputPort(0));
+  known.HasMesh = HasCells(source->getOutputPort(0));
   known.WasEmpty = before.WasEmpty || !known.HasCells;
-  const char* name = FindColors(information);
-  if (!name || (known.HasCells == before.HasCells && known.HasMesh == before.HasMesh && !isNew))
+  if (known.HasCells == before.HasCells && known.HasMesh == before.HasMesh && !isNew)
+  {
+    return false;
+  }
+  if (before.HasCells && !known.HasCells)
+  {
+    AskAgain(representation->getProxy());
+  }
+  if (port->getPortNumber() == 0 && representation->isVisible() && !(isNew && known.HasMesh))
+  {
+    ShowProblems(source, representation->getViewProxy(), !known.HasMesh);
+  }
+  SetLook(representation, known, before);
+  return true;
+}
+
+//--------------------------------------------------------------------------------------------------
+void OutputDisplays::SetLook(
+  pqDataRepresentation* representation, const Display& known, const Display& before)
+{
+  auto* proxy = vtkSMPVRepresentationProxy::SafeDownCast(representation->getProxy());
+  const char* name = FindColors(representation->getOutputPortFromInput());
+  if (!proxy || !name)
   {
     return;
   }
@@ -136,19 +227,14 @@ void OutputDisplays::Update(pqDataRepresentation* representation)
   {
     SetLines(proxy);
   }
-  if (known.HasCells && std::strcmp(name, "ProblemKind") == 0)
+  if (known.HasCells && std::strcmp(name, ProblemKindName) == 0)
   {
     vtkSMPropertyHelper(proxy, "Representation").Set(known.HasMesh ? "Wireframe" : "Surface");
   }
-  vtkSMViewProxy* view = representation->getViewProxy();
-  if (view && representation->isVisible() && IsColoredBy(proxy, name) &&
+  if (representation->isVisible() && IsColoredBy(proxy, name) &&
     (isFirst || (!known.HasCells && !isMesh)))
   {
-    proxy->SetScalarBarVisibility(view, known.HasCells);
+    proxy->SetScalarBarVisibility(representation->getViewProxy(), known.HasCells);
   }
   proxy->UpdateVTKObjects();
-  if (pqView* shown = representation->getView())
-  {
-    shown->forceRender();
-  }
 }

@@ -4,14 +4,20 @@
  * @brief The part of the plugin for the ParaView GUI alone: outputs that were empty look as new ones.
  *
  * ParaView chooses how data are shown when it shows them first. If they are empty then, as a mesh
- * after an error, or the problems without one, it stays at that when they are there.
+ * after an error, or the problems without one, it stays at that when they are there. After a failed
+ * run it goes on showing what was there before.
  *
- * Method, for outputs of this plugin's filters:
- *  1. when one gets its first cells, having been empty, it is colored by its array of regions,
+ * Method, for the outputs of this plugin's filters in a view, whenever its data are updated:
+ *  1. what ParaView knows of the data is asked anew: a failed run, and data that are not shown,
+ *     leave it as it was;
+ *  2. a display whose output lost its cells asks for them again, and shows nothing;
+ *  3. problems for which the filter's hints ask no view are shown while there is no mesh in its
+ *     place, and hidden as soon as there is one. Between two such changes the user may choose;
+ *  4. when an output gets its first cells, having been empty, it is colored by its array of regions,
  *     problems or faults, with the legend;
- *  2. problems and faults have thick lines and points, in front of the polygons that they are on.
+ *  5. problems and faults have thick lines and points, in front of the polygons that they are on.
  *     Without a mesh polygons with problems are surfaces, with one outlines, which do not hide it;
- *  3. while there are no problems or faults their legend is not shown.
+ *  6. while there are no problems or faults their legend is not shown.
  */
 #ifndef OutputDisplays_h
 #define OutputDisplays_h
@@ -20,7 +26,7 @@
 #include <QObject>
 
 class pqDataRepresentation;
-class pqRepresentation;
+class pqView;
 
 class OutputDisplays : public QObject
 {
@@ -39,8 +45,13 @@ private:
 
   explicit OutputDisplays(QObject* parent);
 
-  void Watch(pqRepresentation* representation);
-  void Update(pqDataRepresentation* representation);
+  void Watch(pqView* view);
+  void Update(pqView* view);
+  /** Says if it changed. */
+  bool UpdateDisplay(pqDataRepresentation* representation);
+  /** Colors, lines and legend, steps 4 to 6. */
+  static void SetLook(
+    pqDataRepresentation* representation, const Display& known, const Display& before);
 
   QHash<QObject*, Display> Displays;
 };

@@ -35,17 +35,13 @@
 namespace
 {
 constexpr const char* RegionIdName = "RegionId";
-/** Settings of ParaView. The colors of regions are those of Macros/region_cut.py. */
+/** Settings of ParaView. The build defines REGION_COLORS: those of Macros/region_cut.py. */
 constexpr const char* ColorMaps = R"({
   "array_lookup_tables" : {
     "RegionId" : {
       "PVLookupTable" : {
         "IndexedLookup" : 1,
-        "IndexedColors" : [
-          0.49, 0.65, 0.84, 0.96, 0.74, 0.24, 0.82, 0.34, 0.32, 0.55, 0.75, 0.48,
-          0.66, 0.53, 0.78, 0.95, 0.60, 0.40, 0.42, 0.73, 0.74, 0.93, 0.66, 0.74,
-          0.71, 0.69, 0.45, 0.62, 0.62, 0.66, 0.31, 0.46, 0.66, 0.35, 0.66, 0.58
-        ]
+        "IndexedColors" : [ )" REGION_COLORS R"( ]
       }
     },
     "ProblemKind" : {

@@ -12,10 +12,17 @@ from paraview.modules.vtkRemotingViews import vtkPVProminentValuesInformation
 from paraview.simple import *
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
-# By region, and from the start again where there are more regions.
+# By region: twelve colors, the same darker, and the same lighter. Those of the plugin in the window are
+# made of these when it is built.
 COLORS = ((0.49, 0.65, 0.84), (0.96, 0.74, 0.24), (0.82, 0.34, 0.32), (0.55, 0.75, 0.48),
           (0.66, 0.53, 0.78), (0.95, 0.60, 0.40), (0.42, 0.73, 0.74), (0.93, 0.66, 0.74),
-          (0.71, 0.69, 0.45), (0.62, 0.62, 0.66), (0.31, 0.46, 0.66), (0.35, 0.66, 0.58))
+          (0.71, 0.69, 0.45), (0.62, 0.62, 0.66), (0.31, 0.46, 0.66), (0.35, 0.66, 0.58),
+          (0.32, 0.42, 0.55), (0.62, 0.48, 0.16), (0.53, 0.22, 0.21), (0.36, 0.49, 0.31),
+          (0.43, 0.34, 0.51), (0.62, 0.39, 0.26), (0.27, 0.47, 0.48), (0.60, 0.43, 0.48),
+          (0.46, 0.45, 0.29), (0.40, 0.40, 0.43), (0.20, 0.30, 0.43), (0.23, 0.43, 0.38),
+          (0.75, 0.83, 0.92), (0.98, 0.87, 0.62), (0.91, 0.67, 0.66), (0.78, 0.88, 0.74),
+          (0.83, 0.77, 0.89), (0.98, 0.80, 0.70), (0.71, 0.87, 0.87), (0.97, 0.83, 0.87),
+          (0.86, 0.85, 0.73), (0.81, 0.81, 0.83), (0.66, 0.73, 0.83), (0.68, 0.83, 0.79))
 # A legend of more regions does not fit on the screen.
 MAXIMUM_NUMBER_OF_REGIONS = 30
 
@@ -73,7 +80,7 @@ def ColorByRegion(display, names):
         return
     colors.InterpretValuesAsCategories = 1
     colors.Annotations = [text for region in names for text in (str(region), names[region])]
-    colors.IndexedColors = [part for i in range(len(names)) for part in COLORS[i % len(COLORS)]]
+    colors.IndexedColors = [part for color in COLORS[:len(names)] for part in color]
 
 
 def CutRegions(source, view):

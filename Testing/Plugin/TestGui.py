@@ -3,7 +3,9 @@
 
 Starts ParaView with the command of the README, and plays the events of Gui.xml; looks at the
 picture, at the states that it saves after a change was undone and redone, at the colors and names of
-the regions there, and at the picture of Plugin/Examples/mos_transistor.pvsm.
+the regions there, and at the picture of Plugin/Examples/mos_transistor.pvsm. Plays those of Repair.xml
+with a surface that intersects itself, and looks at what is shown while there is no mesh, and when
+there is one.
 """
 
 import ast
@@ -51,6 +53,74 @@ def CheckLegend(path):
     assert colors == expected, (colors, expected)
 
 
+# Two tetrahedra, one of which sticks in the other.
+CORNERS = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))
+SIDES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
+
+
+def WriteCrossed(path):
+    with open(path, "w", encoding="ascii") as file:
+        file.write("solid crossed\n")
+        for shift in (0.0, 0.3):
+            for side in SIDES:
+                file.write("facet normal 0 0 0\nouter loop\n")
+                for x, y, z in (CORNERS[corner] for corner in side):
+                    file.write("vertex %g %g %g\n" % (x + shift, y, z))
+                file.write("endloop\nendfacet\n")
+        file.write("endsolid crossed\n")
+
+
+def GetShown(path):
+    """What is visible in a state: the outputs of the mesher with the arrays that color them, and the
+    legends."""
+    (mesher,) = [proxy.get("id") for proxy in ElementTree.parse(path).getroot().iter("Proxy")
+                 if proxy.get("type") == "ConformingDelaunayMesher"]
+    outputs = {}
+    legends = set()
+    for proxy in ElementTree.parse(path).getroot().iter("Proxy"):
+        options = {option.get("name"): option for option in proxy.iter("Property")}
+        values = {name: [element.get("value") for element in option.iter("Element")]
+                  for name, option in options.items()}
+        if values.get("Visibility") != ["1"]:
+            continue
+        if "ScalarBar" in proxy.get("type"):
+            legends.update(values["Title"])
+        elif "ColorArrayName" in options:
+            given = options["Input"].find("Proxy")
+            if given.get("value") == mesher:
+                outputs[int(given.get("output_port"))] = values["ColorArrayName"][-1]
+    return outputs, legends
+
+
+def GetBlueness(path):
+    """How much of the middle is blue, as the mesh of region 0 is, and how much rather yellow."""
+    pixels = ImageComparison.ReadPixels(path)
+    height, width, _ = pixels.shape
+    middle = pixels[height // 4: 3 * height // 4, width // 4: 3 * width // 4]
+    difference = middle[:, :, 2] - middle[:, :, 0] - (pixels[-1, -1, 2] - pixels[-1, -1, 0])
+    return (difference > 20).mean(), (difference < -40).mean()
+
+
+def CheckRepair(folder):
+    """Problems are where there is no mesh, and a mesh after them looks as any."""
+    WriteCrossed(os.path.join(folder, "crossed.stl"))
+    GuiTesting.Run(folder, "Repair.xml", failures=("intersects itself", "returned failure"))
+    for name, hasMesh in (("failed", False), ("repaired", True), ("broken", False), ("mended", True)):
+        outputs, legends = GetShown(os.path.join(folder, name + ".pvsm"))
+        blue, yellow = GetBlueness(os.path.join(folder, name + ".png"))
+        print("%s: outputs %s, legends %s, %.0f %% mesh, %.0f %% problems" % (
+            name, outputs, sorted(legends), 100 * blue, 100 * yellow))
+        assert outputs.get(2) == (None if hasMesh else "ProblemKind"), outputs
+        assert ("ProblemKind" in legends) != hasMesh, legends
+        assert (blue > 0.2) == hasMesh and (yellow > 0.2) != hasMesh
+        if hasMesh:
+            assert outputs == {0: "RegionId"} and legends == {"RegionId"}, (outputs, legends)
+    shutil.copy(os.path.join(folder, "broken.png"),
+                os.path.join(os.environ["CDM_OUTPUT_DIR"], "GuiBroken.png"))
+    shutil.copy(os.path.join(folder, "mended.png"),
+                os.path.join(os.environ["CDM_OUTPUT_DIR"], "GuiMended.png"))
+
+
 with tempfile.TemporaryDirectory() as folder:
     shutil.copy(os.path.join(os.environ["CDM_SOURCE_DIR"], "Plugin", "Examples",
                              "mos_transistor.pvsm"), folder)
@@ -67,5 +137,8 @@ with tempfile.TemporaryDirectory() as folder:
     if "CDM_HAS_CLIENT_PART" in os.environ:
         CheckLegend(os.path.join(folder, "redone.pvsm"))
     shutil.copy(picture, os.path.join(os.environ["CDM_OUTPUT_DIR"], "Gui.png"))
+if "CDM_HAS_CLIENT_PART" in os.environ:
+    with tempfile.TemporaryDirectory() as folder:
+        CheckRepair(folder)
 print("gui: ok")
 sys.exit(0)

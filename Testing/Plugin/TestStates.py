@@ -11,6 +11,8 @@ made anew.
 """
 
 import glob
+import itertools
+import math
 import os
 import runpy
 import tempfile
@@ -181,12 +183,13 @@ def CheckCertificate():
 
 
 def CheckRegionColors():
-    """Ids that are not 0 to n get a legend of those that are there; very many get none."""
+    """Ids that are not 0 to n get a legend of those that are there, each with a color of its own; very
+    many get none."""
     Start()
     view = CreateRenderView(ViewSize=[600, 450])
     cut = runpy.run_path(os.path.join(MACROS, "region_cut.py"))["CutRegions"]
     mesh = ConformingDelaunayMesher(Input=Box(), MeshFor="Fewest points", MaximumEdgeLength=0.25)
-    for count, step in ((15, 7144), (40, 1)):
+    for count, step in ((15, 7144), (30, 3450), (40, 1)):
         renamed = ProgrammableFilter(Input=mesh, Script=(
             "import numpy\n"
             "count = inputs[0].GetNumberOfCells()\n"
@@ -200,7 +203,11 @@ def CheckRegionColors():
             assert ids[-1] > 100000
             assert list(colors.Annotations) == [
                 text for i in ids for text in (str(i), "Region %d" % i)], colors.Annotations
+            found = [colors.IndexedColors[i:i + 3] for i in range(0, 3 * count, 3)]
             assert len(colors.IndexedColors) == 3 * count
+            nearest = sorted(math.dist(a, b) for a, b in itertools.combinations(found, 2))[0]
+            print("%d regions: the nearest colors differ by %.2f" % (count, nearest))
+            assert nearest > 0.05, nearest
     Delete(view)
 
 
