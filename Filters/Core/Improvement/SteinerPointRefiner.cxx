@@ -52,7 +52,7 @@ private:
   bool IsOutOfRounds() const { return this->Output.Report.Rounds >= MaximumRounds; }
   void FindFaults();
   SteinerFault FindFault(const TetrahedronIds& ids, Id region) const;
-  bool IsInevitable(const TetrahedronIds& ids, Id region, SharpAngleUse use) const;
+  bool IsInevitable(const TetrahedronIds& ids, Id region) const;
 
   const SteinerPointRefinerInput& Input;
   const SteinerPointRefinerOptions& Options;
@@ -165,12 +165,11 @@ RoundResult SteinerPointRefinement::RunShapeRound()
 }
 
 /** Whether a tetrahedron of the output is in a thin layer or at a sharp angle. */
-bool SteinerPointRefinement::IsInevitable(
-  const TetrahedronIds& ids, Id region, SharpAngleUse use) const
+bool SteinerPointRefinement::IsInevitable(const TetrahedronIds& ids, Id region) const
 {
   const BoundaryShape& shape = this->Rounds.GetMesh().GetShape();
   return shape.Layers.IsAcross(ids, region) || shape.Sharp.IsAtCorner(ids) ||
-    shape.Sharp.IsAcross(ids, use);
+    shape.Sharp.IsAcross(ids);
 }
 
 SteinerFault SteinerPointRefinement::FindFault(const TetrahedronIds& ids, Id region) const
@@ -184,17 +183,14 @@ SteinerFault SteinerPointRefinement::FindFault(const TetrahedronIds& ids, Id reg
     return SteinerFault::Size;
   }
   const bool isBadlyShaped = fault == TetrahedronFault::Shape;
-  const bool isSliver =
-    GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]) < this->Options.DihedralAngleTarget;
-  if (isBadlyShaped && !this->IsInevitable(ids, region, SharpAngleUse::Shape))
+  if (!isBadlyShaped &&
+    !(GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]) < this->Options.DihedralAngleTarget))
   {
-    return SteinerFault::Shape;
+    return SteinerFault::None;
   }
-  if (isSliver && !this->IsInevitable(ids, region, SharpAngleUse::Sliver))
-  {
-    return SteinerFault::Sliver;
-  }
-  return isBadlyShaped || isSliver ? SteinerFault::Inevitable : SteinerFault::None;
+  return this->IsInevitable(ids, region) ? SteinerFault::Inevitable
+    : isBadlyShaped                      ? SteinerFault::Shape
+                                         : SteinerFault::Sliver;
 }
 
 void SteinerPointRefinement::FindFaults()

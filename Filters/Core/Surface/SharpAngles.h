@@ -14,8 +14,9 @@
  * stops there, and tetrahedra from one side to the other ("across") keep the shape that they have.
  *
  * A face with the plane angle a makes the radius-edge ratio of its tetrahedron at least
- * 1 / (2 sin a), but leaves the dihedral angles free. So for slivers plane angles and tips are sharp
- * below 12 degrees only. Below that nearly all attempts are in vain, and take most of the time.
+ * 1 / (2 sin a), but leaves the dihedral angles free. So slivers are mended where plane angles and
+ * tips have 12 degrees or more. Below that nearly all attempts are in vain, and take most of the
+ * time.
  *
  * A side is a surface facet (triangles that no structural edge separates), or a structural edge
  * with the edges that go straight on from it. Facets that meet in a tip may be far apart elsewhere:
@@ -48,7 +49,7 @@ constexpr double SharpPlaneAngleOfEmptySpheres = 60.0;
 /** The same for slivers. */
 constexpr double SharpPlaneAngleOfSlivers = 12.0;
 
-/** What a sharp angle excuses: a large radius-edge ratio, or a small dihedral angle. */
+/** What is left as it is at a sharp angle: a large radius-edge ratio, or a small dihedral angle. */
 enum class SharpAngleUse
 {
   Shape,
