@@ -136,11 +136,12 @@ bool BoundaryRequests::AddEdgeOfTwoTriangles(
   return false;
 }
 
-void BoundaryRequests::AddEdgeOrTriangle(const EdgeIds& ends, const IdLists& pointTriangles)
+void BoundaryRequests::AddEdgeOrTriangle(
+  const EdgeIds& ends, const IdLists& pointTriangles, bool isDistanceKept)
 {
   if (const StructuralEdge* const edge = FindStructuralEdge(this->SurfaceEdges, ends))
   {
-    this->AddEdge(static_cast<Id>(edge - this->SurfaceEdges.data()), true);
+    this->AddEdge(static_cast<Id>(edge - this->SurfaceEdges.data()), isDistanceKept);
     return;
   }
   std::vector<Id> triangles;
@@ -152,7 +153,7 @@ void BoundaryRequests::AddEdgeOrTriangle(const EdgeIds& ends, const IdLists& poi
       triangles.push_back(t);
     }
   }
-  this->AddLargest(triangles);
+  this->AddLargest(triangles, isDistanceKept);
 }
 
 void BoundaryRequests::AddLargestTriangle(const TetrahedronIds& ids, const IdLists& pointTriangles)
@@ -165,11 +166,11 @@ void BoundaryRequests::AddLargestTriangle(const TetrahedronIds& ids, const IdLis
       triangles.insert(triangles.end(), pointTriangles[id].begin(), pointTriangles[id].end());
     }
   }
-  this->AddLargest(triangles);
+  this->AddLargest(triangles, true);
 }
 
 /** Requests the largest of the triangles that may be split. */
-void BoundaryRequests::AddLargest(const std::vector<Id>& triangles)
+void BoundaryRequests::AddLargest(const std::vector<Id>& triangles, bool isDistanceKept)
 {
   double largest = 0.0;
   Id best = NoId;
@@ -178,7 +179,7 @@ void BoundaryRequests::AddLargest(const std::vector<Id>& triangles)
     const TriangleIds& corners = this->Surface.Triangles[t];
     const double radius = Norm(GetCircumcenterOffset(this->Surface.Points[corners[0]],
       this->Surface.Points[corners[1]], this->Surface.Points[corners[2]]));
-    if (radius > largest && this->MayHavePoint(corners, radius))
+    if (radius > largest && (!isDistanceKept || this->MayHavePoint(corners, radius)))
     {
       largest = radius;
       best = t;

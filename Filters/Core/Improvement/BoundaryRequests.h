@@ -3,8 +3,9 @@
  * @file BoundaryRequests.h
  * @brief Requests to split the boundary, for tetrahedra that no interior point can improve.
  *
- * A request names an edge or a triangle of the boundary. Each is requested at most once, and only
- * if a new point may come as close to its corners as the split would put it.
+ * A request names an edge or a triangle of the boundary. Each is requested at most once, and, but
+ * for negative couplings that nothing else helps, only if a new point may come as close to its
+ * corners as the split would put it.
  *
  * Reference: J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998,
  * doi:10.1145/276884.276894 (what is split instead of a point that it keeps out).
@@ -47,8 +48,11 @@ public:
    * @return whether the tetrahedron is such a one; then the edge is requested
    */
   bool AddEdgeOfTwoTriangles(const TetrahedronIds& ids, const IdLists& pointTriangles);
-  /** Requests an edge of the boundary; if it lies within a facet, the largest triangle at it. */
-  void AddEdgeOrTriangle(const EdgeIds& ends, const IdLists& pointTriangles);
+  /**
+   * Requests an edge of the boundary; if it lies within a facet, the largest triangle at it.
+   * @param isDistanceKept whether the distance rule applies
+   */
+  void AddEdgeOrTriangle(const EdgeIds& ends, const IdLists& pointTriangles, bool isDistanceKept);
   /** Requests the largest boundary triangle at the tetrahedron's points that may be split. */
   void AddLargestTriangle(const TetrahedronIds& ids, const IdLists& pointTriangles);
 
@@ -61,7 +65,7 @@ private:
   bool MayHavePoint(const Ids& ids, double distance) const;
   bool AddEdge(Id edge, bool isDistanceKept);
   void AddTriangle(Id triangle);
-  void AddLargest(const std::vector<Id>& triangles);
+  void AddLargest(const std::vector<Id>& triangles, bool isDistanceKept);
 
   const TriangleMesh& Surface;
   const std::vector<StructuralEdge>& SurfaceEdges;

@@ -203,9 +203,14 @@ std::size_t RefinedMesh::RequestNegativeCouplings()
 {
   const std::vector<EdgeIds>& edges =
     this->Couplings.Update(this->Mesh, this->Boundary.Surface, this->Shape->PointTriangles);
-  for (const EdgeIds& edge : edges)
+  const std::size_t before = this->Requests.GetNumber();
+  for (bool isDistanceKept : { true, false })
   {
-    this->Requests.AddEdgeOrTriangle(edge, this->Shape->PointTriangles);
+    for (std::size_t i = 0;
+         i < edges.size() && (isDistanceKept || this->Requests.GetNumber() == before); ++i)
+    {
+      this->Requests.AddEdgeOrTriangle(edges[i], this->Shape->PointTriangles, isDistanceKept);
+    }
   }
   return edges.size();
 }

@@ -126,7 +126,8 @@ public:
    */
   bool RequestEncroached(const Vec3& position, bool isSizeKept);
   /**
-   * Requests splits of edges with a negative coupling, or of triangles at those within facets.
+   * Requests splits of edges with a negative coupling, or of triangles at those within facets. If
+   * the distances that sizes ask for allow none of them, one is requested all the same.
    * @return number of edges with a negative coupling, whether they may be split or not
    */
   std::size_t RequestNegativeCouplings();

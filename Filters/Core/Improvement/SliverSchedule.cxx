@@ -17,7 +17,7 @@ constexpr int MaximumSliverRounds = 40;
 /** Moves of the boundary's points in a row that leave as many slivers as before. */
 constexpr int MaximumMoves = 4;
 /** Rounds in a row that split the boundary for negative couplings in vain. */
-constexpr int MaximumCouplingRounds = 12;
+constexpr int MaximumCouplingRounds = 4;
 /** Roundings of points in a row that do not do away with a quarter of the flat tetrahedra. */
 constexpr int MaximumRoundings = 3;
 constexpr double RoundingGain = 0.75;
