@@ -2,6 +2,7 @@
 #include "Core/Basics/SortedIds.h"
 #include "Core/Certificate/MeshCertificate.h"
 #include "Core/Improvement/NegativeCouplings.h"
+#include "Core/Improvement/RefinedMesh.h"
 #include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
@@ -63,21 +64,56 @@ std::vector<EdgeIds> FindAll(const TetMesh& mesh, const TriangleMesh& boundary)
   return NegativeCouplings().Update(DynamicTetrahedralization(mesh), boundary,
     ListTrianglesAtPoints(boundary.Triangles, boundary.Points.size()));
 }
-} // namespace
 
 /** Two of its edges, opposite to each other, have points in their smallest spheres, no facet has. */
-TEST(NegativeCouplings, OfATetrahedron)
+TetMesh MakeObtuseTetrahedron()
 {
   TetMesh mesh;
   mesh.Points = { { 2.0, 1.0, 0.0 }, { 3.0, 1.0, 0.0 }, { 0.0, 5.0, 0.0 }, { 4.0, 5.0, 6.0 } };
   mesh.Tetrahedra = { { 0, 1, 2, 3 } };
+  mesh.Neighbors = { { NoId, NoId, NoId, NoId } };
   mesh.Regions = { 0 };
+  return mesh;
+}
+
+TriangleMesh MakeBoundary(const TetMesh& tetrahedron)
+{
   TriangleMesh boundary;
-  boundary.Points = mesh.Points;
+  boundary.Points = tetrahedron.Points;
   boundary.Triangles = { { 0, 2, 1 }, { 0, 1, 3 }, { 1, 2, 3 }, { 2, 0, 3 } };
+  boundary.Labels.assign(4, { NoId, 0 });
+  boundary.SourceCells = { 0, 1, 2, 3 };
+  return boundary;
+}
+} // namespace
+
+TEST(NegativeCouplings, OfATetrahedron)
+{
+  const TetMesh mesh = MakeObtuseTetrahedron();
+  const TriangleMesh boundary = MakeBoundary(mesh);
   const std::vector<EdgeIds> edges = FindAll(mesh, boundary);
   EXPECT_EQ(edges, (std::vector<EdgeIds>{ { 0, 3 }, { 1, 2 } }));
   EXPECT_EQ(edges, FindByCertificate(mesh, boundary));
+}
+
+/** Splits come closer to other points than sizes ask for, where no other split helps. */
+TEST(NegativeCouplings, AreSplitWhateverTheSizes)
+{
+  for (double size : { 0.0, 1000.0 })
+  {
+    SCOPED_TRACE(size);
+    const TetMesh mesh = MakeObtuseTetrahedron();
+    TriangleMesh boundary = MakeBoundary(mesh);
+    StructuralEdgesOutput structural;
+    ASSERT_TRUE(ExtractStructuralEdges(boundary, {}, {}, structural).IsOk());
+    SliverMemory memory;
+    RefinedMeshOptions options;
+    options.SurfaceSizes.assign(4, size);
+    RefinedMesh refined(
+      mesh, { boundary, structural.Edges, structural.Edges }, {}, memory, options);
+    EXPECT_EQ(refined.RequestNegativeCouplings(), 2U);
+    EXPECT_EQ(refined.GetRequests().Edges.size(), size > 0.0 ? 1U : 2U);
+  }
 }
 
 TEST(NegativeCouplings, AreThoseOfTheCertificate)
