@@ -204,13 +204,13 @@ std::size_t RefinedMesh::RequestNegativeCouplings()
   const std::vector<EdgeIds>& edges =
     this->Couplings.Update(this->Mesh, this->Boundary.Surface, this->Shape->PointTriangles);
   const std::size_t before = this->Requests.GetNumber();
-  for (bool isDistanceKept : { true, false })
+  for (const EdgeIds& edge : edges)
   {
-    for (std::size_t i = 0;
-         i < edges.size() && (isDistanceKept || this->Requests.GetNumber() == before); ++i)
-    {
-      this->Requests.AddEdgeOrTriangle(edges[i], this->Shape->PointTriangles, isDistanceKept);
-    }
+    this->Requests.AddEdgeOrTriangle(edge, this->Shape->PointTriangles, true);
+  }
+  for (std::size_t i = 0; i < edges.size() && this->Requests.GetNumber() == before; ++i)
+  {
+    this->Requests.AddEdgeOrTriangle(edges[i], this->Shape->PointTriangles, false);
   }
   return edges.size();
 }

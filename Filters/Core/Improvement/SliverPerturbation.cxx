@@ -204,7 +204,7 @@ bool Perturbation::Move(Id point, int patience)
       : 0.0;
   };
   Place best{ old, before.Aimed + SmallestGain, false };
-  SearchMove(old, (1.0 / count) * sum, nearest, this->Goal.Target, patience, rate, best);
+  SearchMove(old, (1.0 / count) * sum, nearest, this->Goal.Target, rate, best, patience);
 
   if (this->Goal.Means != SliverMeans::Moves &&
     std::count(isBroken.begin(), isBroken.end(), 1) <= broken &&
@@ -251,7 +251,7 @@ bool Perturbation::InsertBest(Id tetrahedron, int patience)
   Place best{ center, this->Mesh.GetAngle(tetrahedron) + SmallestGain, false };
   TryPlace(center, rate, best);
   SearchPlace(center, FirstInsertion * Distance(center, a), MakeCubeDirections(), this->Goal.Target,
-    patience, rate, best);
+    rate, best, patience);
   if (!best.IsFound || !this->Mesh.FindCavity(best.Position, tetrahedron))
   {
     return false;

@@ -769,7 +769,7 @@ bool SliverRemoval::FindBetterPosition(Id point, const std::vector<Id>& star, Ve
   };
   Place best{ old, smallest + SmallestGain, false };
   const Vec3 mean = (1.0 / (3.0 * static_cast<double>(star.size()))) * sum;
-  SearchMove(old, mean, nearest, this->Target, MaximumSearchSteps, rate, best);
+  SearchMove(old, mean, nearest, this->Target, rate, best);
   position = best.Position;
   return best.IsFound;
 }

@@ -451,7 +451,7 @@ bool SurfacePointMoves::Move(Id point, const TetrahedronIds& sliver, double targ
       TryPlace(Project(this->Mesh.GetPoint(other), old, support.Axis, support.IsLine), rate, best);
     }
   }
-  SearchPlace(old, FirstMove * nearest, support.Directions, target, MaximumSearchSteps, rate, best);
+  SearchPlace(old, FirstMove * nearest, support.Directions, target, rate, best);
   if (!best.IsFound)
   {
     return false;

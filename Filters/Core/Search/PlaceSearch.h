@@ -73,7 +73,7 @@ constexpr int MaximumSearchSteps = 5;
  */
 template <typename Rate>
 void SearchPlace(const Vec3& start, double step, const std::vector<Vec3>& directions, double target,
-  int patience, Rate&& rate, Place& best)
+  Rate&& rate, Place& best, int patience = MaximumSearchSteps)
 {
   for (int i = 0; i < MaximumSearchSteps && best.Angle < target && (best.IsFound || i < patience);
        ++i)
@@ -93,12 +93,12 @@ void SearchPlace(const Vec3& start, double step, const std::vector<Vec3>& direct
  * @param nearest distance to its nearest neighbor
  */
 template <typename Rate>
-void SearchMove(const Vec3& old, const Vec3& mean, double nearest, double target, int patience,
-  Rate&& rate, Place& best)
+void SearchMove(const Vec3& old, const Vec3& mean, double nearest, double target, Rate&& rate,
+  Place& best, int patience = MaximumSearchSteps)
 {
   TryPlace(mean, rate, best);
   TryPlace(0.5 * (old + mean), rate, best);
-  SearchPlace(old, FirstMove * nearest, MakeCubeDirections(), target, patience, rate, best);
+  SearchPlace(old, FirstMove * nearest, MakeCubeDirections(), target, rate, best, patience);
 }
 } // namespace cdm
 

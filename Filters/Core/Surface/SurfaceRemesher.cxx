@@ -530,7 +530,7 @@ bool Remesher::EnlargeAngles(const ExecutionContext& context)
     };
     if (best.Angle < WantedAngle)
     {
-      SearchPlace(old, step, directions, WantedAngle, MaximumSearchSteps, rate, best);
+      SearchPlace(old, step, directions, WantedAngle, rate, best);
     }
     Vec3 place;
     if (best.IsFound && this->Surface.FindNearestOriginal(point, best.Position, step, place))
