@@ -90,7 +90,7 @@ public:
   };
 
   ///@{
-  /** Of the last run: the line of text, and whether the mesh is ready for the box method. */
+  /** The text of the last run, a line, and whether the mesh is ready for the box method. */
   vtkGetMacro(Certificate, std::string);
   vtkGetMacro(IsClean, bool);
   ///@}

@@ -10,7 +10,7 @@ class pqPipelineSource;
 
 namespace OwnSources
 {
-/** By its place in the menus. */
+/** Whether a source is one of this plugin, by its place in the menus. */
 bool IsOurs(pqPipelineSource* source);
 } // namespace OwnSources
 

@@ -109,7 +109,7 @@ bool HasNegativeCouplingInAnyRegion(
 std::vector<EdgeIds> FindNegative(
   const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfPoints)
 {
-  // Of each edge the tetrahedra, as in SimplexIncidence.
+  // The tetrahedra at each edge, as in SimplexIncidence.
   std::vector<std::pair<EdgeIds, Id>> simplices;
   ForEachCandidate(mesh, edges, numberOfPoints,
     [&](Id tetrahedron, int i, const EdgeIds& edge)

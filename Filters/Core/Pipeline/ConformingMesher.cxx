@@ -167,7 +167,7 @@ Status ConformingMesher::TriangulateSurface()
   return this->ChooseSettings();
 }
 
-/** By the surface as it is after its repair. */
+/** Sizes are chosen by the surface as it is after its repair. */
 Status ConformingMesher::ChooseSettings()
 {
   const MeshOptionChoices& given = this->Options.Choices;

@@ -65,7 +65,7 @@ struct MeshOptionChoices
   std::optional<double> DihedralAngleTarget;
   /** Circumradius to shortest edge, with Steiner points. 0 (off) or at least 1. */
   std::optional<double> RadiusEdgeRatio;
-  /** Of the surface, with Steiner points of the volume too. Model units, 0 (off) or above. */
+  /** Edges of the surface, with Steiner points all edges. Model units, 0 (off) or above. */
   std::optional<double> MaximumEdgeLength;
 };
 

@@ -17,7 +17,7 @@ namespace cdm
 {
 namespace
 {
-/** Of the maximum edge length: the wanted length of edges, which get a third longer or shorter. */
+/** The wanted length of edges, in maximum edge lengths; edges get a third longer or shorter. */
 constexpr double WantedLengthRatio = 0.75;
 /** The automatic bound, of the maximum edge length and of the thickness of regions. */
 constexpr double AutomaticRatio = 0.1;
@@ -115,7 +115,7 @@ public:
       : this->History.SurfacePoints[point - given];
   }
 
-  /** Of up to nine points of the input the three that weigh most. */
+  /** The three that weigh most of up to nine points of the input. */
   PointParents Compose(const PointParents& parents) const
   {
     std::map<Id, double> weights;

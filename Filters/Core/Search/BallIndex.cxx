@@ -201,7 +201,7 @@ void BallIndex::Find(const Cell& cell, const Vec3& point, std::vector<Id>& ids)
   for (std::size_t b = 0; b < cell.Blocks.size(); ++b)
   {
     const Block& block = cell.Blocks[b];
-    // Of constant length and without branches: compilers make vector instructions of it.
+    // The loop has constant length and no branches: compilers make vector instructions of it.
     std::int32_t isHit[BlockSize];
     std::int32_t isAnyHit = 0;
     for (std::size_t i = 0; i < BlockSize; ++i)

@@ -17,7 +17,7 @@ namespace
 {
 constexpr double DiagonalRatio = 0.05;
 constexpr double Tetrahedra = 25000.0;
-/** Of edges of this length: in the cube of an edge, and at a square of the surface. */
+/** Tetrahedra with edges of length 1: in a unit of volume, and at a unit of the surface. */
 constexpr double TetrahedraPerVolume = 8.5;
 constexpr double TetrahedraPerArea = 7.0;
 
@@ -30,7 +30,7 @@ struct RegionExtent
   double GetThickness() const { return 2.0 * this->GetVolume() / this->Area; }
 };
 
-/** By region. Empty if the regions are not known. */
+/** Measures of each region. Empty if the regions are not known. */
 std::map<Id, RegionExtent> MeasureRegions(const TriangleMesh& surface)
 {
   std::map<Id, RegionExtent> regions;

@@ -32,7 +32,7 @@ namespace cdm
 struct RegionSize
 {
   Id Region = 0;
-  /** Of the longest edge, in model units; > 0. Of several ones of a region the smallest counts. */
+  /** The longest edge, in model units; > 0. The smallest of several for a region counts. */
   double Length = 0.0;
 };
 

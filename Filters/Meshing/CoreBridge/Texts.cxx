@@ -35,10 +35,10 @@ std::string Encode(const std::string& text)
   return encoded;
 }
 
-/** Of an encoded text, at least one; they end behind a space where there is one, and at no code. */
+/** Cuts an encoded text: pieces end behind a space if there is one, and never within a code. */
 std::vector<std::string> Split(const std::string& encoded)
 {
-  // As VTK's legacy files encode a piece again it gets up to three times as long.
+  // A piece gets up to three times as long, as VTK's legacy files encode it again.
   constexpr std::size_t longest = 80;
   std::vector<std::string> pieces;
   std::size_t begin = 0;

@@ -242,7 +242,7 @@ void BlockDistribution::CopyStructure(vtkDataObjectTree* input, vtkDataObjectTre
 {
   if (auto collection = vtkPartitionedDataSetCollection::SafeDownCast(input))
   {
-    // Of its structure without the partitions, which the blocks of the output do not have.
+    // Its structure is kept without the partitions, which the blocks of the output do not have.
     auto to = vtkPartitionedDataSetCollection::SafeDownCast(output);
     to->SetNumberOfPartitionedDataSets(collection->GetNumberOfPartitionedDataSets());
     for (unsigned int i = 0; i < collection->GetNumberOfPartitionedDataSets(); ++i)

@@ -27,7 +27,7 @@ struct DevsimScriptOptions
   std::string Device;
   /** Factor of the lengths. */
   double Scale = 1.0;
-  /** By point of the grid: node solutions. */
+  /** Node solutions, one value for each point of the grid. */
   std::vector<vtkDataArray*> PointArrays;
 };
 

@@ -26,7 +26,7 @@ struct GmshFileOptions
   bool IsVersion4 = false;
   /** Factor of the coordinates. */
   double Scale = 1.0;
-  /** By point and by cell of the grid; up to nine components. */
+  /** Arrays of the points and of the cells of the grid; up to nine components. */
   std::vector<vtkDataArray*> PointArrays;
   std::vector<vtkDataArray*> CellArrays;
 };

@@ -46,7 +46,7 @@ struct PhysicalGroup
   /** Those that have all facets of it, ascending: one, or two. */
   std::vector<cdm::Id> Regions;
   std::string Name;
-  /** Of a surface; they look out of the first region. */
+  /** Facets, if it is a surface; they look out of the first region. */
   std::vector<GroupFacet> Facets;
 
   int GetDimension() const { return this->Kind == Region ? 3 : 2; }
