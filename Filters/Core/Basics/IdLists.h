@@ -8,6 +8,7 @@
 #ifndef cdmIdLists_h
 #define cdmIdLists_h
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Basics/Types.h"
 
 #include <algorithm>
@@ -103,13 +104,14 @@ inline IdLists ListTrianglesAtPoints(
 inline bool IsTriangle(const std::vector<TriangleIds>& triangles, const IdLists& pointTriangles,
   const TriangleIds& points)
 {
-  if (points[0] >= pointTriangles.GetNumberOfOwners())
+  const Id count = pointTriangles.GetNumberOfOwners();
+  if (points[0] >= count || points[1] >= count || points[2] >= count)
   {
     return false;
   }
   const IdLists::Range around = pointTriangles[points[0]];
   return std::any_of(around.begin(), around.end(),
-    [&](Id t) { return std::is_permutation(points.begin(), points.end(), triangles[t].begin()); });
+    [&](Id t) { return Contains(triangles[t], points[1]) && Contains(triangles[t], points[2]); });
 }
 } // namespace cdm
 
