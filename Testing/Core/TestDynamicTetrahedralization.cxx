@@ -179,6 +179,27 @@ void ExpectUndone(const TetMesh& before, const std::vector<std::int64_t>& stamps
   }
 }
 
+/** Whoever looks at facets as they are found sees those of the cavity, and may end the search. */
+void ExpectFacetsAsTheyAreFound(DynamicTetrahedralization& mesh, const Vec3& position,
+  const DynamicTetrahedralization::PointCavity& cavity)
+{
+  for (std::size_t last = 0; last <= cavity.Facets.size(); ++last)
+  {
+    DynamicTetrahedralization::PointCavity again;
+    std::vector<TriangleIds> facets;
+    const bool isFound =
+      mesh.FindCavity(position, mesh.GetNumberOfPoints(), cavity.Tetrahedra.front(), again,
+        [&](const TriangleIds& facet)
+        {
+          facets.push_back(facet);
+          return facets.size() <= last;
+        });
+    EXPECT_EQ(isFound, last == cavity.Facets.size());
+    EXPECT_EQ(facets.size(), std::min(last + 1, cavity.Facets.size()));
+    EXPECT_TRUE(std::equal(facets.begin(), facets.end(), cavity.Facets.begin()));
+  }
+}
+
 /** Inserts, removes and moves points at random; getPosition() proposes places. */
 template <typename GetPosition>
 void Exercise(const DelaunaySurfaceRefinerOutput& refined, int steps, std::mt19937_64& generator,
@@ -199,6 +220,7 @@ void Exercise(const DelaunaySurfaceRefinerOutput& refined, int steps, std::mt199
     {
       if (FindCavity(mesh, spheres, position, mesh.GetNumberOfPoints(), cavity))
       {
+        ExpectFacetsAsTheyAreFound(mesh, position, cavity);
         inside.push_back(mesh.Insert(position, cavity));
         ++changes[0];
       }

@@ -115,60 +115,18 @@ bool DynamicTetrahedralization::IsInConflict(Id tetrahedron, const Vec3& positio
 bool DynamicTetrahedralization::FindCavity(
   const Vec3& position, Id number, Id first, PointCavity& cavity)
 {
-  cavity.Tetrahedra.clear();
-  cavity.Facets.clear();
-  cavity.Outer.clear();
-  if (!this->IsInConflict(first, position, number))
-  {
-    return false;
-  }
-  const std::uint32_t stays = this->StartSearch();
-  const std::uint32_t removed = stays + 1;
-  cavity.Tetrahedra.push_back(first);
-  this->Marks[first] = removed;
-  for (std::size_t k = 0; k < cavity.Tetrahedra.size(); ++k)
-  {
-    const Id t = cavity.Tetrahedra[k];
-    for (int i = 0; i < 4; ++i)
+  return this->FindCavity(position, number, first, cavity, [](const TriangleIds&) { return true; });
+}
+
+/** Whether all facets around a cavity are in front of the position. */
+bool DynamicTetrahedralization::IsVisible(const PointCavity& cavity, const Vec3& position) const
+{
+  return std::all_of(cavity.Facets.begin(), cavity.Facets.end(),
+    [&](const TriangleIds& facet)
     {
-      const Id outer = this->Mesh.Neighbors[t][i];
-      bool isBorder = true;
-      if (outer != NoId)
-      {
-        std::uint32_t& mark = this->Marks[outer / 4];
-        const bool isNew = mark != stays && mark != removed;
-        if (isNew)
-        {
-          mark = this->IsInConflict(outer / 4, position, number) ? removed : stays;
-        }
-        isBorder = mark == stays;
-        if (!isBorder && this->IsBoundary(t, i))
-        {
-          return false;
-        }
-        if (isNew && !isBorder)
-        {
-          cavity.Tetrahedra.push_back(outer / 4);
-        }
-      }
-      if (isBorder)
-      {
-        const TriangleIds facet = GetFacet(this->Mesh.Tetrahedra[t], i);
-        cavity.Facets.push_back({ facet[0], facet[2], facet[1] });
-        cavity.Outer.push_back(outer);
-      }
-    }
-  }
-  // Facets inside of a region are in front of the point by themselves.
-  for (const TriangleIds& facet : cavity.Facets)
-  {
-    if (Orientation(this->Mesh.Points[facet[0]], this->Mesh.Points[facet[1]],
-          this->Mesh.Points[facet[2]], position) <= 0)
-    {
-      return false;
-    }
-  }
-  return true;
+      return Orientation(this->Mesh.Points[facet[0]], this->Mesh.Points[facet[1]],
+               this->Mesh.Points[facet[2]], position) > 0;
+    });
 }
 
 Id DynamicTetrahedralization::Make(const TetrahedronIds& ids, Id region)

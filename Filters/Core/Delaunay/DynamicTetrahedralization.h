@@ -98,6 +98,14 @@ public:
    * the first tetrahedron, a boundary facet would vanish, or the point lies on or beyond one.
    */
   bool FindCavity(const Vec3& position, Id number, Id first, PointCavity& cavity);
+  /**
+   * The same, for a caller who has no use for most cavities.
+   * @param accepts is called with each facet of the cavity, in their order, as soon as it is found.
+   *   If it returns false, the search ends and returns false
+   */
+  template <typename Accepts>
+  bool FindCavity(
+    const Vec3& position, Id number, Id first, PointCavity& cavity, Accepts&& accepts);
 
   /** Appends a point and returns its id. The cavity must be that of this point and number. */
   Id Insert(const Vec3& position, const PointCavity& cavity);
@@ -134,6 +142,7 @@ private:
   Id Make(const TetrahedronIds& ids, Id region);
   void Kill(Id tetrahedron);
   void Fill(Id point, const PointCavity& cavity);
+  bool IsVisible(const PointCavity& cavity, const Vec3& position) const;
   /** Stamp of a new search; marks of older ones do not count. */
   std::uint32_t StartSearch();
 
@@ -164,6 +173,62 @@ private:
   std::vector<std::pair<std::uint64_t, Id>> Facets;
   CavityFilling Filling;
 };
+
+template <typename Accepts>
+bool DynamicTetrahedralization::FindCavity(
+  const Vec3& position, Id number, Id first, PointCavity& cavity, Accepts&& accepts)
+{
+  cavity.Tetrahedra.clear();
+  cavity.Facets.clear();
+  cavity.Outer.clear();
+  if (!this->IsInConflict(first, position, number))
+  {
+    return false;
+  }
+  const std::uint32_t stays = this->StartSearch();
+  const std::uint32_t removed = stays + 1;
+  cavity.Tetrahedra.push_back(first);
+  this->Marks[first] = removed;
+  for (std::size_t k = 0; k < cavity.Tetrahedra.size(); ++k)
+  {
+    const Id t = cavity.Tetrahedra[k];
+    for (int i = 0; i < 4; ++i)
+    {
+      const Id outer = this->Mesh.Neighbors[t][i];
+      bool isBorder = true;
+      if (outer != NoId)
+      {
+        std::uint32_t& mark = this->Marks[outer / 4];
+        const bool isNew = mark != stays && mark != removed;
+        if (isNew)
+        {
+          mark = this->IsInConflict(outer / 4, position, number) ? removed : stays;
+        }
+        isBorder = mark == stays;
+        if (!isBorder && this->IsBoundary(t, i))
+        {
+          return false;
+        }
+        if (isNew && !isBorder)
+        {
+          cavity.Tetrahedra.push_back(outer / 4);
+        }
+      }
+      if (isBorder)
+      {
+        const TriangleIds facet = GetFacet(this->Mesh.Tetrahedra[t], i);
+        cavity.Facets.push_back({ facet[0], facet[2], facet[1] });
+        cavity.Outer.push_back(outer);
+        if (!accepts(cavity.Facets.back()))
+        {
+          return false;
+        }
+      }
+    }
+  }
+  // Facets inside of a region are in front of the point by themselves.
+  return this->IsVisible(cavity, position);
+}
 } // namespace cdm
 
 #endif

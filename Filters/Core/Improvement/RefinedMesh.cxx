@@ -408,12 +408,6 @@ TetrahedronIds RefinedMesh::GetNames(const TetrahedronIds& ids) const
   return names;
 }
 
-bool RefinedMesh::FindCavity(const Vec3& position, Id first, Id number)
-{
-  return this->Mesh.FindCavity(
-    position, number == NoId ? this->Mesh.GetNumberOfPoints() : number, first, this->FoundCavity);
-}
-
 Id RefinedMesh::CountBroken(const Vec3& position) const
 {
   constexpr Id inside = std::numeric_limits<Id>::max();

@@ -193,7 +193,16 @@ public:
    * refer to this cavity.
    * @param number id of the point; NoId: that of the next new point
    */
-  bool FindCavity(const Vec3& position, Id first, Id number = NoId);
+  bool FindCavity(const Vec3& position, Id first, Id number = NoId)
+  {
+    return this->FindCavity(position, first, number, [](const TriangleIds&) { return true; });
+  }
+  template <typename Accepts>
+  bool FindCavity(const Vec3& position, Id first, Id number, Accepts&& accepts)
+  {
+    return this->Mesh.FindCavity(position, number == NoId ? this->Mesh.GetNumberOfPoints() : number,
+      first, this->FoundCavity, accepts);
+  }
   const DynamicTetrahedralization::PointCavity& GetCavity() const { return this->FoundCavity; }
   /** Number of tetrahedra that would break a limit if the cavity were filled from the position. */
   Id CountBroken(const Vec3& position) const;

@@ -54,13 +54,17 @@ private:
   };
   void Include(Id tetrahedron, SmallestAngles& smallest) const;
   double GetFloor(const SmallestAngles& before) const;
-  double RateCavity(const Vec3& position, double floor, double required) const;
+  bool IsAimed(const TriangleIds& facet, double angle) const;
+  bool FindCavity(const Vec3& position, Id first, Id number, double floor, double required);
+  double RateCavity(double floor, double required) const;
   bool Move(Id point, int patience);
   bool InsertBest(Id tetrahedron, int patience);
 
   const Aim Goal;
   RefinedMesh& Mesh;
   DynamicTetrahedralization& Tetrahedra;
+  /** Smallest angles of the tetrahedra that would fill the mesh's cavity, facet by facet. */
+  std::vector<double> Angles;
 };
 
 /** Angles over the target always count. */
@@ -80,22 +84,47 @@ double Perturbation::GetFloor(const SmallestAngles& before) const
                             : std::min(before.Aimed, before.Other);
 }
 
-/**
- * Smallest angle among the tetrahedra aimed at if the cavity were filled from the position. 0 if
- * another tetrahedron falls below the floor, or as soon as the angle is not larger than required.
- */
-double Perturbation::RateCavity(const Vec3& position, double floor, double required) const
+/** Whether the change is to improve the tetrahedron of a facet of the cavity and the new point. */
+bool Perturbation::IsAimed(const TriangleIds& facet, double angle) const
 {
   constexpr Id inside = std::numeric_limits<Id>::max();
-  const SharpAngles& sharp = this->Mesh.GetShape().Sharp;
+  return angle >= this->Goal.Target ||
+    this->Mesh.GetShape().Sharp.IsAcross(
+      { facet[0], facet[1], facet[2], inside }, SharpAngleUse::Sliver) == this->Goal.IsSharp;
+}
+
+/**
+ * Finds the mesh's cavity. False as soon as a tetrahedron that would fill it is too flat: most
+ * positions fail by one of the first, and the search is what rating them takes long for.
+ * @param floor the angle that tetrahedra which are not aimed at have to keep; 0: not known yet
+ * @param required the angle that the others have to surpass
+ */
+bool Perturbation::FindCavity(
+  const Vec3& position, Id first, Id number, double floor, double required)
+{
+  this->Angles.clear();
+  return this->Mesh.FindCavity(position, first, number,
+    [&](const TriangleIds& facet)
+    {
+      const double angle = GetSmallestDihedralAngle(this->Tetrahedra.GetPoint(facet[0]),
+        this->Tetrahedra.GetPoint(facet[1]), this->Tetrahedra.GetPoint(facet[2]), position);
+      this->Angles.push_back(angle);
+      return angle > required || (angle >= floor && !this->IsAimed(facet, angle));
+    });
+}
+
+/**
+ * Smallest angle among the tetrahedra aimed at if the cavity that was found were filled. 0 if
+ * another tetrahedron falls below the floor, or if the angle is not larger than required.
+ */
+double Perturbation::RateCavity(double floor, double required) const
+{
+  const std::vector<TriangleIds>& facets = this->Mesh.GetCavity().Facets;
   double smallest = 180.0;
-  for (const TriangleIds& facet : this->Mesh.GetCavity().Facets)
+  for (std::size_t i = 0; i < facets.size(); ++i)
   {
-    const double angle = GetSmallestDihedralAngle(this->Tetrahedra.GetPoint(facet[0]),
-      this->Tetrahedra.GetPoint(facet[1]), this->Tetrahedra.GetPoint(facet[2]), position);
-    const bool isAimed = angle >= this->Goal.Target ||
-      sharp.IsAcross({ facet[0], facet[1], facet[2], inside }, SharpAngleUse::Sliver) ==
-        this->Goal.IsSharp;
+    const double angle = this->Angles[i];
+    const bool isAimed = this->IsAimed(facets[i], angle);
     if (isAimed ? angle <= required : angle < floor)
     {
       return 0.0;
@@ -170,14 +199,14 @@ bool Perturbation::Move(Id point, int patience)
     }
     return false;
   };
-  const auto findCavity = [&](const Vec3& position)
+  const auto findCavity = [&](const Vec3& position, double required)
   {
     const Id first = this->Tetrahedra.Locate(position, filled.front());
-    return first != NoId && this->Mesh.FindCavity(position, first, point);
+    return first != NoId && this->FindCavity(position, first, point, floor, required);
   };
   const auto rate = [&](const Vec3& position, double required)
   {
-    if (leavesFlatter(position, required) || !findCavity(position))
+    if (leavesFlatter(position, required) || !findCavity(position, required))
     {
       return 0.0;
     }
@@ -196,7 +225,7 @@ bool Perturbation::Move(Id point, int patience)
         ++brokenThere;
       }
     }
-    const double angle = this->RateCavity(position, floor, required);
+    const double angle = this->RateCavity(floor, required);
     return angle > required && this->Mesh.IsClear(position) &&
         (broken > 0 || brokenThere + this->Mesh.CountBroken(position) == 0) &&
         !this->Mesh.EncroachesOnBoundary(position)
@@ -218,7 +247,8 @@ bool Perturbation::Move(Id point, int patience)
     this->Tetrahedra.UndoRemove();
     return false;
   }
-  findCavity(best.Position);
+  // Nothing is required of the best position any more.
+  findCavity(best.Position, 0.0);
   this->Mesh.Restore(point, best.Position);
   return true;
 }
@@ -233,7 +263,7 @@ bool Perturbation::InsertBest(Id tetrahedron, int patience)
   }
   const auto rate = [&](const Vec3& position, double required)
   {
-    if (!this->Mesh.FindCavity(position, tetrahedron))
+    if (!this->FindCavity(position, tetrahedron, NoId, 0.0, required))
     {
       return 0.0;
     }
@@ -242,7 +272,7 @@ bool Perturbation::InsertBest(Id tetrahedron, int patience)
     {
       this->Include(t, before);
     }
-    const double angle = this->RateCavity(position, this->GetFloor(before), required);
+    const double angle = this->RateCavity(this->GetFloor(before), required);
     return angle > required && this->Mesh.IsClear(position) &&
         this->Mesh.CountBroken(position) == 0 && !this->Mesh.EncroachesOnBoundary(position)
       ? angle
