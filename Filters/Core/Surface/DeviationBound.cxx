@@ -5,7 +5,6 @@
 #include "Core/Geometry/Box.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace cdm
@@ -94,33 +93,64 @@ bool Cut(const Piece& piece, const Vec3& origin, const Vec3& normal, double tole
   return fits;
 }
 
-/** Proves that a piece lies within a bound of some simplices, and remembers which. */
+Box GetBox(const std::array<Vec3, 3>& corners, double margin)
+{
+  Box box;
+  for (const Vec3& corner : corners)
+  {
+    box.Add(Box::MakeAround(corner, margin));
+  }
+  return box;
+}
+
+std::vector<Box> GetBoxes(const std::vector<BoundSimplex>& simplices)
+{
+  std::vector<Box> boxes;
+  boxes.reserve(simplices.size());
+  for (const BoundSimplex& simplex : simplices)
+  {
+    boxes.push_back(GetBox(simplex.Corners, 0.0));
+  }
+  return boxes;
+}
+
+/**
+ * Proves that a piece lies within a bound of some simplices, and remembers which. Boxes tell most
+ * simplices that are too far away to matter.
+ */
 class ProofSearch
 {
 public:
   ProofSearch(const std::vector<BoundSimplex>& simplices, double bound)
-    : Used(simplices.size(), 0), Simplices(simplices), Bound(bound)
+    : Used(simplices.size(), 0), Simplices(simplices), Boxes(GetBoxes(simplices)), Bound(bound)
   {
   }
 
-  bool Prove(const Piece& piece, const std::vector<Id>& candidates);
+  /** candidates: ascending; first: one of them that may be the nearest one. */
+  bool Prove(const Piece& piece, const std::vector<Id>& candidates, Id first);
 
   std::vector<char> Used;
 
 private:
+  bool IsNearer(Id candidate, const Vec3& position, double square) const
+  {
+    return (1.0 - Slack) * this->Boxes[candidate].GetSquaredDistance(position) <= square;
+  }
   bool IsAllNear(const Piece& piece, Id candidate) const;
   bool CutAt(const Piece& piece, Id candidate, double tolerance, std::array<Piece, 2>& parts) const;
 
   const std::vector<BoundSimplex>& Simplices;
+  const std::vector<Box> Boxes;
   const double Bound;
 };
 
 bool ProofSearch::IsAllNear(const Piece& piece, Id candidate) const
 {
+  const double square = this->Bound * this->Bound;
   for (int i = 0; i < piece.Count; ++i)
   {
-    if (GetSquaredDistance(this->Simplices[candidate].Corners, piece.Corners[i]) >
-      this->Bound * this->Bound)
+    if (!this->IsNearer(candidate, piece.Corners[i], square) ||
+      GetSquaredDistance(this->Simplices[candidate].Corners, piece.Corners[i]) > square)
     {
       return false;
     }
@@ -151,12 +181,14 @@ bool ProofSearch::CutAt(
   return false;
 }
 
-bool ProofSearch::Prove(const Piece& piece, const std::vector<Id>& candidates)
+bool ProofSearch::Prove(const Piece& piece, const std::vector<Id>& candidates, Id first)
 {
   Vec3 center;
+  Box around;
   for (int i = 0; i < piece.Count; ++i)
   {
     center = center + (1.0 / piece.Count) * piece.Corners[i];
+    around.Add(Box::MakeAround(piece.Corners[i], (1.0 + Slack) * this->Bound));
   }
   double radius = 0.0;
   Vec3 farthest;
@@ -166,21 +198,24 @@ bool ProofSearch::Prove(const Piece& piece, const std::vector<Id>& candidates)
     farthest = distance > radius ? piece.Corners[i] - center : farthest;
     radius = std::max(radius, distance);
   }
-  const double reach = (this->Bound + radius) * (this->Bound + radius);
   std::vector<Id> near;
-  double smallest = std::numeric_limits<double>::infinity();
-  Id nearest = NoId;
+  double smallest = GetSquaredDistance(this->Simplices[first].Corners, center);
+  Id nearest = first;
   for (const Id candidate : candidates)
   {
-    const double square = GetSquaredDistance(this->Simplices[candidate].Corners, center);
-    if (square < smallest)
+    if (!this->Boxes[candidate].Overlaps(around))
     {
-      smallest = square;
-      nearest = candidate;
+      continue;
     }
-    if (square <= reach)
+    near.push_back(candidate);
+    if (this->IsNearer(candidate, center, smallest))
     {
-      near.push_back(candidate);
+      const double square = GetSquaredDistance(this->Simplices[candidate].Corners, center);
+      if (square < smallest || (square == smallest && candidate < nearest))
+      {
+        smallest = square;
+        nearest = candidate;
+      }
     }
   }
   const double distance = std::sqrt(smallest);
@@ -205,28 +240,7 @@ bool ProofSearch::Prove(const Piece& piece, const std::vector<Id>& candidates)
   std::array<Piece, 2> parts;
   return ((radius > 2.0 * this->Bound && this->CutAt(piece, nearest, tolerance, parts)) ||
            Cut(piece, center, (1.0 / radius) * farthest, tolerance, parts)) &&
-    this->Prove(parts[0], near) && this->Prove(parts[1], near);
-}
-
-Box GetBox(const std::array<Vec3, 3>& corners, double margin)
-{
-  Box box;
-  for (const Vec3& corner : corners)
-  {
-    box.Add(Box::MakeAround(corner, margin));
-  }
-  return box;
-}
-
-std::vector<Box> GetBoxes(const std::vector<BoundSimplex>& simplices)
-{
-  std::vector<Box> boxes;
-  boxes.reserve(simplices.size());
-  for (const BoundSimplex& simplex : simplices)
-  {
-    boxes.push_back(GetBox(simplex.Corners, 0.0));
-  }
-  return boxes;
+    this->Prove(parts[0], near, nearest) && this->Prove(parts[1], near, nearest);
 }
 } // namespace
 
@@ -291,7 +305,8 @@ bool DeviationBound::IsNear(const BoundSimplex& simplex) const
         candidates.push_back(this->Original[id]);
       }
     });
-  return ProofSearch(candidates, this->Bound).Prove(Piece(simplex.Corners), all);
+  return !all.empty() &&
+    ProofSearch(candidates, this->Bound).Prove(Piece(simplex.Corners), all, all.front());
 }
 
 bool DeviationBound::FindNearest(
@@ -338,6 +353,9 @@ bool DeviationBound::FindWitnesses(const std::vector<Id>& removed,
     affected.insert(affected.end(), this->Proven[id].begin(), this->Proven[id].end());
   }
   SortUnique(affected);
+  // What takes longest comes last: most changes that are refused are so before.
+  std::stable_sort(affected.begin(), affected.end(),
+    [this](Id a, Id b) { return this->Witnesses[a].size() < this->Witnesses[b].size(); });
   std::vector<BoundSimplex> offered = added;
   std::vector<Id> numbers;
   for (std::size_t i = 0; i < added.size(); ++i)
@@ -369,7 +387,8 @@ bool DeviationBound::FindWitnesses(const std::vector<Id>& removed,
       }
     }
     ProofSearch search(offered, this->Bound);
-    if (!search.Prove(Piece(this->Original[original].Corners), candidates))
+    if (candidates.empty() ||
+      !search.Prove(Piece(this->Original[original].Corners), candidates, candidates.front()))
     {
       return false;
     }
