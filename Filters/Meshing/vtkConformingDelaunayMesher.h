@@ -286,13 +286,15 @@ public:
   ///@{
   /**
    * Layers of them along interfaces, as in vtkMeshPointGenerator: regions are ids, or texts with
-   * their names or ids. Default none.
+   * their names or ids. Default none. ParaView has a table for each, and empties them one by one.
    */
   void AddLayers(double region, double neighbor, double numberOfLayers, double firstDistance,
     double growthRatio);
   void AddLayers(const char* region, const char* neighbor, double numberOfLayers,
     double firstDistance, double growthRatio);
   void RemoveAllLayers();
+  void RemoveAllLayersById();
+  void RemoveAllLayersByName();
   ///@}
 
   ///@{
@@ -407,6 +409,7 @@ protected:
   int Placement = vtkMeshPointGenerator::OCTREE;
   double Spacing[3] = { 0.0, 0.0, 0.0 };
   std::vector<std::pair<std::array<std::string, 2>, std::array<double, 3>>> Layers;
+  std::vector<std::pair<std::array<std::string, 2>, std::array<double, 3>>> LayersByName;
   double MeshPointClearanceRatio = 1e-3;
   bool CloseOpenBoundary = false;
   int RemoveSlivers = AUTOMATIC;

@@ -158,7 +158,8 @@ public:
    * Layers of points in a region along its interface with a neighbor (ids as in BoundaryLabels; -1
    * is the outside): so many of them, the first one at a distance (model units), each further gap
    * growing by a ratio. Whole numbers are passed as double, as ParaView does with rows of a table;
-   * or as texts, which may also be names from the field array RegionNames.
+   * or regions as texts, which may also be names from the field array RegionNames. ParaView has a
+   * table for each, and empties them one by one; layers of texts come after those of numbers.
    * Default: none; ranges: region and neighbor >= -1, 1 to 1000 layers, distance and ratio > 0.
    */
   void AddLayers(double region, double neighbor, double numberOfLayers, double firstDistance,
@@ -166,6 +167,8 @@ public:
   void AddLayers(const char* region, const char* neighbor, double numberOfLayers,
     double firstDistance, double growthRatio);
   void RemoveAllLayers();
+  void RemoveAllLayersById();
+  void RemoveAllLayersByName();
   ///@}
 
   ///@{
@@ -207,6 +210,7 @@ protected:
   int SmoothingIterations = 10;
   int Seed = 1;
   std::vector<std::pair<std::array<std::string, 2>, std::array<double, 3>>> Layers;
+  std::vector<std::pair<std::array<std::string, 2>, std::array<double, 3>>> LayersByName;
   double BoundaryClearance = 0.5;
   int MaximumNumberOfPoints = 10000000;
 
