@@ -49,6 +49,7 @@
 #define vtkAdvancingFrontTetrahedralizer_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkConformingDelaunayRanges.h"
 #include <vtkUnstructuredGridAlgorithm.h>
 
 class CDMMESHING_EXPORT vtkAdvancingFrontTetrahedralizer : public vtkUnstructuredGridAlgorithm
@@ -73,7 +74,7 @@ public:
    * Stop after this many tetrahedra and leave the front in output port 2. Default 0: no limit;
    * range >= 0.
    */
-  vtkSetClampMacro(MaximumNumberOfTetrahedra, int, 0, VTK_INT_MAX);
+  vtkSetInRangeMacro(MaximumNumberOfTetrahedra, int, 0, VTK_INT_MAX, "tetrahedra");
   vtkGetMacro(MaximumNumberOfTetrahedra, int);
   ///@}
 

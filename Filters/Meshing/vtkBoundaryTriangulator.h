@@ -47,6 +47,7 @@
 #define vtkBoundaryTriangulator_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkConformingDelaunayRanges.h"
 #include <vtkPolyDataAlgorithm.h>
 
 namespace cdm
@@ -89,7 +90,7 @@ public:
    * Points closer to each other than this are merged. Model units; default 0: only points with
    * equal coordinates; range 0 and above.
    */
-  vtkSetClampMacro(MergeTolerance, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(MergeTolerance, double, 0.0, VTK_DOUBLE_MAX, "model units");
   vtkGetMacro(MergeTolerance, double);
   ///@}
 
@@ -98,7 +99,7 @@ public:
    * Rings of at most this many open edges are patched; longer ones are taken for boundaries that
    * are open on purpose. Default 0: none; range 0 and above.
    */
-  vtkSetClampMacro(MaximumGapEdges, int, 0, VTK_INT_MAX);
+  vtkSetInRangeMacro(MaximumGapEdges, int, 0, VTK_INT_MAX, "open edges");
   vtkGetMacro(MaximumGapEdges, int);
   ///@}
 

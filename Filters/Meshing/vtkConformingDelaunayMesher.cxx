@@ -140,7 +140,7 @@ void vtkConformingDelaunayMesher::AddLayers(
 void vtkConformingDelaunayMesher::AddLayers(const char* region, const char* neighbor,
   double numberOfLayers, double firstDistance, double growthRatio)
 {
-  this->Layers.push_back({ { region ? region : "", neighbor ? neighbor : "" },
+  this->LayersByName.push_back({ { region ? region : "", neighbor ? neighbor : "" },
     { numberOfLayers, firstDistance, growthRatio } });
   this->Modified();
 }
@@ -148,7 +148,21 @@ void vtkConformingDelaunayMesher::AddLayers(const char* region, const char* neig
 //--------------------------------------------------------------------------------------------------
 void vtkConformingDelaunayMesher::RemoveAllLayers()
 {
+  this->RemoveAllLayersById();
+  this->RemoveAllLayersByName();
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkConformingDelaunayMesher::RemoveAllLayersById()
+{
   this->Layers.clear();
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkConformingDelaunayMesher::RemoveAllLayersByName()
+{
+  this->LayersByName.clear();
   this->Modified();
 }
 
@@ -388,6 +402,8 @@ cdm::Status vtkConformingDelaunayMesher::MakeOptions(
       })
     .Then([&] { return vtkCoreBridge::ToLayers(input, this->Layers, options.MeshPoints.Layers); })
     .Then(
+      [&] { return vtkCoreBridge::ToLayers(input, this->LayersByName, options.MeshPoints.Layers); })
+    .Then(
       [&] {
         return vtkCoreBridge::ToRegionSizes(input, this->RegionSizes, options.RegionSizes.Sizes);
       });
@@ -493,11 +509,14 @@ void vtkConformingDelaunayMesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Placement: " << this->Placement << "\n";
   os << indent << "Spacing: " << this->Spacing[0] << ", " << this->Spacing[1] << ", "
      << this->Spacing[2] << "\n";
-  for (const auto& [regions, numbers] : this->Layers)
+  for (const auto* rows : { &this->Layers, &this->LayersByName })
   {
-    os << indent << "Layers: region " << regions[0] << ", neighbor " << regions[1] << ", number "
-       << numbers[0] << ", first distance " << numbers[1] << ", growth ratio " << numbers[2]
-       << "\n";
+    for (const auto& [regions, numbers] : *rows)
+    {
+      os << indent << "Layers: region " << regions[0] << ", neighbor " << regions[1] << ", number "
+         << numbers[0] << ", first distance " << numbers[1] << ", growth ratio " << numbers[2]
+         << "\n";
+    }
   }
   os << indent << "MeshPointClearanceRatio: " << this->MeshPointClearanceRatio << "\n";
   os << indent << "CloseOpenBoundary: " << this->CloseOpenBoundary << "\n";

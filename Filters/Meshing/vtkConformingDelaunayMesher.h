@@ -49,6 +49,9 @@
  * Failure: the error of the stage that failed, with the cells of this filter's input, and empty
  * outputs; port 2 still lists what was found. An aborted run has empty outputs. An error in a block
  * names it, and ends the filter on all processes.
+ * A value out of the range of its property is an error: in the setter, after which the property is
+ * what it was, or, where AUTOMATIC is allowed beside real numbers and in rows of tables, when the
+ * filter runs.
  *
  * Cost: O(n log n) for n tetrahedra, if the surface is not much finer than its smallest features.
  *
@@ -59,6 +62,7 @@
 #define vtkConformingDelaunayMesher_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkConformingDelaunayRanges.h"
 #include "vtkDelaunaySurfaceRefiner.h"
 #include "vtkMeshPointGenerator.h"
 #include <vtkUnstructuredGridAlgorithm.h>
@@ -112,7 +116,7 @@ public:
    * criterion Delaunay. FEWEST_POINTS: the criterion Delaunay, no size, no Steiner points. Default
    * FINITE_VOLUMES.
    */
-  vtkSetClampMacro(MeshFor, int, FINITE_VOLUMES, FEWEST_POINTS);
+  vtkSetInRangeMacro(MeshFor, int, FINITE_VOLUMES, FEWEST_POINTS, "one of Purposes");
   vtkGetMacro(MeshFor, int);
   void SetMeshForToFiniteVolumes() { this->SetMeshFor(FINITE_VOLUMES); }
   void SetMeshForToFiniteElements() { this->SetMeshFor(FINITE_ELEMENTS); }
@@ -132,13 +136,13 @@ public:
    * Points closer to each other than this are merged. Model units; default 0: only points with
    * equal coordinates; range 0 and above.
    */
-  vtkSetClampMacro(MergeTolerance, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(MergeTolerance, double, 0.0, VTK_DOUBLE_MAX, "model units");
   vtkGetMacro(MergeTolerance, double);
   ///@}
 
   ///@{
   /** Gaps of at most this many open edges are patched. Default 0: none; range 0 and above. */
-  vtkSetClampMacro(MaximumGapEdges, int, 0, VTK_INT_MAX);
+  vtkSetInRangeMacro(MaximumGapEdges, int, 0, VTK_INT_MAX, "open edges");
   vtkGetMacro(MaximumGapEdges, int);
   ///@}
 
@@ -168,7 +172,8 @@ public:
    * What every boundary triangle has to fulfil, one of Criteria or AUTOMATIC: SmallestSphere for
    * finite volumes, Delaunay otherwise. Default AUTOMATIC.
    */
-  vtkSetClampMacro(Criterion, int, AUTOMATIC, SmallestSphereAndEdges);
+  vtkSetInRangeMacro(
+    Criterion, int, AUTOMATIC, SmallestSphereAndEdges, "one of Criteria; -1: automatic");
   vtkGetMacro(Criterion, int);
   void SetCriterionToDelaunay() { this->SetCriterion(Delaunay); }
   void SetCriterionToSmallestSphere() { this->SetCriterion(SmallestSphere); }
@@ -182,7 +187,7 @@ public:
    * to
    * 180.
    */
-  vtkSetClampMacro(AccuracyAngle, double, 0.0, 180.0);
+  vtkSetInRangeMacro(AccuracyAngle, double, 0.0, 180.0, "degrees");
   vtkGetMacro(AccuracyAngle, double);
   ///@}
 
@@ -191,7 +196,7 @@ public:
    * Boundary triangles with a smaller angle are refined where possible. Degrees; default 0: off;
    * range 0 to 30.
    */
-  vtkSetClampMacro(MinimumAngle, double, 0.0, 30.0);
+  vtkSetInRangeMacro(MinimumAngle, double, 0.0, 30.0, "degrees");
   vtkGetMacro(MinimumAngle, double);
   ///@}
 
@@ -200,7 +205,7 @@ public:
    * Boundary triangles with a larger area are refined. Square model units; default 0: off; range 0
    * and above.
    */
-  vtkSetClampMacro(MaximumArea, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(MaximumArea, double, 0.0, VTK_DOUBLE_MAX, "square model units");
   vtkGetMacro(MaximumArea, double);
   ///@}
 
@@ -263,7 +268,8 @@ public:
 
   ///@{
   /** How they are placed, one of vtkMeshPointGenerator::Placements. Default OCTREE. */
-  vtkSetClampMacro(Placement, int, vtkMeshPointGenerator::OCTREE, vtkMeshPointGenerator::NONE);
+  vtkSetInRangeMacro(Placement, int, vtkMeshPointGenerator::OCTREE, vtkMeshPointGenerator::NONE,
+    "one of vtkMeshPointGenerator::Placements");
   vtkGetMacro(Placement, int);
   ///@}
 
@@ -280,13 +286,15 @@ public:
   ///@{
   /**
    * Layers of them along interfaces, as in vtkMeshPointGenerator: regions are ids, or texts with
-   * their names or ids. Default none.
+   * their names or ids. Default none. ParaView has a table for each, and empties them one by one.
    */
   void AddLayers(double region, double neighbor, double numberOfLayers, double firstDistance,
     double growthRatio);
   void AddLayers(const char* region, const char* neighbor, double numberOfLayers,
     double firstDistance, double growthRatio);
   void RemoveAllLayers();
+  void RemoveAllLayersById();
+  void RemoveAllLayersByName();
   ///@}
 
   ///@{
@@ -294,7 +302,8 @@ public:
    * Mesh points closer to the boundary are dropped. Ratio of the bounding box diagonal; default
    * 1e-3; range 0 (only those on the boundary) and above. Thin layers need a smaller one.
    */
-  vtkSetClampMacro(MeshPointClearanceRatio, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(
+    MeshPointClearanceRatio, double, 0.0, VTK_DOUBLE_MAX, "ratio of the bounding box diagonal");
   vtkGetMacro(MeshPointClearanceRatio, double);
   ///@}
 
@@ -314,7 +323,7 @@ public:
    * by vtkSteinerPointRefiner if Steiner points are added, otherwise by vtkSliverRemover. Default
    * AUTOMATIC: yes.
    */
-  vtkSetClampMacro(RemoveSlivers, int, AUTOMATIC, 1);
+  vtkSetInRangeMacro(RemoveSlivers, int, AUTOMATIC, 1, "0: no; 1: yes; -1: automatic");
   vtkGetMacro(RemoveSlivers, int);
   vtkBooleanMacro(RemoveSlivers, int);
   ///@}
@@ -328,7 +337,7 @@ public:
    * coupling of the box method is negative. Criterion Delaunay counts as SmallestSphere. Default
    * AUTOMATIC: not for the fewest points.
    */
-  vtkSetClampMacro(AddSteinerPoints, int, AUTOMATIC, 1);
+  vtkSetInRangeMacro(AddSteinerPoints, int, AUTOMATIC, 1, "0: no; 1: yes; -1: automatic");
   vtkGetMacro(AddSteinerPoints, int);
   vtkBooleanMacro(AddSteinerPoints, int);
   ///@}
@@ -347,7 +356,7 @@ public:
    * Largest volume of a tetrahedron, with AddSteinerPoints. Cubic model units; default 0: off;
    * range >= 0.
    */
-  vtkSetClampMacro(MaximumVolume, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(MaximumVolume, double, 0.0, VTK_DOUBLE_MAX, "cubic model units");
   vtkGetMacro(MaximumVolume, double);
   ///@}
 
@@ -368,7 +377,7 @@ public:
    * smaller errors; the others need no smoothing. The mesh stays Delaunay, with the same boundary;
    * sizes, slivers and couplings do not get worse. Rounds; default 0: none; range 0 to 100.
    */
-  vtkSetClampMacro(SmoothingRounds, int, 0, 100);
+  vtkSetInRangeMacro(SmoothingRounds, int, 0, 100, "rounds");
   vtkGetMacro(SmoothingRounds, int);
   ///@}
 
@@ -400,6 +409,7 @@ protected:
   int Placement = vtkMeshPointGenerator::OCTREE;
   double Spacing[3] = { 0.0, 0.0, 0.0 };
   std::vector<std::pair<std::array<std::string, 2>, std::array<double, 3>>> Layers;
+  std::vector<std::pair<std::array<std::string, 2>, std::array<double, 3>>> LayersByName;
   double MeshPointClearanceRatio = 1e-3;
   bool CloseOpenBoundary = false;
   int RemoveSlivers = AUTOMATIC;

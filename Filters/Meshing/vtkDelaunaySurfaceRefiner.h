@@ -44,6 +44,7 @@
 #define vtkDelaunaySurfaceRefiner_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkConformingDelaunayRanges.h"
 #include <vtkPolyDataAlgorithm.h>
 
 class CDMMESHING_EXPORT vtkDelaunaySurfaceRefiner : public vtkPolyDataAlgorithm
@@ -65,7 +66,7 @@ public:
 
   ///@{
   /** What every triangle has to fulfil, one of Criteria. Default Delaunay. */
-  vtkSetClampMacro(Criterion, int, Delaunay, SmallestSphereAndEdges);
+  vtkSetInRangeMacro(Criterion, int, Delaunay, SmallestSphereAndEdges, "one of Criteria");
   vtkGetMacro(Criterion, int);
   void SetCriterionToDelaunay() { this->SetCriterion(Delaunay); }
   void SetCriterionToSmallestSphere() { this->SetCriterion(SmallestSphere); }
@@ -77,7 +78,7 @@ public:
    * Edges that bend by no more than this are smooth and may be flipped. Degrees; default 0: only
    * numerically flat edges are smooth; range 0 to 180.
    */
-  vtkSetClampMacro(AccuracyAngle, double, 0.0, 180.0);
+  vtkSetInRangeMacro(AccuracyAngle, double, 0.0, 180.0, "degrees");
   vtkGetMacro(AccuracyAngle, double);
   ///@}
 
@@ -87,7 +88,7 @@ public:
    * rounding of coordinates. Raise it to 1e-7 for coordinates that were rounded to
    * single precision, which saves points. Default 1e-9; range 0 to 1.
    */
-  vtkSetClampMacro(FlatnessRatio, double, 0.0, 1.0);
+  vtkSetInRangeMacro(FlatnessRatio, double, 0.0, 1.0, "ratio of the bounding box diagonal");
   vtkGetMacro(FlatnessRatio, double);
   ///@}
 
@@ -96,19 +97,19 @@ public:
    * Triangles with a smaller angle are refined where possible. Degrees; default 0: off; range 0 to
    * 30.
    */
-  vtkSetClampMacro(MinimumAngle, double, 0.0, 30.0);
+  vtkSetInRangeMacro(MinimumAngle, double, 0.0, 30.0, "degrees");
   vtkGetMacro(MinimumAngle, double);
   ///@}
 
   ///@{
   /** Triangles with a larger area are refined. Square model units; default 0: off; range >= 0. */
-  vtkSetClampMacro(MaximumArea, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(MaximumArea, double, 0.0, VTK_DOUBLE_MAX, "square model units");
   vtkGetMacro(MaximumArea, double);
   ///@}
 
   ///@{
   /** Longer edges are split. Model units; default 0: off; range >= 0. */
-  vtkSetClampMacro(MaximumEdgeLength, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(MaximumEdgeLength, double, 0.0, VTK_DOUBLE_MAX, "model units");
   vtkGetMacro(MaximumEdgeLength, double);
   ///@}
 
@@ -117,7 +118,8 @@ public:
    * Mesh points closer to the surface are dropped. Ratio of the bounding box diagonal; default
    * 1e-3; range 0 to 1.
    */
-  vtkSetClampMacro(MeshPointClearanceRatio, double, 0.0, 1.0);
+  vtkSetInRangeMacro(
+    MeshPointClearanceRatio, double, 0.0, 1.0, "ratio of the bounding box diagonal");
   vtkGetMacro(MeshPointClearanceRatio, double);
   ///@}
 
@@ -126,7 +128,7 @@ public:
    * No edge is made shorter: a guard against endless refinement. Ratio of the bounding box
    * diagonal; default 1e-9; range 0 to 1.
    */
-  vtkSetClampMacro(MinimumEdgeRatio, double, 0.0, 1.0);
+  vtkSetInRangeMacro(MinimumEdgeRatio, double, 0.0, 1.0, "ratio of the bounding box diagonal");
   vtkGetMacro(MinimumEdgeRatio, double);
   ///@}
 
@@ -136,7 +138,7 @@ public:
    * least 20000, or 1000000 where sizes or angles are asked for, and one for each mesh point;
    * range >= 0.
    */
-  vtkSetClampMacro(MaximumNewPoints, int, 0, VTK_INT_MAX);
+  vtkSetInRangeMacro(MaximumNewPoints, int, 0, VTK_INT_MAX, "points");
   vtkGetMacro(MaximumNewPoints, int);
   ///@}
 

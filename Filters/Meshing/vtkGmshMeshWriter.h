@@ -54,6 +54,7 @@
 #define vtkGmshMeshWriter_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkConformingDelaunayRanges.h"
 #include <vtkWriter.h>
 
 #include <limits>
@@ -87,7 +88,7 @@ public:
   };
   ///@{
   /** Version of Gmsh's format. Default VERSION_2_2, the one that DEVSIM reads. */
-  vtkSetClampMacro(FileFormat, int, VERSION_2_2, VERSION_4_1);
+  vtkSetInRangeMacro(FileFormat, int, VERSION_2_2, VERSION_4_1, "one of FileFormats");
   vtkGetMacro(FileFormat, int);
   ///@}
 
@@ -96,7 +97,8 @@ public:
    * Factor of the coordinates, such as 1e-4 from micrometers to the centimeters of DEVSIM. Default
    * 1; range above 0.
    */
-  vtkSetClampMacro(Scale, double, std::numeric_limits<double>::min(), VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(
+    Scale, double, std::numeric_limits<double>::min(), VTK_DOUBLE_MAX, "factor of the coordinates");
   vtkGetMacro(Scale, double);
   ///@}
 

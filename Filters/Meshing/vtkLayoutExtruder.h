@@ -47,6 +47,7 @@
 #define vtkLayoutExtruder_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkConformingDelaunayRanges.h"
 #include <vtkPolyDataAlgorithm.h>
 
 #include <array>
@@ -104,7 +105,7 @@ public:
    * By how much the structure is larger than the layout on all four sides, for steps without a
    * mask. Model units; default 0; range 0 and above.
    */
-  vtkSetClampMacro(Margin, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(Margin, double, 0.0, VTK_DOUBLE_MAX, "model units");
   vtkGetMacro(Margin, double);
   ///@}
 

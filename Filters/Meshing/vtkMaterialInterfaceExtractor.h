@@ -50,6 +50,7 @@
 #define vtkMaterialInterfaceExtractor_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkConformingDelaunayRanges.h"
 #include <vtkPolyDataAlgorithm.h>
 
 class CDMMESHING_EXPORT vtkMaterialInterfaceExtractor : public vtkPolyDataAlgorithm
@@ -61,7 +62,7 @@ public:
 
   ///@{
   /** Voxels with this label are outside too. Default -1: no others; range -1 and above. */
-  vtkSetClampMacro(BackgroundLabel, int, -1, VTK_INT_MAX);
+  vtkSetInRangeMacro(BackgroundLabel, int, -1, VTK_INT_MAX, "label of voxels");
   vtkGetMacro(BackgroundLabel, int);
   ///@}
 
@@ -70,7 +71,7 @@ public:
    * Waves of the surface shorter than this are taken for stairs and smoothed. In voxels; default
    * 10; range 0 (the exact faces of the voxels) to 1000.
    */
-  vtkSetClampMacro(SmoothingLength, double, 0.0, 1000.0);
+  vtkSetInRangeMacro(SmoothingLength, double, 0.0, 1000.0, "voxels");
   vtkGetMacro(SmoothingLength, double);
   ///@}
 
@@ -87,7 +88,7 @@ public:
    * units of the shortest voxel edge; default 0.25; range >= 0; 0: only what is exactly flat is
    * merged.
    */
-  vtkSetClampMacro(MaximumDeviation, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(MaximumDeviation, double, 0.0, VTK_DOUBLE_MAX, "shortest voxel edges");
   vtkGetMacro(MaximumDeviation, double);
   ///@}
 
@@ -96,7 +97,7 @@ public:
    * Edges that bend by more than this are kept by the reduction. Degrees; default 60; range 0 to
    * 180 (none are).
    */
-  vtkSetClampMacro(FeatureAngle, double, 0.0, 180.0);
+  vtkSetInRangeMacro(FeatureAngle, double, 0.0, 180.0, "degrees");
   vtkGetMacro(FeatureAngle, double);
   ///@}
 

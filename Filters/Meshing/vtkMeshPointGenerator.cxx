@@ -68,7 +68,7 @@ void vtkMeshPointGenerator::AddLayers(
 void vtkMeshPointGenerator::AddLayers(const char* region, const char* neighbor,
   double numberOfLayers, double firstDistance, double growthRatio)
 {
-  this->Layers.push_back({ { region ? region : "", neighbor ? neighbor : "" },
+  this->LayersByName.push_back({ { region ? region : "", neighbor ? neighbor : "" },
     { numberOfLayers, firstDistance, growthRatio } });
   this->Modified();
 }
@@ -76,7 +76,21 @@ void vtkMeshPointGenerator::AddLayers(const char* region, const char* neighbor,
 //--------------------------------------------------------------------------------------------------
 void vtkMeshPointGenerator::RemoveAllLayers()
 {
+  this->RemoveAllLayersById();
+  this->RemoveAllLayersByName();
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkMeshPointGenerator::RemoveAllLayersById()
+{
   this->Layers.clear();
+  this->Modified();
+}
+
+//--------------------------------------------------------------------------------------------------
+void vtkMeshPointGenerator::RemoveAllLayersByName()
+{
+  this->LayersByName.clear();
   this->Modified();
 }
 
@@ -127,7 +141,9 @@ int vtkMeshPointGenerator::RequestData(
       }
       if (step.IsOk())
       {
-        step = vtkCoreBridge::ToLayers(input, this->Layers, options.Layers);
+        step = vtkCoreBridge::ToLayers(input, this->Layers, options.Layers)
+                 .Then([&]
+                   { return vtkCoreBridge::ToLayers(input, this->LayersByName, options.Layers); });
       }
       if (step.IsOk())
       {
@@ -170,11 +186,14 @@ void vtkMeshPointGenerator::PrintSelf(ostream& os, vtkIndent indent)
   }
   os << indent << "SmoothingIterations: " << this->SmoothingIterations << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
-  for (const auto& [regions, numbers] : this->Layers)
+  for (const auto* rows : { &this->Layers, &this->LayersByName })
   {
-    os << indent << "Layers: region " << regions[0] << ", neighbor " << regions[1] << ", number "
-       << numbers[0] << ", first distance " << numbers[1] << ", growth ratio " << numbers[2]
-       << "\n";
+    for (const auto& [regions, numbers] : *rows)
+    {
+      os << indent << "Layers: region " << regions[0] << ", neighbor " << regions[1] << ", number "
+         << numbers[0] << ", first distance " << numbers[1] << ", growth ratio " << numbers[2]
+         << "\n";
+    }
   }
   os << indent << "BoundaryClearance: " << this->BoundaryClearance << "\n";
   os << indent << "MaximumNumberOfPoints: " << this->MaximumNumberOfPoints << "\n";

@@ -54,6 +54,7 @@
 #define vtkMeshPointGenerator_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkConformingDelaunayRanges.h"
 #include <vtkPolyDataAlgorithm.h>
 
 #include <array>
@@ -91,7 +92,7 @@ public:
 
   ///@{
   /** How points are placed away from layers, one of Placements. Default OCTREE. */
-  vtkSetClampMacro(Placement, int, OCTREE, NONE);
+  vtkSetInRangeMacro(Placement, int, OCTREE, NONE, "one of Placements");
   vtkGetMacro(Placement, int);
   void SetPlacementToOctree() { this->SetPlacement(OCTREE); }
   void SetPlacementToOrthoProduct() { this->SetPlacement(ORTHO_PRODUCT); }
@@ -101,7 +102,7 @@ public:
 
   ///@{
   /** Points of a cell of the octree or ortho-product, one of Templates. Default BODY_CENTERED. */
-  vtkSetClampMacro(Template, int, CORNERS, FACE_CENTERED);
+  vtkSetInRangeMacro(Template, int, CORNERS, FACE_CENTERED, "one of Templates");
   vtkGetMacro(Template, int);
   void SetTemplateToCorners() { this->SetTemplate(CORNERS); }
   void SetTemplateToCenters() { this->SetTemplate(CENTERS); }
@@ -123,7 +124,7 @@ public:
    * Octree and random points: by how many levels (powers of two of the size) neighboring cells may
    * differ. Default 1; range 0 (no bound) to 16.
    */
-  vtkSetClampMacro(MaximumLevelDifference, int, 0, 16);
+  vtkSetInRangeMacro(MaximumLevelDifference, int, 0, 16, "levels of the octree");
   vtkGetMacro(MaximumLevelDifference, int);
   ///@}
 
@@ -142,13 +143,13 @@ public:
 
   ///@{
   /** Random points: number of Lloyd's iterations. Default 10; range 0 to 1000. */
-  vtkSetClampMacro(SmoothingIterations, int, 0, 1000);
+  vtkSetInRangeMacro(SmoothingIterations, int, 0, 1000, "iterations");
   vtkGetMacro(SmoothingIterations, int);
   ///@}
 
   ///@{
   /** Random points: where the sequence of random numbers starts. Default 1; range >= 0. */
-  vtkSetClampMacro(Seed, int, 0, VTK_INT_MAX);
+  vtkSetInRangeMacro(Seed, int, 0, VTK_INT_MAX, "start of the random numbers");
   vtkGetMacro(Seed, int);
   ///@}
 
@@ -157,7 +158,8 @@ public:
    * Layers of points in a region along its interface with a neighbor (ids as in BoundaryLabels; -1
    * is the outside): so many of them, the first one at a distance (model units), each further gap
    * growing by a ratio. Whole numbers are passed as double, as ParaView does with rows of a table;
-   * or as texts, which may also be names from the field array RegionNames.
+   * or regions as texts, which may also be names from the field array RegionNames. ParaView has a
+   * table for each, and empties them one by one; layers of texts come after those of numbers.
    * Default: none; ranges: region and neighbor >= -1, 1 to 1000 layers, distance and ratio > 0.
    */
   void AddLayers(double region, double neighbor, double numberOfLayers, double firstDistance,
@@ -165,6 +167,8 @@ public:
   void AddLayers(const char* region, const char* neighbor, double numberOfLayers,
     double firstDistance, double growthRatio);
   void RemoveAllLayers();
+  void RemoveAllLayersById();
+  void RemoveAllLayersByName();
   ///@}
 
   ///@{
@@ -172,13 +176,13 @@ public:
    * Points closer to the boundary are left out. In spacings of the points around; default 0.5;
    * range 0 to 10.
    */
-  vtkSetClampMacro(BoundaryClearance, double, 0.0, 10.0);
+  vtkSetInRangeMacro(BoundaryClearance, double, 0.0, 10.0, "spacings of the points around");
   vtkGetMacro(BoundaryClearance, double);
   ///@}
 
   ///@{
   /** More points are an error. Default 10,000,000; range >= 1. */
-  vtkSetClampMacro(MaximumNumberOfPoints, int, 1, VTK_INT_MAX);
+  vtkSetInRangeMacro(MaximumNumberOfPoints, int, 1, VTK_INT_MAX, "points");
   vtkGetMacro(MaximumNumberOfPoints, int);
   ///@}
 
@@ -206,6 +210,7 @@ protected:
   int SmoothingIterations = 10;
   int Seed = 1;
   std::vector<std::pair<std::array<std::string, 2>, std::array<double, 3>>> Layers;
+  std::vector<std::pair<std::array<std::string, 2>, std::array<double, 3>>> LayersByName;
   double BoundaryClearance = 0.5;
   int MaximumNumberOfPoints = 10000000;
 

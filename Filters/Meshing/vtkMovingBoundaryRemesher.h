@@ -46,6 +46,7 @@
 #define vtkMovingBoundaryRemesher_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkConformingDelaunayRanges.h"
 #include "vtkDelaunaySurfaceRefiner.h"
 #include <vtkUnstructuredGridAlgorithm.h>
 
@@ -66,7 +67,7 @@ public:
 
   ///@{
   /** The displacement is applied in so many equal steps. Default 1; range 1 to 1000. */
-  vtkSetClampMacro(NumberOfSteps, int, 1, 1000);
+  vtkSetInRangeMacro(NumberOfSteps, int, 1, 1000, "steps");
   vtkGetMacro(NumberOfSteps, int);
   ///@}
 
@@ -75,7 +76,7 @@ public:
    * How far from points that move others follow them, in units of the largest displacement. Default
    * 4: edges change by a quarter of their length; 0: none follows; range 0 and above.
    */
-  vtkSetClampMacro(FollowRatio, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(FollowRatio, double, 0.0, VTK_DOUBLE_MAX, "largest displacements");
   vtkGetMacro(FollowRatio, double);
   ///@}
 
@@ -85,13 +86,13 @@ public:
    * of what was nearest to it before the step. Default 0.5; range 0 (only where it lies on the
    * boundary or beyond) to 0.9.
    */
-  vtkSetClampMacro(PointClearance, double, 0.0, 0.9);
+  vtkSetInRangeMacro(PointClearance, double, 0.0, 0.9, "ratio of the distance before the step");
   vtkGetMacro(PointClearance, double);
   ///@}
 
   ///@{
   /** What every boundary triangle has to fulfil, one of Criteria. Default Delaunay. */
-  vtkSetClampMacro(Criterion, int, Delaunay, SmallestSphereAndEdges);
+  vtkSetInRangeMacro(Criterion, int, Delaunay, SmallestSphereAndEdges, "one of Criteria");
   vtkGetMacro(Criterion, int);
   void SetCriterionToDelaunay() { this->SetCriterion(Delaunay); }
   void SetCriterionToSmallestSphere() { this->SetCriterion(SmallestSphere); }
@@ -105,7 +106,7 @@ public:
    * to
    * 180.
    */
-  vtkSetClampMacro(AccuracyAngle, double, 0.0, 180.0);
+  vtkSetInRangeMacro(AccuracyAngle, double, 0.0, 180.0, "degrees");
   vtkGetMacro(AccuracyAngle, double);
   ///@}
 
@@ -114,7 +115,7 @@ public:
    * Boundary triangles with a smaller angle are refined where possible. Degrees; default 0: off;
    * range 0 to 30.
    */
-  vtkSetClampMacro(MinimumAngle, double, 0.0, 30.0);
+  vtkSetInRangeMacro(MinimumAngle, double, 0.0, 30.0, "degrees");
   vtkGetMacro(MinimumAngle, double);
   ///@}
 
@@ -123,13 +124,13 @@ public:
    * Longer boundary edges, stretched by the motion, are split. Model units; default 0: off; range 0
    * and above.
    */
-  vtkSetClampMacro(MaximumEdgeLength, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(MaximumEdgeLength, double, 0.0, VTK_DOUBLE_MAX, "model units");
   vtkGetMacro(MaximumEdgeLength, double);
   ///@}
 
   ///@{
   /** The refinement of a step stops when it has made so many points. Default 0: no limit. */
-  vtkSetClampMacro(MaximumNewPoints, int, 0, VTK_INT_MAX);
+  vtkSetInRangeMacro(MaximumNewPoints, int, 0, VTK_INT_MAX, "points");
   vtkGetMacro(MaximumNewPoints, int);
   ///@}
 

@@ -35,6 +35,7 @@
 #define vtkSizingFromSolution_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkConformingDelaunayRanges.h"
 #include <vtkDataSetAlgorithm.h>
 
 #include <vector>
@@ -58,7 +59,7 @@ public:
    * Largest increase of the array along an edge, in its units. Default 0: a tenth of its range;
    * range >= 0.
    */
-  vtkSetClampMacro(MaximumIncrease, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(MaximumIncrease, double, 0.0, VTK_DOUBLE_MAX, "units of the solution");
   vtkGetMacro(MaximumIncrease, double);
   ///@}
 
@@ -68,7 +69,8 @@ public:
    * units of the array per model unit; default 0: so that this is the bounding box diagonal; range
    * >= 0.
    */
-  vtkSetClampMacro(Regularization, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(
+    Regularization, double, 0.0, VTK_DOUBLE_MAX, "units of the solution per model unit");
   vtkGetMacro(Regularization, double);
   ///@}
 
@@ -81,13 +83,13 @@ public:
 
   ///@{
   /** Smaller sizes are raised to this. Model units; default 0: no limit; range >= 0. */
-  vtkSetClampMacro(MinimumSize, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(MinimumSize, double, 0.0, VTK_DOUBLE_MAX, "model units");
   vtkGetMacro(MinimumSize, double);
   ///@}
 
   ///@{
   /** Larger sizes are lowered to this. Model units; default 0: no limit; range >= 0. */
-  vtkSetClampMacro(MaximumSize, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(MaximumSize, double, 0.0, VTK_DOUBLE_MAX, "model units");
   vtkGetMacro(MaximumSize, double);
   ///@}
 
@@ -96,7 +98,8 @@ public:
    * By how much sizes may grow per unit of length. Default 0.3; range >= 0; 0: no bound. Elements
    * of good shape need about 0.5 or less.
    */
-  vtkSetClampMacro(Gradation, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(
+    Gradation, double, 0.0, VTK_DOUBLE_MAX, "increase of the size per unit of length");
   vtkGetMacro(Gradation, double);
   ///@}
 

@@ -46,6 +46,7 @@
 #define vtkSliverRemover_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkConformingDelaunayRanges.h"
 #include <vtkUnstructuredGridAlgorithm.h>
 
 class CDMMESHING_EXPORT vtkSliverRemover : public vtkUnstructuredGridAlgorithm
@@ -60,7 +61,7 @@ public:
    * Tetrahedra with a smaller dihedral angle are treated. Degrees; default 15; range 0 to 70 (that
    * of the regular tetrahedron is 70.5).
    */
-  vtkSetClampMacro(DihedralAngleTarget, double, 0.0, 70.0);
+  vtkSetInRangeMacro(DihedralAngleTarget, double, 0.0, 70.0, "degrees");
   vtkGetMacro(DihedralAngleTarget, double);
   ///@}
 
@@ -69,7 +70,7 @@ public:
    * A tetrahedron on a boundary that is lower than this may be peeled off. Ratio of the bounding
    * box diagonal; default 1e-9; range 0 to 1.
    */
-  vtkSetClampMacro(FlatnessRatio, double, 0.0, 1.0);
+  vtkSetInRangeMacro(FlatnessRatio, double, 0.0, 1.0, "ratio of the bounding box diagonal");
   vtkGetMacro(FlatnessRatio, double);
   ///@}
 

@@ -57,6 +57,7 @@
 #define vtkSteinerPointRefiner_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkConformingDelaunayRanges.h"
 #include "vtkDelaunaySurfaceRefiner.h"
 #include <vtkUnstructuredGridAlgorithm.h>
 
@@ -76,7 +77,7 @@ public:
 
   ///@{
   /** What every boundary triangle has to fulfil, one of Criteria. Default SmallestSphere. */
-  vtkSetClampMacro(Criterion, int, SmallestSphere, SmallestSphereAndEdges);
+  vtkSetInRangeMacro(Criterion, int, SmallestSphere, SmallestSphereAndEdges, "one of Criteria");
   vtkGetMacro(Criterion, int);
   void SetCriterionToSmallestSphere() { this->SetCriterion(SmallestSphere); }
   void SetCriterionToSmallestSphereAndEdges() { this->SetCriterion(SmallestSphereAndEdges); }
@@ -87,7 +88,8 @@ public:
    * Largest ratio of the circumradius to the shortest edge. Default 1.4; 0: off; range >= 0 (a
    * regular tetrahedron has 0.612; below 1.2 many points are spent in vain).
    */
-  vtkSetClampMacro(RadiusEdgeRatio, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(
+    RadiusEdgeRatio, double, 0.0, VTK_DOUBLE_MAX, "ratio of circumradius to shortest edge");
   vtkGetMacro(RadiusEdgeRatio, double);
   ///@}
 
@@ -96,19 +98,19 @@ public:
    * Tetrahedra with a smaller dihedral angle are slivers, to be removed. Degrees; default 15; 0:
    * off; range 0 to 40 (up to 20 are reached nearly everywhere).
    */
-  vtkSetClampMacro(DihedralAngleTarget, double, 0.0, 40.0);
+  vtkSetInRangeMacro(DihedralAngleTarget, double, 0.0, 40.0, "degrees");
   vtkGetMacro(DihedralAngleTarget, double);
   ///@}
 
   ///@{
   /** Largest volume of a tetrahedron. Cubic model units; default 0: off; range >= 0. */
-  vtkSetClampMacro(MaximumVolume, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(MaximumVolume, double, 0.0, VTK_DOUBLE_MAX, "cubic model units");
   vtkGetMacro(MaximumVolume, double);
   ///@}
 
   ///@{
   /** Longest edge, inside and on the boundary. Model units; default 0: off; range >= 0. */
-  vtkSetClampMacro(MaximumEdgeLength, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(MaximumEdgeLength, double, 0.0, VTK_DOUBLE_MAX, "model units");
   vtkGetMacro(MaximumEdgeLength, double);
   ///@}
 
@@ -117,7 +119,7 @@ public:
    * Free points closer to another one are taken out before the refinement, with a sizing also those
    * closer than 0.3 of it. Model units; default 0: off; range >= 0.
    */
-  vtkSetClampMacro(MinimumEdgeLength, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetInRangeMacro(MinimumEdgeLength, double, 0.0, VTK_DOUBLE_MAX, "model units");
   vtkGetMacro(MinimumEdgeLength, double);
   ///@}
 
@@ -133,7 +135,7 @@ public:
 
   ///@{
   /** See vtkDelaunaySurfaceRefiner. Degrees; default 0; range 0 to 180. */
-  vtkSetClampMacro(AccuracyAngle, double, 0.0, 180.0);
+  vtkSetInRangeMacro(AccuracyAngle, double, 0.0, 180.0, "degrees");
   vtkGetMacro(AccuracyAngle, double);
   ///@}
 
@@ -141,7 +143,7 @@ public:
   /**
    * See vtkDelaunaySurfaceRefiner. Ratio of the bounding box diagonal; default 1e-9; range 0 to 1.
    */
-  vtkSetClampMacro(FlatnessRatio, double, 0.0, 1.0);
+  vtkSetInRangeMacro(FlatnessRatio, double, 0.0, 1.0, "ratio of the bounding box diagonal");
   vtkGetMacro(FlatnessRatio, double);
   ///@}
 
@@ -150,7 +152,7 @@ public:
    * The refinement stops when it has made about so many points. Default 0: no limit where sizes are
    * asked for, otherwise 200 for each point of the mesh and 50000; range >= 0.
    */
-  vtkSetClampMacro(MaximumNewPoints, int, 0, VTK_INT_MAX);
+  vtkSetInRangeMacro(MaximumNewPoints, int, 0, VTK_INT_MAX, "points");
   vtkGetMacro(MaximumNewPoints, int);
   ///@}
 

@@ -30,6 +30,7 @@
 #define vtkStructuralEdgeExtractor_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkConformingDelaunayRanges.h"
 #include <vtkPolyDataAlgorithm.h>
 
 class CDMMESHING_EXPORT vtkStructuralEdgeExtractor : public vtkPolyDataAlgorithm
@@ -53,7 +54,7 @@ public:
    * Edges that bend by no more than this are smooth. Degrees; default 0: only numerically flat
    * edges are smooth; range 0 to 180.
    */
-  vtkSetClampMacro(AccuracyAngle, double, 0.0, 180.0);
+  vtkSetInRangeMacro(AccuracyAngle, double, 0.0, 180.0, "degrees");
   vtkGetMacro(AccuracyAngle, double);
   ///@}
 

@@ -80,6 +80,7 @@
 #define vtkTechnologyStructureSource_h
 
 #include "cdmMeshingModule.h" // For export macro
+#include "vtkConformingDelaunayRanges.h"
 #include <vtkPolyDataAlgorithm.h>
 
 #include <string> // For MakeDevice
@@ -112,7 +113,7 @@ public:
 
   ///@{
   /** The device to make. Default MOS_TRANSISTOR. */
-  vtkSetClampMacro(Structure, int, MOS_TRANSISTOR, CMOS_INVERTER);
+  vtkSetInRangeMacro(Structure, int, MOS_TRANSISTOR, CMOS_INVERTER, "one of Structures");
   vtkGetMacro(Structure, int);
   void SetStructureToMosTransistor() { this->SetStructure(MOS_TRANSISTOR); }
   void SetStructureToViaPlug() { this->SetStructure(VIA_PLUG); }
@@ -167,7 +168,7 @@ public:
    * MOS transistor, CMOS inverter: straight pieces of a spacer's flank. Default 3; range 1
    * (slanted) to 90.
    */
-  vtkSetClampMacro(SpacerSegments, int, 1, 90);
+  vtkSetInRangeMacro(SpacerSegments, int, 1, 90, "straight pieces");
   vtkGetMacro(SpacerSegments, int);
   ///@}
 
@@ -242,7 +243,7 @@ public:
 
   ///@{
   /** Vias: corners of the circle. Default 24; range 3 to 720. */
-  vtkSetClampMacro(NumberOfSegments, int, 3, 720);
+  vtkSetInRangeMacro(NumberOfSegments, int, 3, 720, "corners of the circle");
   vtkGetMacro(NumberOfSegments, int);
   ///@}
 
@@ -311,7 +312,7 @@ public:
 
   ///@{
   /** LOCOS, two-layer interconnect: straight pieces of StepLength. Default 6; range 1 to 90. */
-  vtkSetClampMacro(ProfileSegments, int, 1, 90);
+  vtkSetInRangeMacro(ProfileSegments, int, 1, 90, "straight pieces");
   vtkGetMacro(ProfileSegments, int);
   ///@}
 
@@ -362,13 +363,13 @@ public:
 
   ///@{
   /** DRAM interconnect: number of word lines, along x. Default 8; range 1 to 100. */
-  vtkSetClampMacro(NumberOfWordLines, int, 1, 100);
+  vtkSetInRangeMacro(NumberOfWordLines, int, 1, 100, "lines");
   vtkGetMacro(NumberOfWordLines, int);
   ///@}
 
   ///@{
   /** DRAM interconnect: number of bit lines, along y. Default 2; range 1 to 100. */
-  vtkSetClampMacro(NumberOfBitLines, int, 1, 100);
+  vtkSetInRangeMacro(NumberOfBitLines, int, 1, 100, "lines");
   vtkGetMacro(NumberOfBitLines, int);
   ///@}
 
@@ -387,7 +388,7 @@ public:
    * the via is shifted along x, as at a place away from the center of the wafer. Default 0; range 0
    * to 0.95.
    */
-  vtkSetClampMacro(BarrierAsymmetry, double, 0.0, 0.95);
+  vtkSetInRangeMacro(BarrierAsymmetry, double, 0.0, 0.95, "ratio of BarrierThickness");
   vtkGetMacro(BarrierAsymmetry, double);
   ///@}
 

@@ -87,6 +87,42 @@ void AskAgain(vtkSMProxy* display)
   display->MarkDirty(display);
 }
 
+vtkSMProxy* GetColorMap(vtkSMProxy* display)
+{
+  return vtkSMPropertyHelper(display, "LookupTable", true).GetAsProxy();
+}
+
+/** Whether what is visible in the view, other than this display, has cells with the same colors. */
+bool IsColorMapShared(pqDataRepresentation* display)
+{
+  vtkSMProxy* colors = GetColorMap(display->getProxy());
+  for (pqRepresentation* representation : display->getView()->getRepresentations())
+  {
+    auto* other = qobject_cast<pqDataRepresentation*>(representation);
+    if (other && other != display && other->isVisible() &&
+      vtkSMPVRepresentationProxy::GetUsingScalarColoring(other->getProxy()) &&
+      GetColorMap(other->getProxy()) == colors && HasCells(other->getOutputPortFromInput()))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/** Hides the legend of a display without cells, if it is that of nothing else; says if it was shown. */
+bool HideLegend(pqDataRepresentation* representation)
+{
+  auto* proxy = vtkSMPVRepresentationProxy::SafeDownCast(representation->getProxy());
+  vtkSMProxy* view = representation->getViewProxy();
+  if (!proxy || !representation->isVisible() || !proxy->GetUsingScalarColoring() ||
+    !proxy->IsScalarBarVisible(view) || IsColorMapShared(representation))
+  {
+    return false;
+  }
+  proxy->SetScalarBarVisibility(view, false);
+  return true;
+}
+
 /** Shows or hides the problems of a mesh in a view, if ParaView leaves that to others. */
 void ShowProblems(pqPipelineSource* source, vtkSMViewProxy* view, bool isShown)
 {
@@ -203,6 +239,7 @@ bool OutputDisplays::UpdateDisplay(pqDataRepresentation* representation)
   {
     ShowProblems(source, representation->getViewProxy(), !known.HasMesh);
   }
+  known.LostLegend = !known.HasCells && (before.LostLegend || HideLegend(representation));
   SetLook(representation, known, before);
   return true;
 }
@@ -231,10 +268,10 @@ void OutputDisplays::SetLook(
   {
     vtkSMPropertyHelper(proxy, "Representation").Set(known.HasMesh ? "Wireframe" : "Surface");
   }
-  if (representation->isVisible() && IsColoredBy(proxy, name) &&
-    (isFirst || (!known.HasCells && !isMesh)))
+  if (isFirst && representation->isVisible() && proxy->GetUsingScalarColoring() &&
+    (before.LostLegend || IsColoredBy(proxy, name)))
   {
-    proxy->SetScalarBarVisibility(representation->getViewProxy(), known.HasCells);
+    proxy->SetScalarBarVisibility(representation->getViewProxy(), true);
   }
   proxy->UpdateVTKObjects();
 }

@@ -17,7 +17,8 @@
  *     problems or faults, with the legend;
  *  5. problems and faults have thick lines and points, in front of the polygons that they are on.
  *     Without a mesh polygons with problems are surfaces, with one outlines, which do not hide it;
- *  6. while there are no problems or faults their legend is not shown.
+ *  6. while an output has no cells its legend is not shown, unless other displays in the view have
+ *     the same colors. It comes back with the cells.
  */
 #ifndef OutputDisplays_h
 #define OutputDisplays_h
@@ -41,6 +42,8 @@ private:
     bool WasEmpty = false;
     bool HasCells = false;
     bool HasMesh = false;
+    /** Its legend was shown, and was hidden when its cells were gone. */
+    bool LostLegend = false;
   };
 
   explicit OutputDisplays(QObject* parent);

@@ -622,10 +622,6 @@ TEST(ConformingDelaunayMesherFilter, SmoothsForSolversWithoutSigns)
   source->SetStructure(vtkTechnologyStructureSource::MOS_TRANSISTOR);
   vtkNew<vtkConformingDelaunayMesher> mesher;
   mesher->SetInputConnection(source->GetOutputPort());
-  mesher->SetSmoothingRounds(-1);
-  EXPECT_EQ(mesher->GetSmoothingRounds(), 0);
-  mesher->SetSmoothingRounds(101);
-  EXPECT_EQ(mesher->GetSmoothingRounds(), 100);
   std::vector<std::array<double, 2>> found;
   for (const int rounds : { 0, 4 })
   {
@@ -736,6 +732,38 @@ TEST(ConformingDelaunayMesherFilter, NamesRegionsOfLayers)
   ExpectSameCells(filter->GetOutput(), numbered);
   filter->AddLayers("Gas", "7", 2, 0.01, 2.0);
   ExpectFailure(filter, { "Layers 1", "Gas", "Oxide" }, 0);
+}
+
+TEST(ConformingDelaunayMesherFilter, EmptiesLayersByIdAndByNameOneByOne)
+{
+  vtkNew<vtkConformingDelaunayMesher> filter;
+  filter->SetMeshForToFewestPoints();
+  filter->SetInputData(MakeNamedBoxes());
+  filter->SetMaximumEdgeLength(0.25);
+  filter->GenerateMeshPointsOn();
+  const auto count = [&]
+  {
+    filter->Update();
+    return filter->GetOutput()->GetNumberOfPoints();
+  };
+  const vtkIdType none = count();
+  filter->AddLayers(3, 7, 1, 0.01, 1.0);
+  const vtkIdType byId = count();
+  filter->AddLayers("7", "Oxide", 1, 0.01, 1.0);
+  const vtkIdType both = count();
+  EXPECT_GT(byId, none);
+  EXPECT_GT(both, byId);
+  filter->RemoveAllLayersByName();
+  EXPECT_EQ(count(), byId);
+  filter->AddLayers("7", "Oxide", 1, 0.01, 1.0);
+  filter->RemoveAllLayersById();
+  const vtkIdType byName = count();
+  EXPECT_GT(byName, none);
+  EXPECT_LT(byName, both);
+  filter->AddLayers(3, 7, 1, 0.01, 1.0);
+  EXPECT_EQ(count(), both);
+  filter->RemoveAllLayers();
+  EXPECT_EQ(count(), none);
 }
 
 TEST(ConformingDelaunayMesherFilter, GeneratesMeshPoints)

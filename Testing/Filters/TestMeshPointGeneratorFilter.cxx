@@ -397,7 +397,10 @@ TEST(MeshPointGeneratorFilter, RefusesBadInput)
   run.Generator->RemoveAllLayers();
   run.Generator->AddLayers(3, 8, 2, 0.01, 1.0);
   ExpectFailure(run.Generator, { "region 3", "region 8", "no interface" });
-  run.Generator->RemoveAllLayers();
+  run.Generator->RemoveAllLayersById();
+  run.Generator->AddLayers("Gas", "7", 2, 0.01, 1.0);
+  ExpectFailure(run.Generator, { "Layers 0", "no region 'Gas'" });
+  run.Generator->RemoveAllLayersByName();
   run.Generator->AddYTick(std::numeric_limits<double>::infinity());
   ExpectFailure(run.Generator, { "tick of the y axis" });
   run.Generator->RemoveAllYTicks();

@@ -3,7 +3,7 @@
 
 Parses the server-manager XML, and compares it with the wrapped classes: each proxy and property
 has a help text, real numbers with their unit, each class has a proxy, each option of a class has a
-property with the same default, and output ports have names. What groups and decorators of the
+property with the same default and range, and output ports have names. What groups and decorators of the
 panels speak of is there. Angles have their unit in the label, lengths in that of their group, and no
 label changes the name that an option has in Python. ParaView's help file, if it was built, has a page and a picture for each
 proxy, and the page index.html, which ParaView opens first.
@@ -46,6 +46,18 @@ def GetOptions(cls):
     return {name[3:]: getattr(instance, "Get" + name[3:])()
             for name in methods
             if name.startswith("Set") and "Get" + name[3:] in methods and name != "SetController"}
+
+
+def GetDomain(element, largest):
+    """Smallest and largest value that the panel offers: of a list, or of a range."""
+    values = [float(entry.get("value")) for entry in element.iter("Entry")]
+    if values:
+        return min(values), max(values)
+    domain = element.find("DoubleRangeDomain")
+    domain = element.find("IntRangeDomain") if domain is None else domain
+    if domain is None or domain.get("min") is None:
+        return None, None
+    return float(domain.get("min")), float(domain.get("max", largest))
 
 
 proxies = {}
@@ -120,11 +132,23 @@ for name, proxy in sorted(proxies.items()):
         Check(text is not None and [float(word) for word in text.split()] ==
               [float(value) for value in values],
               name, option, "has the default", default, "and in the plugin", text)
+    # The range of a class is that of its property's domain, in which no end stands for none. A domain
+    # of the bounds of the input offers lengths.
+    instance = classes[name]()
+    for option in options:
+        element = commands.get("Set" + option)
+        if (element is None or not hasattr(instance, "Get%sMinValue" % option)
+                or element.find("BoundsDomain") is not None):
+            continue
+        largest = 2**31 - 1 if element.tag == "IntVectorProperty" else 1e299
+        low, high = GetDomain(element, largest)
+        Check((low, high) == (getattr(instance, "Get%sMinValue" % option)(),
+                              getattr(instance, "Get%sMaxValue" % option)()),
+              name, option, "has in the plugin the range", low, high)
     # Tables are filled by commands that add a row, and emptied by another one.
     for command in [*commands, *(child.get("clean_command") for child in properties.values())]:
         Check(not command or hasattr(classes[name], command), name, "has no method", command)
 
-    instance = classes[name]()
     ports = [port.get("name") for port in proxy.iter("OutputPort")]
     Check(len(ports) == instance.GetNumberOfOutputPorts(), name, "has the output ports", ports)
     inputs = [int(child.get("port_index", 0)) for child in properties.values()

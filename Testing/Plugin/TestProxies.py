@@ -160,6 +160,50 @@ for sizes in ([], ["Plug", 0.1], ["2", "0.1"]):
     counts.append(Count(sized))
 assert 0 < counts[0] < counts[1] == counts[2], counts
 
+# Layers by name or id, in a table, beside the table of ids that older scripts and states fill.
+layered = ConformingDelaunayMesher(Input=device, MeshFor="Fewest points", GenerateMeshPoints=1,
+                                   Placement="Layers only", Layers=[2, 0, 2, 0.002, 2])
+layered.UpdatePipeline()
+counts = [Count(layered)]
+for layers in (["Plug", "Insulator", "2", "0.002", "2"], ["2", "Insulator", "2", "0.002", "2"]):
+    layered.Layers = []
+    layered.LayersByName = layers
+    layered.UpdatePipeline()
+    counts.append(Count(layered))
+layered.LayersByName = []
+layered.UpdatePipeline()
+assert 0 < Count(layered) < counts[0] == counts[1] == counts[2], counts
+# Each table is emptied by itself.
+layered.Layers = [2, 0, 2, 0.002, 2]
+layered.LayersByName = ["Insulator", "Plug", "1", "0.002", "1"]
+layered.UpdatePipeline()
+both = Count(layered)
+layered.LayersByName = []
+layered.UpdatePipeline()
+assert both > Count(layered) == counts[0], (both, counts)
+errors = []
+
+
+def AddError(caller, event, text):
+    errors.append(text)
+
+
+AddError.CallDataType = "string0"
+layered.GetClientSideObject().AddObserver("ErrorEvent", AddError)
+layered.LayersByName = ["Plug", "Gas", "1", "0.002", "1"]
+print("The next error is expected.")
+layered.UpdatePipeline()
+assert Count(layered) == 0
+assert "no region 'Gas'" in errors[0] and "Insulator" in errors[0], errors
+generator = MeshPointGenerator(Input=BoundaryTriangulator(Input=device), Placement="Layers only",
+                               LayersByName=["Plug", "Insulator", "2", "0.02", "1"])
+generator.UpdatePipeline()
+byName = Count(generator)
+generator.LayersByName = []
+generator.Layers = [2, 0, 2, 0.02, 1]
+generator.UpdatePipeline()
+assert 0 < byName == Count(generator), (byName, Count(generator))
+
 # Labels of points, chosen by name: two halves, in 5 x 5 x 5 voxels.
 halves = Calculator(Input=wavelet, ResultArrayName="Material", Function="if(coordsX>0.5,2,1)")
 interfaces = MaterialInterfaceExtractor(Input=halves, Labels=["POINTS", "Material"])

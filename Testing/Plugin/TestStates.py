@@ -32,7 +32,7 @@ OPTIONS = {
     "Device": {"GateLength": 0.16},
     "Triangulator": {"MaximumGapEdges": 4},
     "Edges": {"AccuracyAngle": 10.0},
-    "Points": {"Layers": [0, -1, 2, 0.1, 1.5]},
+    "Points": {"Layers": [0, -1, 2, 0.1, 1.5], "LayersByName": ["0", "-1", "1", "0.05", "1"]},
     "Refiner": {"MaximumEdgeLength": 0.5},
     "Front": {"CloseOpenBoundary": 1},
     "Slivers": {"DihedralAngleTarget": 20.0},
