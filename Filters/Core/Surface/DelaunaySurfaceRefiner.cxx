@@ -289,7 +289,8 @@ Status SurfaceRefiner::Run()
 
 /**
  * Attempts to refine one surface: with the usual rules, with those for corners, thin layers and
- * stacks, and by the criterion Delaunay alone, until one attempt ends.
+ * stacks, by criterion 3.2 in place of 3.1, and by the criterion Delaunay alone, until one attempt
+ * ends.
  */
 class SurfaceAttempts
 {
@@ -392,19 +393,27 @@ Status SurfaceAttempts::Run()
     return first;
   }
   Status status;
+  const auto isOpen = [&] { return !status.IsAborted() && !this->IsSettled; };
   for (const MatchingRules rules :
     { MatchingRules::Corners, MatchingRules::ThinLayers, MatchingRules::Stacks })
   {
-    if (!status.IsAborted() && !this->IsSettled)
+    if (isOpen())
     {
       plan.Rules = rules;
       status = this->RunPlan(plan);
     }
   }
-  if (this->Options.Criterion != SurfaceCriterion::Delaunay && !status.IsAborted() &&
-    !this->IsSettled)
+  plan.Rules = MatchingRules::Usual;
+  const SurfaceCriterion criterion = this->Options.Criterion;
+  if (criterion == SurfaceCriterion::SmallestSphere && isOpen())
   {
-    plan.Rules = MatchingRules::Usual;
+    // The stronger criterion takes another way, edges before all triangles, and implies this one.
+    this->Options.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
+    status = this->RunPlan(plan);
+    this->Options.Criterion = criterion;
+  }
+  if (criterion != SurfaceCriterion::Delaunay && isOpen())
+  {
     plan.IsRelaxed = true;
     plan.GivesUp = false;
     status = this->RunPlan(plan);

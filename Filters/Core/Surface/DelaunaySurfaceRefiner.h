@@ -24,8 +24,8 @@
  *     Filters/Core/README.md has the rules, and says why they end;
  *  4. test again the triangles whose proving sphere holds the new point;
  *  5. if that does not end within the limits: start again with the rules for corners, with those
- *     for thin layers, with those for stacks (MatchingRules in PartnerPoints.h), then with the
- *     criterion Delaunay;
+ *     for thin layers, with those for stacks (MatchingRules in PartnerPoints.h), with criterion 3.2
+ *     if 3.1 was asked for, then with the criterion Delaunay;
  *  6. with an accuracy angle surface facets are curved, and points that mend one triangle may
  *     encroach on its neighbors without end. Where new points come much closer to each other than
  *     those of the input, the edges of the input triangles become structural, and the refinement
