@@ -84,8 +84,8 @@ public:
 
   ///@{
   /**
-   * Distance within which triangles count as flat, as a ratio of the bounding box diagonal: the
-   * rounding of coordinates. Raise it to 1e-7 for coordinates that were rounded to
+   * Distance within which triangles count as flat, as a ratio of the bounding box diagonal or, far
+   * from the origin, of 5e-7 times the largest coordinate: the rounding of coordinates. Raise it to 1e-7 for coordinates that were rounded to
    * single precision, which saves points. Default 1e-9; range 0 to 1.
    */
   vtkSetInRangeMacro(FlatnessRatio, double, 0.0, 1.0, "ratio of the bounding box diagonal");

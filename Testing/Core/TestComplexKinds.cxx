@@ -263,6 +263,46 @@ TEST(ComplexKinds, Boxes)
   ExpectFulfilled(MeshComplexes(ComplexKind::Boxes, 400));
 }
 
+/**
+ * Boxes whose coordinates are 1e7 to 1e8 times as large as they are: the diagonals of their
+ * rectangles bend by more than 1e-9 of the box when it is rotated and rounded.
+ */
+TEST(ComplexKinds, RectanglesFarFromTheOriginStayFlat)
+{
+  for (const std::uint64_t seed : { 2441, 8062, 11796 })
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    ComplexMaker maker(ComplexKind::Boxes, seed);
+    PolygonSoup soup = maker.Make();
+    maker.Place(soup);
+    BoundaryTriangulatorOutput triangulated;
+    ASSERT_TRUE(TriangulateBoundary(soup, {}, {}, triangulated).IsOk());
+    bool isFulfilled = false;
+    EXPECT_EQ(
+      MeshComplex(triangulated.Surface, SurfaceCriterion::SmallestSphereAndEdges, isFulfilled),
+      triangulated.Surface.Points.size());
+    EXPECT_TRUE(isFulfilled);
+  }
+}
+
+/** Chains of ever smaller triangles at a corner: edges before all triangles lead past them. */
+TEST(ComplexKinds, EdgesFirstWhereTrianglesDoNotEnd)
+{
+  for (const std::uint64_t seed : { 5611, 22992 })
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    ComplexMaker maker(ComplexKind::Pyramids, seed);
+    PolygonSoup soup = maker.Make();
+    maker.Place(soup);
+    BoundaryTriangulatorOutput triangulated;
+    ASSERT_TRUE(TriangulateBoundary(soup, {}, {}, triangulated).IsOk());
+    bool isFulfilled = false;
+    EXPECT_LT(
+      MeshComplex(triangulated.Surface, SurfaceCriterion::SmallestSphere, isFulfilled), 600u);
+    EXPECT_TRUE(isFulfilled);
+  }
+}
+
 /** Not all fulfil the stronger criteria; all are meshed. */
 TEST(ComplexKinds, Fans)
 {

@@ -251,6 +251,25 @@ TEST(StructuralEdges, TinyAndHugeModelsAreJudgedAlike)
   }
 }
 
+/** Rounding bends the diagonals of its sides by more than 1e-9 of the cube from 1e7 on. */
+TEST(StructuralEdges, DiagonalsAreSmoothFarFromTheOrigin)
+{
+  for (const double distance : { 0.0, 1e6, 1e7, 1e8, 1e9 })
+  {
+    SCOPED_TRACE(distance);
+    TriangleMesh cube = MakeCube();
+    for (Vec3& p : cube.Points)
+    {
+      // A rotation by the columns of an orthogonal matrix.
+      p = p.X * Vec3{ 2.0 / 3, 2.0 / 3, 1.0 / 3 } + p.Y * Vec3{ -2.0 / 3, 1.0 / 3, 2.0 / 3 } +
+        p.Z * Vec3{ 1.0 / 3, -2.0 / 3, 2.0 / 3 } + Vec3{ distance, 0.7 * distance, -distance };
+    }
+    StructuralEdgesOutput output;
+    ASSERT_TRUE(ExtractStructuralEdges(cube, {}, {}, output).IsOk());
+    EXPECT_EQ(output.Edges.size(), 12u);
+  }
+}
+
 TEST(StructuralEdges, BoundingBoxDiagonal)
 {
   EXPECT_EQ(0.0, GetBoundingBoxDiagonal({}));

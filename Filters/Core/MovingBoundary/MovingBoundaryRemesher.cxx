@@ -442,8 +442,7 @@ Status Remeshing::Simplify(const ExecutionContext& context, Surface& surface) co
   }
   TriangleMesh coarse = surface.Mesh;
   CoarsenSurface(isNew,
-    this->Options.Refinement.StructuralEdges.FlatnessRatio * GetBoundingBoxDiagonal(coarse.Points),
-    coarse);
+    GetFlatness(this->Options.Refinement.StructuralEdges.FlatnessRatio, coarse.Points), coarse);
   std::vector<TrianglePair> pairs;
   if (!FindIntersectingPairs(coarse.Points, coarse.Triangles, {}, context, pairs))
   {

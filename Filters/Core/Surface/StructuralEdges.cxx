@@ -26,6 +26,9 @@ constexpr double SafeAngle = 1e-5;
 /** How many loop steps pass between two calls of ExecutionContext::Continue(). */
 constexpr std::size_t ContinueInterval = 1 << 14;
 
+/** The size of a surface is at least this part of its largest coordinate; see StructuralEdges.h. */
+constexpr double CoordinateSize = 5e-7;
+
 /** The half plane that begins at the edge a-b and holds a third point. */
 struct HalfPlane
 {
@@ -347,6 +350,16 @@ double GetBoundingBoxDiagonal(const std::vector<Vec3>& points)
   return Distance(lower, upper);
 }
 
+double GetFlatness(double flatnessRatio, const std::vector<Vec3>& points)
+{
+  double largest = 0.0;
+  for (const Vec3& point : points)
+  {
+    largest = std::max({ largest, std::abs(point.X), std::abs(point.Y), std::abs(point.Z) });
+  }
+  return flatnessRatio * std::max(GetBoundingBoxDiagonal(points), CoordinateSize * largest);
+}
+
 namespace
 {
 Status RunExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeOptions& options,
@@ -358,7 +371,7 @@ Status RunExtractStructuralEdges(const TriangleMesh& surface, const StructuralEd
   {
     return status;
   }
-  const double flatness = options.FlatnessRatio * GetBoundingBoxDiagonal(surface.Points);
+  const double flatness = GetFlatness(options.FlatnessRatio, surface.Points);
   const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
   const auto isExact = [&options](Id use)
   { return !options.IsExact.empty() && options.IsExact[use / 3] != 0; };

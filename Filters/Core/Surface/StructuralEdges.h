@@ -9,12 +9,15 @@
  * between different BoundaryLabels, or if its dihedral angle differs from 180 degrees by more than
  * the accuracy angle. Two triangles count as flat, whatever the accuracy angle, if they bend by
  * less than one degree and if each opposite vertex is no farther from the other's plane than
- * FlatnessRatio times the size of the surface: coordinates in files are rounded.
+ * FlatnessRatio times the size of the surface: coordinates in files are rounded. Far from the
+ * origin coordinates are rounded to more than that. So the size is the diagonal of the bounding box
+ * or, if that is larger, 5e-7 times the largest coordinate: with the default ratio, about four
+ * times what the largest coordinate is rounded by.
  *
  * Exactly: let n and m be the normals of the two triangles, reversed where needed so that the
  * triangles are oriented consistently along their edge; the edge bends by the angle between n and m
  * (0 is flat, 180 folded back). The edge is smooth if it bends by no more than the accuracy angle,
- * or by no more than one degree with both distances within FlatnessRatio * diagonal. A triangle
+ * or by no more than one degree with both distances within FlatnessRatio * size. A triangle
  * without area has no normal: its edges are never smooth. Labels are compared after the triangles
  * have been oriented consistently; surfaces without labels have no label change. After a
  * refinement, small triangles may bend within FlatnessRatio at edges that were structural: the
@@ -70,7 +73,7 @@ struct StructuralEdgeOptions
 {
   /** Degrees, 0 to 180: edges that bend by no more are smooth. 0: only numerically flat ones. */
   double AccuracyAngle = 0.0;
-  /** Distance, as a ratio of the bounding box diagonal, within which triangles count as flat. */
+  /** Distance, as a ratio of the size of the surface, within which triangles count as flat. */
   double FlatnessRatio = 1e-9;
   /**
    * Surface facet of each triangle, as NumberFacets() gave it for the surface that this one
@@ -114,6 +117,9 @@ bool IsSmoothEdge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, do
 
 /** Diagonal of the bounding box of the points; 0 without points. */
 double GetBoundingBoxDiagonal(const std::vector<Vec3>& points);
+
+/** The distance within which triangles of a surface with these points count as flat. */
+double GetFlatness(double flatnessRatio, const std::vector<Vec3>& points);
 } // namespace cdm
 
 #endif

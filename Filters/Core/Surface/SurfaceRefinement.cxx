@@ -51,7 +51,7 @@ SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
   : Options(options), Plan(plan), Points(surface.Points),
     NumberOfSurfacePoints(static_cast<Id>(surface.Points.size())),
     Diagonal(GetBoundingBoxDiagonal(surface.Points)),
-    Flatness(options.StructuralEdges.FlatnessRatio * this->Diagonal),
+    Flatness(GetFlatness(options.StructuralEdges.FlatnessRatio, surface.Points)),
     MinimumEdge(options.MinimumEdgeRatio * this->Diagonal),
     Test(this->Points, this->Octree), Limits{ options.MaximumEdgeLength, options.MaximumArea,
       options.MinimumAngle, std::move(sizing) }
