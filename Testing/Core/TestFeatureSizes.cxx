@@ -18,7 +18,7 @@ using namespace cdm;
 
 namespace
 {
-StructuralEdge MakeEdge(Id a, Id b)
+StructuralEdge MakeStructuralEdge(Id a, Id b)
 {
   StructuralEdge edge;
   edge.Points = { a, b };
@@ -41,7 +41,7 @@ TEST(FeatureSizes, OfParallelEdges)
 {
   const std::vector<Vec3> points{ { 0.0, 0.0, 0.0 }, { 10.0, 0.0, 0.0 }, { 0.0, 0.5, 0.0 },
     { 10.0, 0.5, 0.0 } };
-  const FeatureSizes sizes(points, {}, {}, { MakeEdge(0, 1), MakeEdge(2, 3) });
+  const FeatureSizes sizes(points, {}, {}, { MakeStructuralEdge(0, 1), MakeStructuralEdge(2, 3) });
   EXPECT_DOUBLE_EQ(sizes.Find({ 5.0, 0.0, 0.0 }, 10.0), 0.5);
   EXPECT_DOUBLE_EQ(sizes.Find({ 5.0, 0.25, 0.0 }, 10.0), 0.25);
   EXPECT_DOUBLE_EQ(sizes.Find({ 13.0, -3.5, 0.0 }, 10.0), 5.0);
@@ -53,10 +53,11 @@ TEST(FeatureSizes, EdgesWithACommonEndDoNotCount)
 {
   const std::vector<Vec3> points{ { 0.0, 0.0, 0.0 }, { 10.0, 0.0, 0.0 }, { 10.0, 0.1, 0.0 },
     { 20.0, 0.0, 0.0 } };
-  const FeatureSizes fan(points, {}, {}, { MakeEdge(0, 1), MakeEdge(0, 2) });
+  const FeatureSizes fan(points, {}, {}, { MakeStructuralEdge(0, 1), MakeStructuralEdge(0, 2) });
   EXPECT_DOUBLE_EQ(fan.Find({ 5.0, 0.0, 0.0 }, 100.0), 100.0);
   // The chain goes on from 1 to 3, which does not touch the edge from 0 to 2.
-  const FeatureSizes chain(points, {}, {}, { MakeEdge(0, 1), MakeEdge(0, 2), MakeEdge(1, 3) });
+  const FeatureSizes chain(points, {}, {},
+    { MakeStructuralEdge(0, 1), MakeStructuralEdge(0, 2), MakeStructuralEdge(1, 3) });
   EXPECT_DOUBLE_EQ(chain.Find({ 5.0, 0.0, 0.0 }, 100.0), 5.0);
   EXPECT_DOUBLE_EQ(FeatureSizes({}, {}, {}, {}).Find({ 0.0, 0.0, 0.0 }, 2.0), 2.0);
 }
@@ -87,7 +88,7 @@ TEST(FeatureSizes, OfALayerItsThickness)
     {
       if ((a & axis) == 0)
       {
-        edges.push_back(MakeEdge(a, a + axis));
+        edges.push_back(MakeStructuralEdge(a, a + axis));
       }
     }
   }
@@ -142,7 +143,7 @@ void CompareWithAllPairs(std::uint64_t seed)
       {
         if (coordinate(generator) < 0.2)
         {
-          edges.push_back(MakeEdge(a, b));
+          edges.push_back(MakeStructuralEdge(a, b));
         }
       }
     }

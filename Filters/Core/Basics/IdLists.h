@@ -8,6 +8,7 @@
 #ifndef cdmIdLists_h
 #define cdmIdLists_h
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Basics/Types.h"
 
 #include <algorithm>
@@ -110,12 +111,7 @@ inline bool IsTriangle(const std::vector<TriangleIds>& triangles, const IdLists&
   }
   const IdLists::Range around = pointTriangles[points[0]];
   return std::any_of(around.begin(), around.end(),
-    [&](Id t)
-    {
-      const auto has = [&ids = triangles[t]](Id point)
-      { return ids[0] == point || ids[1] == point || ids[2] == point; };
-      return has(points[1]) && has(points[2]);
-    });
+    [&](Id t) { return Contains(triangles[t], points[1]) && Contains(triangles[t], points[2]); });
 }
 } // namespace cdm
 
