@@ -122,16 +122,23 @@ class ProofSearch
 {
 public:
   ProofSearch(const std::vector<BoundSimplex>& simplices, double bound)
-    : Used(simplices.size(), 0), Simplices(simplices), Boxes(GetBoxes(simplices)), Bound(bound)
+    : Simplices(simplices), Boxes(GetBoxes(simplices)), Bound(bound)
   {
   }
 
-  /** candidates: ascending; first: one of them that may be the nearest one. */
-  bool Prove(const Piece& piece, const std::vector<Id>& candidates, Id first);
+  /** candidates: ascending. */
+  bool Prove(const Piece& piece, const std::vector<Id>& candidates)
+  {
+    this->Used.assign(this->Simplices.size(), 0);
+    return !candidates.empty() && this->Prove(piece, candidates, candidates.front());
+  }
 
+  /** Marks the simplices that the last proof needed. */
   std::vector<char> Used;
 
 private:
+  /** first: one of the candidates that may be the nearest one. */
+  bool Prove(const Piece& piece, const std::vector<Id>& candidates, Id first);
   bool IsNearer(Id candidate, const Vec3& position, double square) const
   {
     return (1.0 - Slack) * this->Boxes[candidate].GetSquaredDistance(position) <= square;
@@ -305,8 +312,7 @@ bool DeviationBound::IsNear(const BoundSimplex& simplex) const
         candidates.push_back(this->Original[id]);
       }
     });
-  return !all.empty() &&
-    ProofSearch(candidates, this->Bound).Prove(Piece(simplex.Corners), all, all.front());
+  return ProofSearch(candidates, this->Bound).Prove(Piece(simplex.Corners), all);
 }
 
 bool DeviationBound::FindNearest(
@@ -376,6 +382,7 @@ bool DeviationBound::FindWitnesses(const std::vector<Id>& removed,
       numbers.push_back(other);
     }
   }
+  ProofSearch search(offered, this->Bound);
   for (const Id original : affected)
   {
     std::vector<Id> candidates;
@@ -386,9 +393,7 @@ bool DeviationBound::FindWitnesses(const std::vector<Id>& removed,
         candidates.push_back(i);
       }
     }
-    ProofSearch search(offered, this->Bound);
-    if (candidates.empty() ||
-      !search.Prove(Piece(this->Original[original].Corners), candidates, candidates.front()))
+    if (!search.Prove(Piece(this->Original[original].Corners), candidates))
     {
       return false;
     }
