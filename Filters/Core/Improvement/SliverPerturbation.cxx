@@ -199,9 +199,11 @@ bool Perturbation::Move(Id point, int patience)
     }
     return false;
   };
+  const auto locate = [&](const Vec3& position)
+  { return this->Tetrahedra.Locate(position, filled.front()); };
   const auto findCavity = [&](const Vec3& position, double required)
   {
-    const Id first = this->Tetrahedra.Locate(position, filled.front());
+    const Id first = locate(position);
     return first != NoId && this->FindCavity(position, first, point, floor, required);
   };
   const auto rate = [&](const Vec3& position, double required)
@@ -247,8 +249,7 @@ bool Perturbation::Move(Id point, int patience)
     this->Tetrahedra.UndoRemove();
     return false;
   }
-  // Nothing is required of the best position any more.
-  findCavity(best.Position, 0.0);
+  this->Mesh.FindCavity(best.Position, locate(best.Position), point);
   this->Mesh.Restore(point, best.Position);
   return true;
 }
