@@ -80,6 +80,16 @@ std::size_t MeshComplex(const TriangleMesh& surface, SurfaceCriterion criterion,
   return refined.Surface.Points.size();
 }
 
+/** A complex, rotated, moved and scaled; whether it is one. */
+bool MakePlaced(ComplexKind kind, std::uint64_t seed, BoundaryTriangulatorOutput& triangulated)
+{
+  ComplexMaker maker(kind, seed);
+  PolygonSoup soup = maker.Make();
+  maker.Place(soup);
+  return TriangulateBoundary(soup, {}, {}, triangulated).IsOk() &&
+    !triangulated.Surface.Triangles.empty();
+}
+
 KindCounts MeshComplexes(ComplexKind kind, std::uint64_t usualCount)
 {
   KindCounts counts;
@@ -87,12 +97,8 @@ KindCounts MeshComplexes(ComplexKind kind, std::uint64_t usualCount)
   const std::uint64_t count = GetFromEnvironment("CDM_COMPLEXES", usualCount);
   for (std::uint64_t seed = first; seed < first + count; ++seed)
   {
-    ComplexMaker maker(kind, seed);
-    PolygonSoup soup = maker.Make();
-    maker.Place(soup);
     BoundaryTriangulatorOutput triangulated;
-    if (!TriangulateBoundary(soup, {}, {}, triangulated).IsOk() ||
-      triangulated.Surface.Triangles.empty())
+    if (!MakePlaced(kind, seed, triangulated))
     {
       // All is outside, or what is thin intersects itself when it is turned and rounded.
       continue;
@@ -272,11 +278,8 @@ TEST(ComplexKinds, RectanglesFarFromTheOriginStayFlat)
   for (const std::uint64_t seed : { 2441, 8062, 11796 })
   {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    ComplexMaker maker(ComplexKind::Boxes, seed);
-    PolygonSoup soup = maker.Make();
-    maker.Place(soup);
     BoundaryTriangulatorOutput triangulated;
-    ASSERT_TRUE(TriangulateBoundary(soup, {}, {}, triangulated).IsOk());
+    ASSERT_TRUE(MakePlaced(ComplexKind::Boxes, seed, triangulated));
     bool isFulfilled = false;
     EXPECT_EQ(
       MeshComplex(triangulated.Surface, SurfaceCriterion::SmallestSphereAndEdges, isFulfilled),
@@ -291,11 +294,8 @@ TEST(ComplexKinds, EdgesFirstWhereTrianglesDoNotEnd)
   for (const std::uint64_t seed : { 5611, 22992 })
   {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    ComplexMaker maker(ComplexKind::Pyramids, seed);
-    PolygonSoup soup = maker.Make();
-    maker.Place(soup);
     BoundaryTriangulatorOutput triangulated;
-    ASSERT_TRUE(TriangulateBoundary(soup, {}, {}, triangulated).IsOk());
+    ASSERT_TRUE(MakePlaced(ComplexKind::Pyramids, seed, triangulated));
     bool isFulfilled = false;
     EXPECT_LT(
       MeshComplex(triangulated.Surface, SurfaceCriterion::SmallestSphere, isFulfilled), 600u);

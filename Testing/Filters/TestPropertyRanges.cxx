@@ -101,31 +101,26 @@ TEST(PropertyRanges, EveryRangeIsKept)
 
 TEST(PropertyRanges, ErrorsNamePropertyValueRangeAndUnit)
 {
-  vtkNew<vtkConformingDelaunayMesher> mesher;
   vtkNew<EventRecorder> recorder;
+  const auto expectError = [&recorder](const char* text)
+  { EXPECT_TRUE(Contains(recorder->Errors, text)) << recorder->Errors; };
+  vtkNew<vtkConformingDelaunayMesher> mesher;
   recorder->Watch(mesher);
   mesher->SetMinimumAngle(12.5);
   mesher->SetMinimumAngle(45.0);
-  EXPECT_TRUE(Contains(recorder->Errors,
-    "MinimumAngle cannot be 45: give a number from 0 to 30 (degrees). It stays 12.5."))
-    << recorder->Errors;
+  expectError("MinimumAngle cannot be 45: give a number from 0 to 30 (degrees). It stays 12.5.");
   mesher->SetMaximumArea(-5.0);
-  EXPECT_TRUE(Contains(recorder->Errors,
-    "MaximumArea cannot be -5: give a finite number from 0 on (square model units). It stays 0."))
-    << recorder->Errors;
+  expectError(
+    "MaximumArea cannot be -5: give a finite number from 0 on (square model units). It stays 0.");
   mesher->SetCriterion(3);
-  EXPECT_TRUE(Contains(recorder->Errors,
-    "Criterion cannot be 3: give a whole number from -1 to 2 (one of Criteria; -1: automatic). It "
-    "stays -1."))
-    << recorder->Errors;
+  expectError("Criterion cannot be 3: give a whole number from -1 to 2 (one of Criteria; -1: "
+              "automatic). It stays -1.");
   mesher->SetMaximumGapEdges(-1);
-  EXPECT_TRUE(Contains(recorder->Errors,
-    "MaximumGapEdges cannot be -1: give a whole number from 0 on (open edges). It stays 0."))
-    << recorder->Errors;
+  expectError(
+    "MaximumGapEdges cannot be -1: give a whole number from 0 on (open edges). It stays 0.");
   vtkNew<vtkGmshMeshWriter> writer;
   recorder->Watch(writer);
   writer->SetScale(0.0);
-  EXPECT_TRUE(Contains(recorder->Errors,
-    "Scale cannot be 0: give a finite number above 0 (factor of the coordinates). It stays 1."))
-    << recorder->Errors;
+  expectError(
+    "Scale cannot be 0: give a finite number above 0 (factor of the coordinates). It stays 1.");
 }
