@@ -356,6 +356,10 @@ cdm::Status vtkConformingDelaunayMesher::MakeChoices(cdm::MeshOptionChoices& cho
   {
     choices.RemovesSlivers = this->RemoveSlivers != 0;
   }
+  if (this->GenerateMeshPoints != AUTOMATIC)
+  {
+    choices.GeneratesMeshPoints = this->GenerateMeshPoints != 0;
+  }
   return ToChoice(
     "DihedralAngleTarget", this->DihedralAngleTarget, 70.0, choices.DihedralAngleTarget)
     .Then(
@@ -386,7 +390,6 @@ cdm::Status vtkConformingDelaunayMesher::MakeOptions(
   options.Surface.MinimumAngle = this->MinimumAngle;
   options.Surface.MaximumArea = this->MaximumArea;
   options.Surface.MeshPointClearanceRatio = this->MeshPointClearanceRatio;
-  options.GeneratesMeshPoints = this->GenerateMeshPoints;
   options.MeshPoints.Placement = static_cast<cdm::PointPlacement>(this->Placement);
   options.MeshPoints.Spacing = { this->Spacing[0], this->Spacing[1], this->Spacing[2] };
   options.RegionSizes.Growth = this->Growth;
@@ -421,6 +424,7 @@ cdm::Status vtkConformingDelaunayMesher::MeshPolygons(const std::string& prefix,
   cdm::ConformingMesherInput engineInput;
   engineInput.Polygons = &soup;
   engineInput.MeshPoints = &points;
+  engineInput.HasPointData = input->GetPointData()->GetNumberOfArrays() > 0;
   cdm::ConformingMesherOptions options;
   const cdm::Status converted = cdm::RunGuarded(
     [&]

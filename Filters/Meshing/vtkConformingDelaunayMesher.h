@@ -15,9 +15,9 @@
  *     generated points are free, those of port 1 are not;
  *  6. a check of the result, from the output alone.
  *
- * MeshFor says what the mesh is for. It decides Criterion, MaximumEdgeLength, AddSteinerPoints,
- * RemoveSlivers, DihedralAngleTarget and RadiusEdgeRatio (Core/Pipeline/MeshPurpose.h), each as long
- * as it is AUTOMATIC (-1), its default; what is set counts. The field arrays of the mesh MeshFor
+ * MeshFor says what the mesh is for. It decides Criterion, MaximumEdgeLength, GenerateMeshPoints,
+ * AddSteinerPoints, RemoveSlivers, DihedralAngleTarget and RadiusEdgeRatio
+ * (Core/Pipeline/MeshPurpose.h), each as long as it is AUTOMATIC (-1), its default; what is set counts. The field arrays of the mesh MeshFor
  * (int) and MaximumEdgeLength (double, model units) have what was used, and the last line of the
  * certificate has all of it.
  *
@@ -259,11 +259,13 @@ public:
   ///@{
   /**
    * Whether to place mesh points inside of the regions by vtkMeshPointGenerator, as dense as the
-   * sizing input asks for, or without it Spacing. Default off.
+   * sizing input asks for, or without it Spacing. With Steiner points they lie so that no edge
+   * between them is too long: far fewer points are needed inside. 0: no; 1: yes; default AUTOMATIC:
+   * with Steiner points and a size or sizing, but not for the fewest points.
    */
-  vtkSetMacro(GenerateMeshPoints, bool);
-  vtkGetMacro(GenerateMeshPoints, bool);
-  vtkBooleanMacro(GenerateMeshPoints, bool);
+  vtkSetInRangeMacro(GenerateMeshPoints, int, AUTOMATIC, 1, "0: no; 1: yes; -1: automatic");
+  vtkGetMacro(GenerateMeshPoints, int);
+  vtkBooleanMacro(GenerateMeshPoints, int);
   ///@}
 
   ///@{
@@ -405,7 +407,7 @@ protected:
   std::vector<std::pair<std::string, double>> RegionSizes;
   double Growth = 0.3;
   double MaximumDeviation = AUTOMATIC;
-  bool GenerateMeshPoints = false;
+  int GenerateMeshPoints = AUTOMATIC;
   int Placement = vtkMeshPointGenerator::OCTREE;
   double Spacing[3] = { 0.0, 0.0, 0.0 };
   std::vector<std::pair<std::array<std::string, 2>, std::array<double, 3>>> Layers;

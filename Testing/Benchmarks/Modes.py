@@ -3,7 +3,7 @@
 
     Modes.py OUTPUT [--models FOLDER] [--limit SECONDS] [--only MODEL ...]
 
-The modes: defaults; with the edge length L, a twentieth of the diagonal of the bounding box; L with
+The modes: defaults; with the edge length L, a twentieth of the diagonal of the bounding box; L without
 generated mesh points; L for finite elements. Gmsh and TetGen get the same L: Gmsh as its longest
 edge, with surfaces of triangles classified and meshed anew, TetGen as the volume of the regular
 tetrahedron. Devices, and an STL file of Data/Input, are always there; models are .vtp files of the
@@ -37,7 +37,7 @@ MODELS = ("hand_igl", "td_stanfordbunny", "igl_fertility", "tm_1002_tray_bottom"
 MODES = {
     "defaults": {},
     "L": {"edge_length": True},
-    "L, mesh points": {"edge_length": True, "generate_mesh_points": True},
+    "L, no mesh points": {"edge_length": True, "generate_mesh_points": False},
     "L, finite elements": {"edge_length": True, "mesh_for": "finite elements"},
 }
 #: Of triangles that lie on a curved side of the model, for Gmsh. Degrees.

@@ -150,7 +150,7 @@ TEST(ConformingMesher, ErrorsNamePolygonsAndPointsOfTheInput)
 
   input.Polygons = &closed;
   ConformingMesherOptions options;
-  options.GeneratesMeshPoints = true;
+  options.Choices.GeneratesMeshPoints = true;
   options.MeshPoints.Layers = { { 0, 5, 1, 0.1, 1.0 } };
   EXPECT_EQ(MeshPolygons(input, options, {}, output).Code, StatusCode::InvalidOption);
 }
@@ -181,7 +181,7 @@ TEST(ConformingMesher, MeshPointsAndSteinerPointsDoNotMultiply)
     ConformingMesherOptions options;
     options.Choices.MaximumEdgeLength = length;
     const std::size_t alone = Mesh(tray, options).Mesh.Tetrahedra.size();
-    options.GeneratesMeshPoints = true;
+    options.Choices.GeneratesMeshPoints = true;
     for (const PointPlacement placement :
       { PointPlacement::Octree, PointPlacement::OrthoProduct, PointPlacement::Random })
     {
@@ -192,6 +192,83 @@ TEST(ConformingMesher, MeshPointsAndSteinerPointsDoNotMultiply)
       EXPECT_TRUE(both.Certificate.IsClean()) << both.Certificate.GetText();
     }
   }
+}
+
+/** Inside of a body whose size is what needs points, a lattice needs half as many tetrahedra. */
+TEST(ConformingMesher, SizesAreFilledByALattice)
+{
+  const PolygonSoup cube = MakeCube();
+  ConformingMesherOptions options;
+  // Cubes that do not fit the edge of the body evenly.
+  options.Choices.MaximumEdgeLength = 0.07;
+  const ConformingMesherOutput automatic = Mesh(cube, options);
+  EXPECT_TRUE(automatic.Settings.GeneratesMeshPoints);
+  options.Choices.GeneratesMeshPoints = false;
+  const ConformingMesherOutput refined = Mesh(cube, options);
+  EXPECT_LT(automatic.Mesh.Tetrahedra.size(), 0.8 * refined.Mesh.Tetrahedra.size());
+  for (const ConformingMesherOutput* const output : { &automatic, &refined })
+  {
+    EXPECT_TRUE(output->Certificate.IsClean()) << output->Certificate.GetText();
+    EXPECT_GE(output->Certificate.SmallestDihedralAngle, 15.0);
+    for (const TetrahedronIds& ids : output->Mesh.Tetrahedra)
+    {
+      for (int i = 0; i < 4; ++i)
+      {
+        for (int j = 0; j < i; ++j)
+        {
+          EXPECT_LE(Distance(output->Mesh.Points[ids[i]], output->Mesh.Points[ids[j]]),
+            0.07 * (1.0 + 1e-12));
+        }
+      }
+    }
+  }
+}
+
+/** The octree follows a graded sizing by halves: where it is too fine, refinement does it. */
+TEST(ConformingMesher, LatticeCostsNothingInGradedSizings)
+{
+  const PolygonSoup cube = MakeCube();
+  ConformingMesherInput input;
+  input.Polygons = &cube;
+  for (const double growth : { 0.05, 0.2, 0.5 })
+  {
+    input.Sizing = [growth](const Vec3& p) {
+      return 0.05 + growth * Distance(p, { 0.3, 0.4, 0.5 });
+    };
+    std::size_t counts[2];
+    for (const bool isGenerating : { false, true })
+    {
+      ConformingMesherOptions options;
+      options.Choices.GeneratesMeshPoints = isGenerating;
+      ConformingMesherOutput output;
+      ASSERT_TRUE(MeshPolygons(input, options, {}, output).IsOk());
+      EXPECT_TRUE(output.Certificate.IsClean()) << output.Certificate.GetText();
+      counts[isGenerating] = output.Mesh.Tetrahedra.size();
+    }
+    EXPECT_LE(counts[1], 1.05 * counts[0]) << "growth " << growth;
+  }
+}
+
+/** Of what was not asked for no error comes: the octree cannot be so fine, or so large. */
+TEST(ConformingMesher, AutomaticMeshPointsEndNothing)
+{
+  const PolygonSoup cube = MakeCube();
+  ConformingMesherOptions options;
+  options.Choices.MaximumEdgeLength = 0.3;
+  options.MeshPoints.MaximumNumberOfPoints = 10;
+  const ConformingMesherOutput output = Mesh(cube, options);
+  EXPECT_FALSE(output.Settings.GeneratesMeshPoints);
+  EXPECT_TRUE(output.Warnings.empty());
+  EXPECT_TRUE(output.Certificate.IsClean());
+  options.Choices.GeneratesMeshPoints = true;
+  ConformingMesherInput input;
+  input.Polygons = &cube;
+  ConformingMesherOutput failed;
+  EXPECT_EQ(MeshPolygons(input, options, {}, failed).Code, StatusCode::LimitReached);
+  // Layers are never left out without a word.
+  options.Choices.GeneratesMeshPoints = false;
+  options.MeshPoints.Layers = { { 0, OutsideRegion, 1, 0.1, 1.0 } };
+  EXPECT_TRUE(Warns(Mesh(cube, options), "layers are not made"));
 }
 
 /** What has ended a stage before the sizes are reached is said. */
@@ -223,7 +300,7 @@ TEST(ConformingMesher, AbortsAtAnyTimeAndNamesItsStages)
   input.Polygons = &cube;
   ConformingMesherOptions options;
   options.Choices.MaximumEdgeLength = 0.2;
-  options.GeneratesMeshPoints = true;
+  options.Choices.GeneratesMeshPoints = true;
   options.Choices.AddsSteinerPoints = true;
   double last = 0.0;
   double end = 2.0;

@@ -128,12 +128,12 @@ TEST(MeshPointGenerator, LatticesInABoxHaveClosedFormCounts)
     EXPECT_EQ(Count(box, ortho, PointTemplate::BodyCentered, edge / bodyEdge), corners + centers);
     EXPECT_EQ(Count(box, ortho, PointTemplate::FaceCentered, edge / faceEdge), corners + sides);
   }
-  // An octree with one spacing has cells of one size: the smallest power of two that fits.
+  // An octree with one spacing has cells of one size that fill the box.
   const PointPlacement octree = PointPlacement::Octree;
   EXPECT_EQ(Count(box, octree, PointTemplate::Corners, 0.14), 7u * 7u * 7u);
   EXPECT_EQ(Count(box, octree, PointTemplate::Centers, 0.14), 8u * 8u * 8u);
   EXPECT_EQ(Count(box, octree, PointTemplate::BodyCentered, 0.1), 343u + 512u);
-  EXPECT_EQ(Count(box, octree, PointTemplate::FaceCentered, 0.1), 343u + 3u * 64u * 7u);
+  EXPECT_EQ(Count(box, octree, PointTemplate::FaceCentered, 0.1), 216u + 3u * 49u * 6u);
   // One length for each axis.
   EXPECT_EQ(Count(box, ortho, PointTemplate::Corners, LocalSpacing(Vec3{ 0.5, 0.25, 0.125 })),
     1u * 3u * 7u);

@@ -79,6 +79,12 @@ TEST(MeshPurpose, DecidesWhatIsNotGiven)
   EXPECT_FALSE(fewest.AddsSteinerPoints);
   EXPECT_TRUE(fewest.RemovesSlivers);
   EXPECT_EQ(fewest.MaximumEdgeLength, 0.0);
+  EXPECT_TRUE(volumes.GeneratesMeshPoints);
+  EXPECT_TRUE(elements.GeneratesMeshPoints);
+  EXPECT_FALSE(fewest.GeneratesMeshPoints);
+  MeshOptionChoices withoutSteinerPoints;
+  withoutSteinerPoints.AddsSteinerPoints = false;
+  EXPECT_FALSE(MakeSettings(MeshPurpose::FiniteVolumes, withoutSteinerPoints).GeneratesMeshPoints);
   for (const MeshPurpose purpose : AllPurposes)
   {
     const bool isFewest = purpose == MeshPurpose::FewestPoints;
@@ -99,6 +105,7 @@ TEST(MeshPurpose, LeavesWhatIsGiven)
   given.DihedralAngleTarget = 7.0;
   given.RadiusEdgeRatio = 0.0;
   given.MaximumEdgeLength = 0.25;
+  given.GeneratesMeshPoints = true;
   for (const MeshPurpose purpose : AllPurposes)
   {
     const MeshSettings settings = MakeSettings(purpose, given);
@@ -108,15 +115,16 @@ TEST(MeshPurpose, LeavesWhatIsGiven)
     EXPECT_EQ(settings.DihedralAngleTarget, 7.0);
     EXPECT_EQ(settings.RadiusEdgeRatio, 0.0);
     EXPECT_EQ(settings.MaximumEdgeLength, 0.25);
+    EXPECT_TRUE(settings.GeneratesMeshPoints);
     EXPECT_EQ(DescribeSettings(purpose, given, settings),
       std::string("Mesh for ") + GetPurposeName(purpose) +
         ": criterion smallest sphere and edges, no Steiner points, slivers are kept, maximum edge "
-        "length 0.25");
+        "length 0.25, mesh points");
   }
   EXPECT_EQ(
     DescribeSettings(MeshPurpose::FewestPoints, {}, MakeSettings(MeshPurpose::FewestPoints, {})),
     "Mesh for fewest points: [criterion Delaunay, no Steiner points, no slivers, dihedral angle "
-    "target 15, no maximum edge length]");
+    "target 15, no maximum edge length, no mesh points]");
 }
 
 /** What was written before this option was there gave each value, and means the same now. */
@@ -132,7 +140,7 @@ TEST(MeshPurpose, OptionsThatAreAllGivenMeanTheSame)
     ConformingMesherOptions options;
     options.MeshFor = MeshPurpose::FewestPoints;
     const ConformingMesherOutput expected = Mesh(soup, options);
-    options.Choices = { SurfaceCriterion::Delaunay, false, true, 15.0, 1.4, 0.0 };
+    options.Choices = { SurfaceCriterion::Delaunay, false, true, 15.0, 1.4, 0.0, false };
     for (const MeshPurpose purpose : AllPurposes)
     {
       options.MeshFor = purpose;

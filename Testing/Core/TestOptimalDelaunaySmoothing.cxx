@@ -105,7 +105,7 @@ TEST(OptimalDelaunaySmoothing, MakesNothingWorseInRandomComplexes)
       options.Choices.MaximumEdgeLength = LongestEdge;
       options.Choices.Criterion =
         seed % 2 == 0 ? SurfaceCriterion::SmallestSphereAndEdges : SurfaceCriterion::SmallestSphere;
-      options.GeneratesMeshPoints = seed == 1;
+      options.Choices.GeneratesMeshPoints = seed == 1;
       const ConformingMesherOutput rough = Mesh(soup, {}, options);
       options.SmoothingRounds = Rounds;
       const ConformingMesherOutput smooth = Mesh(soup, {}, options);

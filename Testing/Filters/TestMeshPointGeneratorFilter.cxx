@@ -19,6 +19,7 @@
 #include <functional>
 #include <iostream>
 #include <set>
+#include <tuple>
 
 using namespace testing_filters;
 
@@ -259,8 +260,10 @@ TEST(MeshPointGeneratorFilter, ReadsSizingsOfAllKinds)
   Pipeline run(MakeCube());
   run.Generator->SetInputData(1, flat);
   run.Generator->SetTemplateToCenters();
-  for (const int placement :
-    { vtkMeshPointGenerator::ORTHO_PRODUCT, vtkMeshPointGenerator::OCTREE })
+  // Leaves of an octree are nine tenths as large at most: 1/5 x 1/5 x 1/18.
+  for (const auto& [placement, across, along] :
+    { std::tuple(vtkMeshPointGenerator::ORTHO_PRODUCT, 4u, 16u),
+      std::tuple(vtkMeshPointGenerator::OCTREE, 5u, 18u) })
   {
     run.Generator->SetPlacement(placement);
     std::array<std::set<double>, 3> planes;
@@ -271,10 +274,9 @@ TEST(MeshPointGeneratorFilter, ReadsSizingsOfAllKinds)
         planes[axis].insert(x[axis]);
       }
     }
-    const std::size_t finer = placement == vtkMeshPointGenerator::OCTREE ? 2 : 1;
-    EXPECT_EQ(planes[0].size(), 4u * finer);
-    EXPECT_EQ(planes[1].size(), 4u * finer);
-    EXPECT_EQ(planes[2].size(), 16u * finer);
+    EXPECT_EQ(planes[0].size(), across);
+    EXPECT_EQ(planes[1].size(), across);
+    EXPECT_EQ(planes[2].size(), along);
   }
 }
 
@@ -436,6 +438,21 @@ TEST(MeshPointGeneratorFilter, WarnsIfThereIsNoPlace)
   run.Generator->SetTemplateToCorners();
   EXPECT_EQ(run.Run()->GetNumberOfPoints(), 0);
   EXPECT_TRUE(Contains(run.Recorder->Warnings, "No point has place"));
+
+  Pipeline nothing(MakeCube());
+  nothing.Generator->SetPlacementToNone();
+  EXPECT_EQ(nothing.Run()->GetNumberOfPoints(), 0);
+  EXPECT_TRUE(Contains(nothing.Recorder->Warnings, "there are no layers"));
+
+  // Only the row that has no points is named.
+  Pipeline layers(MakeTwoBoxes(true));
+  layers.Generator->SetPlacementToNone();
+  layers.Generator->SetSpacing(0.2, 0.2, 0.2);
+  layers.Generator->AddLayers(3, 7, 1, 0.05, 1.0);
+  layers.Generator->AddLayers(7, 3, 1, 50.0, 1.0);
+  EXPECT_GT(layers.Run()->GetNumberOfPoints(), 0);
+  EXPECT_TRUE(Contains(layers.Recorder->Warnings, "Layers 1, in region 7 off region 3, have no"));
+  EXPECT_FALSE(Contains(layers.Recorder->Warnings, "Layers 0"));
 }
 
 TEST(MeshPointGeneratorFilter, ReportsProgressAndAborts)

@@ -359,7 +359,7 @@ TEST(DistributedTetrahedralizer, RegionsOfADevice)
   refiner->Update();
   const auto surface = WithLinear(refiner->GetOutput());
   const auto points = WithLinear(vtkPolyData::SafeDownCast(refiner->GetOutputDataObject(2)));
-  EXPECT_GT(points->GetNumberOfPoints(), 500);
+  EXPECT_GT(points->GetNumberOfPoints(), 400);
   for (Sharing sharing : Sharings)
   {
     ExpectSameAsSerial(surface, points, sharing);

@@ -122,6 +122,7 @@ void ReadOptions(InputReader& reader, ConformingMesherOptions& options)
   ReadChoice(reader, "dihedral_angle_target", choices.DihedralAngleTarget, 0.0, 70.0);
   ReadChoice(reader, "radius_edge_ratio", choices.RadiusEdgeRatio, 0.0, Infinity);
   ReadChoice(reader, "maximum_edge_length", choices.MaximumEdgeLength, 0.0, Infinity);
+  ReadChoice(reader, "generate_mesh_points", choices.GeneratesMeshPoints);
   ReadChoice(reader, "maximum_deviation", options.MaximumDeviation, 0.0, Infinity);
   std::vector<Id> regions;
   std::vector<double> sizes;
@@ -133,7 +134,6 @@ void ReadOptions(InputReader& reader, ConformingMesherOptions& options)
     options.RegionSizes.Sizes.push_back({ regions[i], sizes[i] });
   }
   reader.Read("growth", options.RegionSizes.Growth, 0.0, Infinity);
-  reader.Read("generate_mesh_points", options.GeneratesMeshPoints);
   reader.Read("close_open_boundary", options.CloseOpenBoundary);
   reader.Read("maximum_volume", options.MaximumVolume, 0.0, Infinity);
   reader.Read("smoothing_rounds", options.SmoothingRounds, 0, 100);
@@ -291,6 +291,7 @@ void Write(OutputWriter& writer, const MeshSettings& settings)
   writer.Write("dihedral_angle_target", settings.DihedralAngleTarget);
   writer.Write("radius_edge_ratio", settings.RadiusEdgeRatio);
   writer.Write("maximum_edge_length", settings.MaximumEdgeLength);
+  writer.Write("generate_mesh_points", static_cast<std::int64_t>(settings.GeneratesMeshPoints));
 }
 
 void Write(OutputWriter& writer, const MeshCertificate& certificate)

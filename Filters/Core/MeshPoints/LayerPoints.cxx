@@ -177,6 +177,15 @@ Status PlaceLayers(const PointLayers& layers, const std::vector<LayerFoot>& feet
   }
   return {};
 }
+
+void WarnOfEmptyLayers(
+  std::ptrdiff_t row, const PointLayers& layers, MeshPointGeneratorOutput& output)
+{
+  output.Warnings.push_back({ "Layers " + std::to_string(row) + ", in region " +
+    std::to_string(layers.Region) + " off region " + std::to_string(layers.Neighbor) +
+    ", have no points: the surface has no vertices inside of their interface at this spacing, or "
+    "the layers do not fit into the region." });
+}
 } // namespace
 
 Status PlaceLayerPoints(const ExecutionContext& context, MeshPointPlacer& placer)
@@ -203,9 +212,14 @@ Status PlaceLayerPoints(const ExecutionContext& context, MeshPointPlacer& placer
         ? MakeTooManyPoints(options.MaximumNumberOfPoints)
         : Status();
     };
+    const std::size_t before = placer.GetOutput().Points.size();
     status = FindLayerFeet(*layers, placer.GetLocator(), refined, feet)
                .Then(checkNumber)
                .Then([&] { return PlaceLayers(*layers, feet, context.Part(1.0, 1.0), placer); });
+    if (status.IsOk() && placer.GetOutput().Points.size() == before)
+    {
+      WarnOfEmptyLayers(layers - options.Layers.begin(), *layers, placer.GetOutput());
+    }
   }
   return status;
 }

@@ -94,20 +94,24 @@ Status PlacePoints(const ExecutionContext& context, MeshPointPlacer& placer)
   }
 }
 
-std::vector<Warning> MakeWarnings(bool hasLayers, const MeshPointGeneratorOutput& output)
+/** Rows of layers without points have theirs already. */
+void WarnOfNoPoints(const MeshPointGeneratorOptions& options, MeshPointGeneratorOutput& output)
 {
-  if (output.Points.empty())
+  if (!output.Points.empty())
   {
-    return { { "No point has place inside: the spacing is too large for the regions." } };
+    return;
   }
-  const bool areThere =
-    std::any_of(output.Layers.begin(), output.Layers.end(), [](Id layer) { return layer != 0; });
-  if (hasLayers && !areThere)
+  if (options.Placement != PointPlacement::None)
   {
-    return { { "The layers have no points: the surface has no vertices inside of their interfaces "
-               "at this spacing, or the layers do not fit into the regions." } };
+    output.Warnings.push_back(
+      { "No point has place inside: the spacing is too large for the regions." });
   }
-  return {};
+  else if (options.Layers.empty())
+  {
+    output.Warnings.push_back(
+      { "There are no mesh points, as only layers are to have some, and there are no layers: add "
+        "them, or choose another placement." });
+  }
 }
 
 Status RunGenerateMeshPoints(const MeshPointGeneratorInput& input,
@@ -127,7 +131,7 @@ Status RunGenerateMeshPoints(const MeshPointGeneratorInput& input,
                     .Then([&] { return PlacePoints(context.Part(0.25, 1.0), placer); });
   if (status.IsOk())
   {
-    output.Warnings = MakeWarnings(!options.Layers.empty(), output);
+    WarnOfNoPoints(options, output);
   }
   return status;
 }

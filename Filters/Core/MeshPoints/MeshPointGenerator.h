@@ -99,10 +99,11 @@ struct MeshPointGeneratorOptions
   /** Distance from the boundary in spacings of the point. >= 0. */
   double BoundaryClearance = 0.5;
   /**
-   * Whether that holds in spacings of the sizing, too: layers thinner than these then get no points
-   * but those of Layers.
+   * Whether no edge between points is to be longer than the sizing, as a mesh with Steiner points
+   * has it. The leaves of the octree are then small enough for that. BoundaryClearance holds in
+   * spacings of the sizing, too, so layers thinner than these get no points but those of Layers.
    */
-  bool IsClearanceSized = false;
+  bool IsSizingLimit = false;
   Id MaximumNumberOfPoints = 10000000;
 };
 

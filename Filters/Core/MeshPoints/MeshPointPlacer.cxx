@@ -5,6 +5,12 @@
 
 namespace cdm
 {
+namespace
+{
+/** Cells of an octree that fill a box are a little smaller than the sizing allows. */
+constexpr double SizedClearanceRatio = 0.9;
+} // namespace
+
 double GetLayerDistance(const PointLayers& layers, Id number)
 {
   double distance = 0.0;
@@ -45,9 +51,9 @@ Id MeshPointPlacer::FindRegion(const Vec3& position, const LocalSpacing& spacing
 {
   if (known == OutsideRegion ||
     !this->Locator.IsClear(position, spacing, this->Options.BoundaryClearance) ||
-    (this->Options.IsClearanceSized &&
-      !this->Locator.IsClear(
-        position, this->Input.Sizing(position), this->Options.BoundaryClearance)))
+    (this->Options.IsSizingLimit &&
+      !this->Locator.IsClear(position, this->Input.Sizing(position),
+        SizedClearanceRatio * this->Options.BoundaryClearance)))
   {
     return OutsideRegion;
   }

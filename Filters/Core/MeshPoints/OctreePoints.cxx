@@ -7,6 +7,7 @@
 #include "Core/MeshPoints/PointTemplates.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace cdm
@@ -14,6 +15,11 @@ namespace cdm
 namespace
 {
 constexpr int KeyBits = 21;
+/**
+ * Of the edge that the sizing allows. In graded fields 0.6 to 0.76 made 2 to 10 % fewer tetrahedra
+ * than no mesh points, and all leaves made 6 to 36 % more.
+ */
+constexpr double LeastFilling = 0.7;
 
 /** A point of a leaf; the same point of several leaves has the edges of the smallest. */
 struct Entry
@@ -25,19 +31,41 @@ struct Entry
 };
 
 /**
- * Largest edge of a leaf in spacings; the others are down to half as long. Edges of
- * the mesh are the longest next to leaves of half the size, sqrt(5)/2 for the body-centered
- * template, and stay below 1.5 spacings.
+ * Largest edge of a leaf in spacings; the others are down to half as long. Either no edge of the
+ * lattice is longer than a spacing, or the edges are about as long: those of the mesh are the
+ * longest next to leaves of half the size, sqrt(5)/2 for the body-centered template, and stay below
+ * 1.5 spacings.
  */
-double GetLeafRatio(PointTemplate kind)
+double GetLeafRatio(const MeshPointGeneratorOptions& options)
 {
-  return kind == PointTemplate::BodyCentered ? 1.32
-    : kind == PointTemplate::FaceCentered    ? 1.5
-    : kind == PointTemplate::Corners         ? 0.97
-                                             : 0.9;
+  switch (options.Template)
+  {
+    case PointTemplate::BodyCentered:
+      return options.IsSizingLimit ? 1.0 : 1.32;
+    case PointTemplate::FaceCentered:
+      return options.IsSizingLimit ? 1.0 : 1.5;
+    case PointTemplate::Corners:
+      return options.IsSizingLimit ? std::sqrt(1.0 / 3.0) : 0.97;
+    default:
+      return options.IsSizingLimit ? std::sqrt(1.0 / 3.0) : 0.9;
+  }
 }
 
-/** Collects the template points of all leaves that are not outside, sorted; false if aborted. */
+/**
+ * Whether a leaf is so much smaller than the sizing allows that refinement needs fewer points: a
+ * leaf has its points in a lattice, but its edges come in powers of two.
+ */
+bool IsTooSmall(const Vec3& edges, const Vec3& spacing, double ratio)
+{
+  double filling = 1.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    filling *= edges[axis] / (ratio * spacing[axis]);
+  }
+  return filling < LeastFilling * LeastFilling * LeastFilling;
+}
+
+/** Collects the template points of the leaves that are to have some, sorted; false if aborted. */
 bool MakeEntries(const SizingOctree& octree, const MeshPointGeneratorOptions& options,
   const ExecutionContext& context, RawVector<Entry>& entries)
 {
@@ -45,7 +73,9 @@ bool MakeEntries(const SizingOctree& octree, const MeshPointGeneratorOptions& op
   std::vector<const SizingOctree::Leaf*> leaves;
   for (const SizingOctree::Leaf& leaf : octree.GetLeaves())
   {
-    if (leaf.Region != OutsideRegion)
+    if (leaf.Region != OutsideRegion &&
+      !(options.IsSizingLimit &&
+        IsTooSmall(octree.GetEdges(leaf), leaf.Spacing, GetLeafRatio(options))))
     {
       leaves.push_back(&leaf);
     }
@@ -81,8 +111,7 @@ Status PlaceOctreePoints(const ExecutionContext& context, MeshPointPlacer& place
 {
   const MeshPointGeneratorOptions& options = placer.GetOptions();
   SizingOctree octree;
-  const Status status =
-    placer.BuildOctree(GetLeafRatio(options.Template), context.Part(0.0, 0.47), octree);
+  const Status status = placer.BuildOctree(GetLeafRatio(options), context.Part(0.0, 0.47), octree);
   if (!status.IsOk())
   {
     return status;

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace cdm
@@ -86,12 +87,21 @@ private:
   {
     return this->Context.Part(begin, end).Named(stage);
   }
+  /** Of MeshPointSources: generated ones have larger numbers. */
+  bool IsGivenMeshPoint(Id source) const
+  {
+    return this->Input.MeshPoints != nullptr &&
+      static_cast<std::size_t>(source) < this->Input.MeshPoints->size();
+  }
   /** In ids of the input. */
   Status Name(Status status, const std::vector<Id>& cellSources) const;
   void TakeWarnings(std::vector<Warning>&& warnings, const std::vector<Id>& cellSources);
   /** Follows the triangles of the boundary to those that they were, sources[i]. */
   void FollowBoundary(const std::vector<Id>& sources);
+  Status MakeFirstMesh(
+    const AdvancingFrontTetrahedralizerOptions& options, const ExecutionContext& context);
   void FindFreePoints();
+  void FollowPoints(std::vector<Id>&& sources, TetMesh&& before);
 
   const ConformingMesherInput& Input;
   const ConformingMesherOptions& Options;
@@ -176,11 +186,15 @@ Status ConformingMesher::ChooseSettings()
   {
     this->Settings.MaximumEdgeLength = GetDefaultSize(this->Surface);
   }
-  this->Output.Settings = this->Settings;
   this->Sizing = this->Input.Sizing;
-  return this->Name(LimitByRegions(this->Surface, this->Options.RegionSizes,
-                      this->Settings.MaximumEdgeLength, this->Sizing),
-    this->Surface.SourceCells);
+  Status status = LimitByRegions(
+    this->Surface, this->Options.RegionSizes, this->Settings.MaximumEdgeLength, this->Sizing);
+  if (!given.GeneratesMeshPoints && !this->Sizing && this->Settings.MaximumEdgeLength == 0.0)
+  {
+    this->Settings.GeneratesMeshPoints = false;
+  }
+  this->Output.Settings = this->Settings;
+  return this->Name(std::move(status), this->Surface.SourceCells);
 }
 
 Status ConformingMesher::Coarsen()
@@ -193,8 +207,14 @@ Status ConformingMesher::Coarsen()
 
 Status ConformingMesher::PlaceMeshPoints()
 {
-  if (!this->Options.GeneratesMeshPoints)
+  if (!this->Settings.GeneratesMeshPoints)
   {
+    if (!this->Options.MeshPoints.Layers.empty())
+    {
+      this->Output.Warnings.push_back(
+        { "The layers are not made, as there are to be no mesh points: ask for these "
+          "(GenerateMeshPoints)." });
+    }
     return {};
   }
   MeshPointGeneratorOptions options = this->Options.MeshPoints;
@@ -203,15 +223,27 @@ Status ConformingMesher::PlaceMeshPoints()
     options.Spacing[axis] =
       options.Spacing[axis] == 0.0 ? this->Settings.MaximumEdgeLength : options.Spacing[axis];
   }
-  options.IsClearanceSized = this->Settings.AddsSteinerPoints;
+  options.IsSizingLimit = this->Settings.AddsSteinerPoints;
   MeshPointGeneratorOutput generated;
   Status status = GenerateMeshPoints(
     { &this->Surface, this->Sizing }, options, this->GetPart("Mesh points", 0.1, 0.2), generated);
+  const bool isAsked =
+    this->Options.Choices.GeneratesMeshPoints.has_value() || !options.Layers.empty();
+  if (!status.IsOk() && !status.IsAborted() && !isAsked)
+  {
+    // The stages that follow say what is wrong with the surface, and reach their own limits.
+    this->Settings.GeneratesMeshPoints = false;
+    this->Output.Settings = this->Settings;
+    return {};
+  }
   if (!status.IsOk())
   {
     return this->Name(std::move(status), this->Surface.SourceCells);
   }
-  this->TakeWarnings(std::move(generated.Warnings), this->Surface.SourceCells);
+  if (isAsked)
+  {
+    this->TakeWarnings(std::move(generated.Warnings), this->Surface.SourceCells);
+  }
   // With Steiner points the surface is not refined for what may be left out as well: see
   // AddUnencroachingPoints(). Layers, which come first, are asked for.
   const auto firstOptional = this->Settings.AddsSteinerPoints ? generated.Points.begin() +
@@ -237,7 +269,7 @@ Status ConformingMesher::RefineSurface()
   }
   DelaunaySurfaceRefinerOutput refined;
   Status status = RefineDelaunaySurface(input, options,
-    this->GetPart("Surface refinement", this->Options.GeneratesMeshPoints ? 0.2 : 0.1, 0.5),
+    this->GetPart("Surface refinement", this->Settings.GeneratesMeshPoints ? 0.2 : 0.1, 0.5),
     refined);
   if (!status.IsOk())
   {
@@ -318,8 +350,9 @@ Status ConformingMesher::Tetrahedralize()
   AdvancingFrontTetrahedralizerOptions options;
   options.CloseOpenBoundary = this->Options.CloseOpenBoundary;
   AdvancingFrontTetrahedralizerOutput made;
-  Status status = TetrahedralizeByAdvancingFront(input, options,
-    this->GetPart("Tetrahedralization", 0.5, this->Settings.AddsSteinerPoints ? 0.6 : 0.85), made);
+  const double end = this->Settings.AddsSteinerPoints ? 0.6 : 0.85;
+  Status status = TetrahedralizeByAdvancingFront(
+    input, options, this->GetPart("Tetrahedralization", 0.5, end - 0.01), made);
   if (!status.IsOk())
   {
     return this->Name(std::move(status), this->Surface.SourceCells);
@@ -332,6 +365,34 @@ Status ConformingMesher::Tetrahedralize()
   this->Output.Boundary = std::move(made.Boundary);
   this->FollowBoundary(sources);
   this->FindFreePoints();
+  return this->MakeFirstMesh(options, this->GetPart("Tetrahedralization", end - 0.01, end));
+}
+
+/** Data of generated points comes from a mesh without them: see PointHistory. */
+Status ConformingMesher::MakeFirstMesh(
+  const AdvancingFrontTetrahedralizerOptions& options, const ExecutionContext& context)
+{
+  PointHistory& history = this->Output.Points;
+  const auto isGiven = [this](Id source) { return this->IsGivenMeshPoint(source); };
+  const auto firstGenerated =
+    std::partition_point(this->MeshPointSources.begin(), this->MeshPointSources.end(), isGiven);
+  if (!this->Input.HasPointData || firstGenerated == this->MeshPointSources.end())
+  {
+    return {};
+  }
+  const std::vector<Vec3> given(this->MeshPoints.begin(),
+    this->MeshPoints.begin() + (firstGenerated - this->MeshPointSources.begin()));
+  AdvancingFrontTetrahedralizerInput input;
+  input.Surface = &this->Surface;
+  input.MeshPoints = &given;
+  AdvancingFrontTetrahedralizerOutput made;
+  Status status = TetrahedralizeByAdvancingFront(input, options, context, made);
+  // Points that lie in no region are in neither mesh, so those of the first mesh come first.
+  history.Sources.assign(this->Output.Mesh.Points.size(), NoId);
+  std::iota(history.Sources.begin(), history.Sources.begin() + made.Mesh.Points.size(), Id(0));
+  history.MeshPointSources.resize(made.MeshPointSources.size());
+  history.HasBefore = true;
+  history.Before = std::move(made.Mesh);
   return status;
 }
 
@@ -342,10 +403,8 @@ Status ConformingMesher::Tetrahedralize()
 void ConformingMesher::FindFreePoints()
 {
   const PointHistory& history = this->Output.Points;
-  const std::size_t numberOfGiven =
-    this->Input.MeshPoints != nullptr ? this->Input.MeshPoints->size() : 0;
   const bool hasFlags = !this->Input.AreMeshPointsFree.empty();
-  if (!this->Settings.AddsSteinerPoints && (!hasFlags || this->Options.GeneratesMeshPoints))
+  if (!this->Settings.AddsSteinerPoints && (!hasFlags || this->Settings.GeneratesMeshPoints))
   {
     return;
   }
@@ -354,10 +413,24 @@ void ConformingMesher::FindFreePoints()
     this->IsFree.end(), history.RefinedPoints.size(), this->Settings.AddsSteinerPoints);
   for (const Id source : history.MeshPointSources)
   {
-    const bool isGiven = static_cast<std::size_t>(source) < numberOfGiven;
+    const bool isGiven = this->IsGivenMeshPoint(source);
     this->IsFree.push_back(
       this->Settings.AddsSteinerPoints ? !isGiven : this->Input.AreMeshPointsFree[source] != 0);
   }
+}
+
+/** A stage has made of a mesh the one that is there now; sources are points of that mesh. */
+void ConformingMesher::FollowPoints(std::vector<Id>&& sources, TetMesh&& before)
+{
+  PointHistory& history = this->Output.Points;
+  if (history.HasBefore)
+  {
+    history.Sources = Compose(history.Sources, sources, NoId);
+    return;
+  }
+  history.HasBefore = true;
+  history.Before = std::move(before);
+  history.Sources = std::move(sources);
 }
 
 Status ConformingMesher::AddSteinerPoints()
@@ -390,9 +463,8 @@ Status ConformingMesher::AddSteinerPoints()
   const std::vector<Id> sources = std::move(refined.Boundary.SourceCells);
   this->Output.Boundary = std::move(refined.Boundary);
   this->FollowBoundary(sources);
-  this->Output.Points.HasBefore = true;
-  this->Output.Points.Before = std::exchange(this->Output.Mesh, std::move(refined.Mesh));
-  this->Output.Points.Sources = std::move(refined.PointSources);
+  TetMesh before = std::exchange(this->Output.Mesh, std::move(refined.Mesh));
+  this->FollowPoints(std::move(refined.PointSources), std::move(before));
   this->Output.IsFree = std::move(refined.IsFree);
   if (std::any_of(refined.Faults.begin(), refined.Faults.end(),
         [](SteinerFault fault) { return fault != SteinerFault::None; }))
@@ -424,15 +496,12 @@ Status ConformingMesher::RemoveFlatTetrahedra()
   this->PeeledTetrahedra = report.PeeledTetrahedra;
   if (status.IsOk() && report.MovedPoints > 0)
   {
-    PointHistory& history = this->Output.Points;
-    history.HasBefore = true;
-    history.Sources.resize(before.Points.size());
+    std::vector<Id> sources(before.Points.size());
     for (std::size_t i = 0; i < before.Points.size(); ++i)
     {
-      history.Sources[i] =
-        before.Points[i] == this->Output.Mesh.Points[i] ? static_cast<Id>(i) : NoId;
+      sources[i] = before.Points[i] == this->Output.Mesh.Points[i] ? static_cast<Id>(i) : NoId;
     }
-    history.Before = std::move(before);
+    this->FollowPoints(std::move(sources), std::move(before));
   }
   return status;
 }

@@ -60,8 +60,7 @@ struct ConformingMesherOptions
   std::optional<double> MaximumDeviation;
   /** Longest edges of single regions, beside the maximum edge length and the sizing. */
   RegionSizesOptions RegionSizes;
-  bool GeneratesMeshPoints = false;
-  /** Where they are. A Spacing of 0 is the maximum edge length, if there is one. */
+  /** Where generated mesh points are. A Spacing of 0 is the maximum edge length, if there is one. */
   MeshPointGeneratorOptions MeshPoints;
   /** Where the surface is open, close the mesh by the convex hull of the points. */
   bool CloseOpenBoundary = false;
@@ -90,6 +89,8 @@ struct ConformingMesherInput
   std::vector<char> AreMeshPointsFree;
   /** Target edge length; may be empty. */
   SizingField Sizing;
+  /** Whether data of the points is to be carried along; only then PointHistory is complete. */
+  bool HasPointData = false;
 };
 
 /**
@@ -100,9 +101,9 @@ struct ConformingMesherInput
  *  2. The refined surface has these, then RefinedPoints, whose parents are points of the refined
  *     surface itself.
  *  3. The first mesh has these, then mesh points: MeshPointSources counts the given ones, then the
- *     generated ones.
- *  4. If a later stage has made or moved points, Before is the first mesh, and point i of the mesh
- *     is its point Sources[i]; or NoId: it is somewhere in Before.
+ *     generated ones. With data, generated ones are not in it.
+ *  4. If a later stage has made or moved points, or has the generated ones, Before is the first
+ *     mesh, and point i of the mesh is its point Sources[i]; or NoId: it is somewhere in Before.
  */
 struct PointHistory
 {

@@ -15,9 +15,10 @@ struct PurposeDefaults
 };
 
 constexpr PurposeDefaults Purposes[NumberOfMeshPurposes] = {
-  { "finite volumes", { SurfaceCriterion::SmallestSphere, true, true, 15.0, 1.4, 0.0 }, true },
-  { "finite elements", { SurfaceCriterion::Delaunay, true, true, 20.0, 1.4, 0.0 }, true },
-  { "fewest points", { SurfaceCriterion::Delaunay, false, true, 15.0, 1.4, 0.0 }, false },
+  { "finite volumes", { SurfaceCriterion::SmallestSphere, true, true, 15.0, 1.4, 0.0, true },
+    true },
+  { "finite elements", { SurfaceCriterion::Delaunay, true, true, 20.0, 1.4, 0.0, true }, true },
+  { "fewest points", { SurfaceCriterion::Delaunay, false, true, 15.0, 1.4, 0.0, false }, false },
 };
 
 const PurposeDefaults& GetDefaults(MeshPurpose purpose)
@@ -43,6 +44,8 @@ MeshSettings MakeSettings(MeshPurpose purpose, const MeshOptionChoices& given)
   settings.DihedralAngleTarget = given.DihedralAngleTarget.value_or(defaults.DihedralAngleTarget);
   settings.RadiusEdgeRatio = given.RadiusEdgeRatio.value_or(defaults.RadiusEdgeRatio);
   settings.MaximumEdgeLength = given.MaximumEdgeLength.value_or(defaults.MaximumEdgeLength);
+  settings.GeneratesMeshPoints =
+    given.GeneratesMeshPoints.value_or(defaults.GeneratesMeshPoints && settings.AddsSteinerPoints);
   return settings;
 }
 
@@ -88,6 +91,8 @@ std::string DescribeSettings(
     settings.MaximumEdgeLength > 0.0
       ? "maximum edge length " + Format("%.6g", settings.MaximumEdgeLength)
       : "no maximum edge length");
+  add(given.GeneratesMeshPoints.has_value(),
+    settings.GeneratesMeshPoints ? "mesh points" : "no mesh points");
   std::string text = std::string("Mesh for ") + GetPurposeName(purpose) + ": ";
   if (!automatic.empty())
   {

@@ -13,8 +13,11 @@
  * | DihedralAngleTarget | 15              | 20              | 15            |
  * | RadiusEdgeRatio     | 1.4             | 1.4             | 1.4           |
  * | MaximumEdgeLength   | DefaultSize.h   | DefaultSize.h   | 0: off        |
+ * | GeneratesMeshPoints | with a size     | with a size     | no            |
  *
- * With a sizing MaximumEdgeLength is off unless it is given: the sizing says how large.
+ * With a sizing MaximumEdgeLength is off unless it is given: the sizing says how large. Mesh points
+ * are generated where Steiner points would come to be for the size alone: in a lattice they are up
+ * to half as many.
  *
  * Finite volumes: with Steiner points and criterion 3.1 no coupling of the box method is negative:
  * circumcenters lie in their regions (Fig. 3.4), and structural edges with a negative coupling are
@@ -51,6 +54,7 @@ struct MeshSettings
   double RadiusEdgeRatio = 1.4;
   /** Model units; 0: off. */
   double MaximumEdgeLength = 0.0;
+  bool GeneratesMeshPoints = false;
 };
 
 /** The same options: those given, and those for the purpose to decide. */
@@ -67,11 +71,13 @@ struct MeshOptionChoices
   std::optional<double> RadiusEdgeRatio;
   /** Edges of the surface, with Steiner points all edges. Model units, 0 (off) or above. */
   std::optional<double> MaximumEdgeLength;
+  /** Whether points are placed inside of the regions before there are tetrahedra. */
+  std::optional<bool> GeneratesMeshPoints;
 };
 
 /**
  * The values of all options. MaximumEdgeLength is 0 where the purpose asks for a default size:
- * NeedsDefaultSize() says so.
+ * NeedsDefaultSize() says so. GeneratesMeshPoints, if not given, holds for sizes only.
  */
 MeshSettings MakeSettings(MeshPurpose purpose, const MeshOptionChoices& given);
 

@@ -294,6 +294,8 @@ template <typename Filter>
 bool IsClearOf(const BoxTree& tree, const TriangleMesh& surface, const Vec3& point,
   const LocalSpacing& spacing, double distance, Filter&& isMeant)
 {
+  // Rounding must not tell points of the same distance apart.
+  distance *= 1.0 - 1e-12;
   const Vec3 reach = distance * spacing.GetExtents();
   bool isClear = true;
   const auto visit = [&](Id t)

@@ -57,7 +57,7 @@ public:
   /** Distance of the point from the nearest triangle, or the limit if that is smaller. */
   double GetDistance(const Vec3& point, double limit) const;
 
-  /** Whether the triangles are at least as far from the point as so many spacings. */
+  /** Whether the triangles are at least as far from the point as so many spacings, to rounding. */
   bool IsClear(const Vec3& point, const LocalSpacing& spacing, double distance) const;
   /** The same for the triangles between two regions only, given in either order. */
   bool IsClear(const Vec3& point, const LocalSpacing& spacing, double distance,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <string>
 
@@ -14,39 +15,61 @@ namespace
 {
 constexpr int MaximumLevel = 16;
 constexpr std::uint32_t RootSize = 1u << MaximumLevel;
-constexpr int MaximumRoots = 8;
+/** Of a box with more cells, the roots fill it to an eighth of a cell in each direction. */
+constexpr int MaximumRoots = 15;
+/** Roots along the longest side of a box that is thinner than a cell. */
+constexpr int MaximumCubicRoots = 8;
+/** Rounding must not split what is as large as it may be. */
+constexpr double RoundingSlack = 1e-9;
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 /** A cell counts the smallest spacing in it at least by this factor: a cusp is not averaged out. */
 constexpr double LargestGrowth = 4.0 / 3.0;
 constexpr const char* BalanceActivity = "Bounding the irregularity";
 
-/** Numbers of roots along the axes that make them as cubic as possible, with few of them. */
-SizingOctree::Units FindRoots(const Vec3& extents)
+Vec3 GetAlongAxes(const LocalSpacing& spacing)
 {
-  const double smallest = std::min({ extents.X, extents.Y, extents.Z });
-  SizingOctree::Units best{ 1, 1, 1 };
-  double bestDistortion = Infinity;
-  for (int division = 1; division <= MaximumRoots; ++division)
+  return { spacing.GetAlong({ 1.0, 0.0, 0.0 }), spacing.GetAlong({ 0.0, 1.0, 0.0 }),
+    spacing.GetAlong({ 0.0, 0.0, 1.0 }) };
+}
+
+/** The largest spacings along the axes at the corners and middles of a box. */
+Vec3 GetLargestSpacings(const Vec3& low, const Vec3& extents, const SizingField& sizing)
+{
+  Vec3 largest;
+  for (int place = 0; place < 27; ++place)
   {
-    SizingOctree::Units roots;
-    Vec3 edges;
+    const Vec3 shares{ 0.5 * (place % 3), 0.5 * (place / 3 % 3), 0.5 * (place / 9) };
+    const Vec3 lengths = GetAlongAxes(
+      sizing(low + Vec3{ shares.X * extents.X, shares.Y * extents.Y, shares.Z * extents.Z }));
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double number = std::round(extents[axis] * division / smallest);
-      roots[axis] =
-        static_cast<std::uint32_t>(std::min(std::max(number, 1.0), double(MaximumRoots)));
-      edges[axis] = extents[axis] / roots[axis];
-    }
-    const double distortion =
-      std::max({ edges.X, edges.Y, edges.Z }) / std::min({ edges.X, edges.Y, edges.Z });
-    // More roots only where they are much better.
-    if (distortion < 0.9 * bestDistortion)
-    {
-      best = roots;
-      bestDistortion = distortion;
+      largest[axis] = std::max(largest[axis], lengths[axis]);
     }
   }
-  return best;
+  return largest;
+}
+
+/**
+ * Numbers of roots along the axes so that roots, or their halves, quarters and so on, are as large
+ * as wanted; nearly cubic where these are larger than the box.
+ */
+SizingOctree::Units FindRoots(const Vec3& extents, const Vec3& wanted)
+{
+  const Vec3 cells{ extents.X / wanted.X, extents.Y / wanted.Y, extents.Z / wanted.Z };
+  const double smallest = std::min({ cells.X, cells.Y, cells.Z });
+  const double largest = std::max({ cells.X, cells.Y, cells.Z });
+  const double cell = std::min(1.0, std::max(smallest, largest / MaximumCubicRoots));
+  SizingOctree::Units roots;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    double number = std::max(1.0, std::ceil(cells[axis] / cell * (1.0 - RoundingSlack)));
+    while (number > MaximumRoots)
+    {
+      number = std::ceil(0.5 * number);
+    }
+    roots[axis] = static_cast<std::uint32_t>(number);
+  }
+  return roots;
 }
 } // namespace
 
@@ -129,14 +152,9 @@ int SizingOctree::FindSplitAxes(Node& node) const
   Vec3 sum;
   Vec3 smallest{ Infinity, Infinity, Infinity };
   constexpr int samples = 9;
-  const auto getLengths = [](const LocalSpacing& spacing)
-  {
-    return Vec3{ spacing.GetAlong({ 1.0, 0.0, 0.0 }), spacing.GetAlong({ 0.0, 1.0, 0.0 }),
-      spacing.GetAlong({ 0.0, 0.0, 1.0 }) };
-  };
   const auto note = [&](const LocalSpacing& spacing)
   {
-    const Vec3 lengths = getLengths(spacing);
+    const Vec3 lengths = GetAlongAxes(spacing);
     for (int axis = 0; axis < 3; ++axis)
     {
       smallest[axis] = std::min(smallest[axis], lengths[axis]);
@@ -145,7 +163,7 @@ int SizingOctree::FindSplitAxes(Node& node) const
   const auto sample = [&](const Vec3& units)
   {
     const LocalSpacing spacing = (*this->Sizing)(this->GetPosition(units));
-    const Vec3 lengths = getLengths(spacing);
+    const Vec3 lengths = GetAlongAxes(spacing);
     for (int axis = 0; axis < 3; ++axis)
     {
       sum[axis] += std::pow(lengths[axis], -3.0);
@@ -172,7 +190,7 @@ int SizingOctree::FindSplitAxes(Node& node) const
     ratios[axis] = size[axis] * this->UnitLengths[axis] / node.Spacing[axis];
   }
   const double largest = std::max({ ratios[0], ratios[1], ratios[2] });
-  if (!(largest > this->Options.MaximumRatio))
+  if (!(largest > this->Options.MaximumRatio * (1.0 + RoundingSlack)))
   {
     return 0;
   }
@@ -195,9 +213,11 @@ Status SizingOctree::Split(Id index, int axes)
       children *= 2;
       if (this->Nodes[index].Levels[axis] == MaximumLevel)
       {
+        char shortest[32];
+        std::snprintf(shortest, sizeof shortest, "%.4g", this->UnitLengths[axis]);
         return Status::Failure(StatusCode::LimitReached,
-          "The sizing asks for edges shorter than the bounding box "
-          "divided by 2^19, which the octree cannot make.");
+          std::string("The sizing asks for edges shorter than ") + shortest +
+            ", the shortest that the octree can make. Enlarge the spacing where it is smallest.");
       }
     }
   }
@@ -507,7 +527,8 @@ Status SizingOctree::Build(const RegionLocator& locator, const SizingField& sizi
   this->LoopOptions = { context.GetNumberOfThreads(), 64 };
   this->Origin = locator.GetLow();
   const Vec3 extents = locator.GetHigh() - locator.GetLow();
-  this->Roots = FindRoots(extents);
+  this->Roots =
+    FindRoots(extents, options.MaximumRatio * GetLargestSpacings(this->Origin, extents, sizing));
   for (int axis = 0; axis < 3; ++axis)
   {
     this->UnitLengths[axis] = extents[axis] / (static_cast<double>(this->Roots[axis]) * RootSize);

@@ -4,7 +4,9 @@
  * @brief Finite octree over a surface whose leaves are as large as a sizing field asks for.
  *
  * Method (thesis 6.2, Fig. 6.2):
- *  1. the bounding box is divided into up to eight roots along each axis, as cubic as possible;
+ *  1. the bounding box is divided into up to 15 roots along each axis, so that roots or what their
+ *     halves become are as large as the largest spacing allows, to an eighth; nearly cubic where the
+ *     box is thinner than that;
  *  2. a cell that overlaps a region is split as long as its edge along an axis, measured in the
  *     spacing there, exceeds a limit; along the longest axes only, so that anisotropic spacing
  *     makes flat cells. The spacing is that of the mean density of points at center and corners,
@@ -15,8 +17,8 @@
  *
  * Guarantees: leaves are disjoint and fill the bounding box, in depth-first order; deterministic
  * for any number of threads, all of which evaluate the field.
- * Failure: LimitReached if more leaves are needed than allowed, or smaller ones than the bounding
- * box divided by 2^19 (2^16 in each of eight roots).
+ * Failure: LimitReached if more leaves are needed than allowed, or smaller ones than a root divided
+ * by 2^16.
  * Cost: nine evaluations of the field for each cell; 100 bytes per leaf.
  */
 #ifndef cdmSizingOctree_h

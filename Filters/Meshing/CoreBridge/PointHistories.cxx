@@ -11,7 +11,6 @@
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
 
-#include <algorithm>
 #include <numeric>
 
 namespace
@@ -43,16 +42,11 @@ namespace vtkCoreBridge
 void CarryPointData(const cdm::PointHistory& history, vtkPolyData* input, vtkPointSet* meshPoints,
   vtkUnstructuredGrid* output)
 {
-  const auto given = static_cast<cdm::Id>(meshPoints ? meshPoints->GetNumberOfPoints() : 0);
-  const std::vector<cdm::Id>& sources = history.MeshPointSources;
-  if (std::any_of(sources.begin(), sources.end(), [given](cdm::Id i) { return i >= given; }))
-  {
-    return;
-  }
   vtkNew<vtkPointData> refined;
   RefineTuples(history, input, refined);
   vtkNew<vtkPointData> first;
-  AppendTuples(refined, meshPoints ? meshPoints->GetPointData() : nullptr, sources, first);
+  AppendTuples(
+    refined, meshPoints ? meshPoints->GetPointData() : nullptr, history.MeshPointSources, first);
   if (!history.HasBefore)
   {
     output->GetPointData()->PassData(first);

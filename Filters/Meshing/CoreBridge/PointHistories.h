@@ -15,8 +15,8 @@ class vtkUnstructuredGrid;
 namespace vtkCoreBridge
 {
 /**
- * Copies and interpolates point data as the stages do one after the other. Where there are mesh
- * points the arrays are those that surface and mesh points have both; generated ones have none.
+ * Copies and interpolates point data as the stages do one after the other. Where mesh points are
+ * given, the arrays are those that surface and mesh points have both.
  * @param meshPoints the given ones; may be null
  */
 void CarryPointData(const cdm::PointHistory& history, vtkPolyData* input, vtkPointSet* meshPoints,

@@ -178,6 +178,7 @@ class vtkConformingDelaunayMesher(_Stage):
     automatic = (
         "Criterion",
         "MaximumEdgeLength",
+        "GenerateMeshPoints",
         "AddSteinerPoints",
         "RemoveSlivers",
         "DihedralAngleTarget",
@@ -192,14 +193,13 @@ class vtkConformingDelaunayMesher(_Stage):
         **_BOUNDARY,
         **_SURFACE,
         **_POINTS,
-        "GenerateMeshPoints": False,
         "CloseOpenBoundary": False,
         "MaximumVolume": 0.0,
         "SmoothingRounds": 0,
         "Growth": 0.3,
         **dict.fromkeys(automatic, -1),
     }
-    switches = ("AddSteinerPoints", "RemoveSlivers")
+    switches = ("GenerateMeshPoints", "AddSteinerPoints", "RemoveSlivers")
 
     def __init__(self) -> None:
         super().__init__()

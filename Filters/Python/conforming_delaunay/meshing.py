@@ -222,7 +222,7 @@ def mesh(
     smoothing_rounds: int = 0,
     remove_slivers: Optional[bool] = None,
     mesh_points: Any = None,
-    generate_mesh_points: bool = False,
+    generate_mesh_points: Optional[bool] = None,
     placement: Any = "octree",
     spacing: Any = None,
     layers: Any = None,
@@ -294,8 +294,9 @@ def mesh(
         Whether slivers are removed.
     mesh_points : array_like, optional
         (k, 3), given points for the inside. Model units.
-    generate_mesh_points : bool, default: False
-        Whether to make some, by placement, spacing and layers.
+    generate_mesh_points : bool, optional
+        Whether to make some, by placement, spacing and layers. With Steiner points far fewer are then
+        needed inside. None: with Steiner points and a size or sizing, but not for the fewest points.
     placement : {"octree", "ortho-product", "random", "none"}
         Where they are.
     spacing : float or array_like, optional
