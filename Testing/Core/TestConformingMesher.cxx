@@ -3,6 +3,7 @@
 // the input, limits that are said.
 #include "ComplexKinds.h"
 #include "Core/Pipeline/ConformingMesher.h"
+#include "Core/Surface/StructuralEdges.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 
 #include <gtest/gtest.h>
@@ -246,6 +247,34 @@ TEST(ConformingMesher, LatticeCostsNothingInGradedSizings)
       counts[isGenerating] = output.Mesh.Tetrahedra.size();
     }
     EXPECT_LE(counts[1], 1.05 * counts[0]) << "growth " << growth;
+  }
+}
+
+/**
+ * Mesh points outside of smallest spheres broke surfaces that were Delaunay by other spheres: curved
+ * ones for
+ * finite elements.
+ */
+TEST(ConformingMesher, LatticesLeaveEverySurfaceDelaunay)
+{
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
+  {
+    const PolygonSoup soup = ComplexMaker(ComplexKind::CubeTetrahedra, seed).Make();
+    for (const SurfaceCriterion criterion :
+      { SurfaceCriterion::Delaunay, SurfaceCriterion::SmallestSphere })
+    {
+      SCOPED_TRACE("seed " + std::to_string(seed));
+      ConformingMesherInput input;
+      input.Polygons = &soup;
+      ConformingMesherOptions options;
+      options.Choices.Criterion = criterion;
+      options.Choices.MaximumEdgeLength = 0.05 * GetBoundingBoxDiagonal(soup.Points);
+      ConformingMesherOutput output;
+      const Status status = MeshPolygons(input, options, {}, output);
+      EXPECT_TRUE(status.IsOk()) << status.Message;
+      EXPECT_TRUE(output.Settings.GeneratesMeshPoints);
+      EXPECT_TRUE(output.Certificate.IsDelaunay()) << output.Certificate.GetText();
+    }
   }
 }
 

@@ -201,6 +201,24 @@ TEST(DelaunaySurfaceRefiner, HonoursAreaAngleAndSizing)
 }
 
 /** Many more flips than the few triangles of the input have need of. */
+/** What can never end is not begun: it was five minutes of work, and no mesh. */
+TEST(DelaunaySurfaceRefiner, RefusesSizesThatNeedTooManyPoints)
+{
+  const TriangleMesh box = Triangulate(MakeBox({ 1.0, 1.0, 1.0 }));
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &box;
+  DelaunaySurfaceRefinerOptions options;
+  DelaunaySurfaceRefinerOutput output;
+  for (const double length : { 1e-5, 1e-160, 1e-300 })
+  {
+    options.MaximumEdgeLength = length;
+    const Status status = RefineDelaunaySurface(input, options, {}, output);
+    EXPECT_EQ(status.Code, StatusCode::LimitReached);
+    EXPECT_NE(status.Message.find("points on the surface"), std::string::npos) << status.Message;
+    EXPECT_TRUE(output.Surface.Points.empty());
+  }
+}
+
 TEST(DelaunaySurfaceRefiner, RefinesFewLargeTrianglesToManySmallOnes)
 {
   DelaunaySurfaceRefinerOptions options;

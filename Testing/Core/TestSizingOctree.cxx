@@ -171,6 +171,12 @@ TEST(SizingOctree, RefusesTooFineSizings)
     { 1.0, 1.0, 1.0 }, [](const Vec3&) { return 0.01; }, options);
   EXPECT_EQ(many.Result.Code, StatusCode::LimitReached);
   EXPECT_NE(many.Result.Message.find("1000 points"), std::string::npos);
+  for (const double spacing : { 1e-12, 1e-160, 1e-300 })
+  {
+    const Tree tiny(
+      { 1.0, 1.0, 1.0 }, [&](const Vec3&) { return spacing; }, options);
+    EXPECT_EQ(tiny.Result.Code, StatusCode::LimitReached);
+  }
   options.MaximumNumberOfLeaves = 1000000;
   const Tree deep(
     { 1.0, 1.0, 1.0 },

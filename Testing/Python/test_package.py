@@ -286,6 +286,14 @@ class NumPyAlone(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, name):
                 cd.mesh((CUBE_POINTS, CUBE_QUADS), **{name: value})
 
+    def test_ids_that_are_no_whole_numbers_are_errors(self):
+        for polygons in ([[0.5, 1, 2]], np.array([[0.0, 1.0, 2.0]]), [["a", "b", "c"]]):
+            with self.assertRaisesRegex(ValueError, "whole numbers"):
+                cd.mesh((CUBE_POINTS, polygons))
+        for points, polygons in (([], []), (CUBE_POINTS, [])):
+            with self.assertRaisesRegex(cd.MeshingError, "nothing to triangulate"):
+                cd.mesh((points, polygons))
+
     def test_smoothing(self):
         rough, smooth = (
             cd.mesh((CUBE_POINTS, CUBE_QUADS), edge_length=0.2, smoothing_rounds=rounds)

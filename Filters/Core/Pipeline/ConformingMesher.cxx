@@ -8,9 +8,12 @@
 #include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/MeshBoundary.h"
 #include "Core/Pipeline/SurfaceCoarsener.h"
+#include "Core/Search/BallIndex.h"
+#include "Core/Search/PointOctree.h"
 #include "Core/Sizing/DefaultSize.h"
 #include "Core/Surface/MeshPointClearance.h"
 #include "Core/Surface/StructuralEdges.h"
+#include "Core/Surface/SurfaceDelaunayTest.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 
 #include <algorithm>
@@ -74,6 +77,7 @@ private:
   Status Coarsen();
   Status PlaceMeshPoints();
   Status RefineSurface();
+  BallIndex FindProofs() const;
   void AddUnencroachingPoints(Id firstNumber, const std::vector<StructuralEdge>& edges);
   Status Tetrahedralize();
   Status AddSteinerPoints();
@@ -300,9 +304,39 @@ Status ConformingMesher::RefineSurface()
 }
 
 /**
+ * Balls that hold an empty sphere through each triangle whose smallest sphere is not empty: the
+ * criterion Delaunay allows that, and triangles that miss a stronger one have it.
+ */
+BallIndex ConformingMesher::FindProofs() const
+{
+  BallIndex proofs;
+  if (this->Settings.Criterion != SurfaceCriterion::Delaunay &&
+    !Contains(this->IsUnresolved, char(1)))
+  {
+    return proofs;
+  }
+  std::vector<Vec3> points = this->Surface.Points;
+  points.insert(points.end(), this->MeshPoints.begin(), this->MeshPoints.end());
+  PointOctree octree;
+  octree.Insert(points);
+  const SurfaceDelaunayTest test(points, octree);
+  SurfaceDelaunayTest::Result result;
+  for (std::size_t t = 0; t < this->Surface.Triangles.size(); ++t)
+  {
+    test.Run(this->Surface.Triangles[t], result);
+    if (!result.InsideSmallestSphere.empty())
+    {
+      proofs.Set(static_cast<Id>(t), result.ProofCenter, result.ProofRadius);
+    }
+  }
+  return proofs;
+}
+
+/**
  * Adds the optional points under numbers from firstNumber on, by the rule for Steiner points: none
- * in a smallest sphere of the boundary. In layers thinner than the size the surface would be refined
- * down to the thickness for each of them. Nor are they closer to it than others may be.
+ * in a smallest sphere of the boundary, nor where it could end the empty spheres of triangles that
+ * have no empty smallest one. In layers thinner than the size the surface would be refined down to
+ * the thickness for each of them. Nor are they closer to it than others may be.
  */
 void ConformingMesher::AddUnencroachingPoints(
   Id firstNumber, const std::vector<StructuralEdge>& edges)
@@ -316,6 +350,8 @@ void ConformingMesher::AddUnencroachingPoints(
   points.insert(points.end(), this->OptionalPoints.begin(), this->OptionalPoints.end());
   const double clearance =
     this->Options.Surface.MeshPointClearanceRatio * GetBoundingBoxDiagonal(this->Surface.Points);
+  BallIndex proofs = this->FindProofs();
+  std::vector<Id> endangered;
   BoundarySpheres spheres(this->Surface, edges);
   BoundarySpheres::Encroached encroached;
   for (const Id i :
@@ -327,7 +363,8 @@ void ConformingMesher::AddUnencroachingPoints(
       continue;
     }
     spheres.Find(points[number], encroached);
-    if (encroached.IsEmpty())
+    proofs.Find(points[number], endangered);
+    if (encroached.IsEmpty() && endangered.empty())
     {
       this->MeshPoints.push_back(points[number]);
       this->MeshPointSources.push_back(firstNumber + static_cast<Id>(number - numberOfKept));

@@ -19,6 +19,8 @@ constexpr std::uint32_t RootSize = 1u << MaximumLevel;
 constexpr int MaximumRoots = 15;
 /** Roots along the longest side of a box that is thinner than a cell. */
 constexpr int MaximumCubicRoots = 8;
+/** More than the roots and their levels can be divided into. */
+constexpr double LargestCells = 1e9;
 /** Rounding must not split what is as large as it may be. */
 constexpr double RoundingSlack = 1e-9;
 constexpr double Infinity = std::numeric_limits<double>::infinity();
@@ -62,7 +64,9 @@ SizingOctree::Units FindRoots(const Vec3& extents, const Vec3& wanted)
   SizingOctree::Units roots;
   for (int axis = 0; axis < 3; ++axis)
   {
-    double number = std::max(1.0, std::ceil(cells[axis] / cell * (1.0 - RoundingSlack)));
+    // A spacing so small that it vanishes in its square asks for infinitely many.
+    double number = std::min(std::ceil(cells[axis] / cell * (1.0 - RoundingSlack)), LargestCells);
+    number = std::max(number, 1.0);
     while (number > MaximumRoots)
     {
       number = std::ceil(0.5 * number);

@@ -34,7 +34,8 @@
  * Guarantees: exact decisions; input points keep their coordinates and ids; new points follow them.
  * Deterministic.
  * Failure: InvalidInput for a surface that breaks the invariants of TriangleMesh.h, or that has two
- * sheets within FlatnessRatio which become the same triangles whatever edges are structural.
+ * sheets within FlatnessRatio which become the same triangles whatever edges are structural;
+ * LimitReached for a MaximumEdgeLength that needs more points than ids can count.
  * Triangles that miss the criterion are listed in UnresolvedTriangles; those that cannot even be
  * meshed also in NonDelaunayTriangles.
  * Cost: a triangle that is Delaunay takes one search of the octree, O(log n); a new point takes a

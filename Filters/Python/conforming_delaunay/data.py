@@ -83,11 +83,11 @@ class Surface:
     @classmethod
     def from_triangles(cls, points: Any, triangles: Any, **others: Any) -> "Surface":
         """From (n, 3) points and (m, k) point ids of polygons with k corners each."""
-        ids = np.asarray(triangles)
+        ids = _as_ids(triangles)
         if ids.ndim != 2:
             raise ValueError("The polygons have to be an array with a row of ids for each.")
         return cls(
-            _as_points(points), ids.reshape(-1), np.arange(0, ids.size + 1, ids.shape[1]), **others
+            as_points(points), ids.reshape(-1), np.arange(0, ids.size + 1, ids.shape[1]), **others
         )
 
     @classmethod
@@ -111,8 +111,9 @@ class Surface:
         if isinstance(polygons, np.ndarray) and polygons.ndim == 2:
             return cls.from_triangles(points, polygons)
         sizes = [len(polygon) for polygon in polygons]
-        connectivity = np.fromiter((i for polygon in polygons for i in polygon), np.int64)
-        return cls(_as_points(points), connectivity, np.concatenate([[0], np.cumsum(sizes)]))
+        connectivity = _as_ids([i for polygon in polygons for i in polygon])
+        offsets = np.cumsum([0, *sizes], dtype=np.int64)
+        return cls(as_points(points), connectivity, offsets)
 
     @classmethod
     def from_pyvista(cls, surface: "pyvista.PolyData") -> "Surface":
@@ -370,8 +371,17 @@ class Mesh:
         )
 
 
-def _as_points(points: Any) -> np.ndarray:
+def _as_ids(ids: Any) -> np.ndarray:
+    array = np.asarray(ids)
+    if array.size > 0 and array.dtype.kind not in "iu":
+        raise ValueError(f"Ids of points have to be whole numbers, not {array.dtype}.")
+    return array if array.size > 0 else array.astype(np.int64)
+
+
+def as_points(points: Any) -> np.ndarray:
     array = np.asarray(points, np.float64)
+    if array.size == 0:
+        array = array.reshape(0, 3)
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"Points have to be an array of shape (n, 3), not {array.shape}.")
     return array
@@ -410,7 +420,7 @@ def sizing_inputs(sizing: SizingLike) -> Tuple[Dict[str, Any], Optional[_engine.
         sizing = vtk_data.to_sizing(sizing)
     points, lengths, *tetrahedra = sizing
     return {
-        "sizing_points": _as_points(points),
+        "sizing_points": as_points(points),
         "sizing_lengths": np.asarray(lengths, np.float64),
         "sizing_tetrahedra": np.asarray(tetrahedra[0]) if tetrahedra else None,
     }, None

@@ -125,6 +125,8 @@ def write_mesh(
         from .gmsh import write_msh
 
         write_msh(path, mesh, gmsh_format=gmsh_format, scale=scale)
+    elif suffix in (".stl", ".obj"):
+        raise ValueError(f"{name} would have no tetrahedra: save the boundary there, mesh.boundary.save().")
     else:
         try:
             import meshio

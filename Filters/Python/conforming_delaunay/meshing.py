@@ -19,6 +19,7 @@ from .data import (
     SizingLike,
     Surface,
     SurfaceLike,
+    as_points,
     make_mesh,
     make_surface,
     mesh_inputs,
@@ -110,8 +111,13 @@ def _options(**values: Any) -> Dict[str, Any]:
     }
 
 
-def _reals(value: Any) -> Optional[np.ndarray]:
-    return None if value is None else np.asarray(value, np.float64)
+def _mesh_points(value: Any) -> Optional[np.ndarray]:
+    if value is None:
+        return None
+    points = as_points(value)
+    if not np.isfinite(points).all():
+        raise ValueError("mesh_points have coordinates that are not finite.")
+    return points
 
 
 def _region_id(surface: Surface, region: Any) -> int:
@@ -186,8 +192,10 @@ def _polygons(
         for contact, (name, cells) in enumerate(contacts.items()):
             chosen = np.asarray(cells)
             is_mask = chosen.dtype == bool
+            if not chosen.size or (is_mask and not chosen.any()):
+                raise ValueError(f"Contact {name} has no polygons.")
             if (is_mask and chosen.shape != (count,)) or (
-                not is_mask and chosen.size and not 0 <= chosen.min() <= chosen.max() < count
+                not is_mask and not 0 <= chosen.min() <= chosen.max() < count
             ):
                 raise ValueError(f"Contact {name} has polygons that are none of the {count}.")
             ids[chosen] = contact
@@ -379,7 +387,7 @@ def mesh(
                 close_open_boundary=close_open_boundary,
             ),
             **_region_sizes(polygons, region_sizes),
-            "mesh_points": _reals(mesh_points),
+            "mesh_points": _mesh_points(mesh_points),
             "spacing": _spacing(spacing),
             "layers": _layers(polygons, layers),
         },
@@ -554,7 +562,7 @@ def refine_surface(
     """
     triangles = Surface.from_any(surface)
     arrays, function = sizing_inputs(sizing)
-    points = _reals(mesh_points)
+    points = _mesh_points(mesh_points)
     result = _engine.run(
         "refine_surface",
         {
@@ -672,7 +680,7 @@ def tetrahedralize(
         "tetrahedralize",
         {
             **triangle_inputs(triangles),
-            "mesh_points": _reals(mesh_points),
+            "mesh_points": _mesh_points(mesh_points),
             **_options(
                 close_open_boundary=close_open_boundary,
                 maximum_number_of_tetrahedra=maximum_number_of_tetrahedra,
