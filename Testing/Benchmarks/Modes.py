@@ -167,8 +167,8 @@ twentieth of the diagonal of the bounding box. The median is that of all edges, 
 smallest dihedral angle, in degrees; then there are the numbers of tetrahedra below 5 and 15 degrees, and the
 verdict of `Delaunay Mesh Criteria`; last the processor time in seconds, on one thread.
 
-L is the *longest* edge of our meshes, so their median is about two thirds of it; to Gmsh it is the size of
-elements, so the median is about L itself, which makes for a third of the tetrahedra. Gmsh's and TetGen's meshes
+L is the *longest* edge of our meshes, so their median is two thirds to three quarters of it; to Gmsh it is the
+size of elements, so the median is about L itself, which makes for a third of the tetrahedra. Gmsh's and TetGen's meshes
 are constrained, ours are Delaunay. Of the surfaces of many small triangles (scans) ours and Gmsh's are meshed anew;
 TetGen keeps every triangle. The bound of the distance, L/10, keeps thin limbs of scans fine.
 

@@ -251,9 +251,8 @@ TEST(ConformingMesher, LatticeCostsNothingInGradedSizings)
 }
 
 /**
- * Mesh points outside of smallest spheres broke surfaces that were Delaunay by other spheres: curved
- * ones for
- * finite elements.
+ * Mesh points outside of smallest spheres broke surfaces that were Delaunay by other spheres: those
+ * for finite elements.
  */
 TEST(ConformingMesher, LatticesLeaveEverySurfaceDelaunay)
 {

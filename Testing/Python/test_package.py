@@ -286,13 +286,19 @@ class NumPyAlone(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, name):
                 cd.mesh((CUBE_POINTS, CUBE_QUADS), **{name: value})
 
-    def test_ids_that_are_no_whole_numbers_are_errors(self):
+    def test_odd_input_is_an_error(self):
         for polygons in ([[0.5, 1, 2]], np.array([[0.0, 1.0, 2.0]]), [["a", "b", "c"]]):
             with self.assertRaisesRegex(ValueError, "whole numbers"):
                 cd.mesh((CUBE_POINTS, polygons))
         for points, polygons in (([], []), (CUBE_POINTS, [])):
             with self.assertRaisesRegex(cd.MeshingError, "nothing to triangulate"):
                 cd.mesh((points, polygons))
+        with self.assertRaisesRegex(ValueError, "Contact none has no polygons"):
+            cd.mesh((CUBE_POINTS, CUBE_QUADS), contacts={"none": []})
+        with self.assertRaisesRegex(ValueError, "mesh_points .* not finite"):
+            cd.mesh((CUBE_POINTS, CUBE_QUADS), mesh_points=[[np.nan, 0.5, 0.5]])
+        with self.assertRaisesRegex(ValueError, "save the boundary"):
+            cd.mesh((CUBE_POINTS, CUBE_QUADS), edge_length=0.5).save("part.stl")
 
     def test_smoothing(self):
         rough, smooth = (

@@ -111,12 +111,12 @@ def _options(**values: Any) -> Dict[str, Any]:
     }
 
 
-def _mesh_points(value: Any) -> Optional[np.ndarray]:
+def _points(name: str, value: Any) -> Optional[np.ndarray]:
     if value is None:
         return None
     points = as_points(value)
     if not np.isfinite(points).all():
-        raise ValueError("mesh_points have coordinates that are not finite.")
+        raise ValueError(f"{name} has coordinates that are not finite.")
     return points
 
 
@@ -387,7 +387,7 @@ def mesh(
                 close_open_boundary=close_open_boundary,
             ),
             **_region_sizes(polygons, region_sizes),
-            "mesh_points": _mesh_points(mesh_points),
+            "mesh_points": _points("mesh_points", mesh_points),
             "spacing": _spacing(spacing),
             "layers": _layers(polygons, layers),
         },
@@ -562,7 +562,7 @@ def refine_surface(
     """
     triangles = Surface.from_any(surface)
     arrays, function = sizing_inputs(sizing)
-    points = _mesh_points(mesh_points)
+    points = _points("mesh_points", mesh_points)
     result = _engine.run(
         "refine_surface",
         {
@@ -680,7 +680,7 @@ def tetrahedralize(
         "tetrahedralize",
         {
             **triangle_inputs(triangles),
-            "mesh_points": _mesh_points(mesh_points),
+            "mesh_points": _points("mesh_points", mesh_points),
             **_options(
                 close_open_boundary=close_open_boundary,
                 maximum_number_of_tetrahedra=maximum_number_of_tetrahedra,
@@ -788,7 +788,7 @@ def refine_mesh(
             "facets": None if boundary is None else boundary.facets,
             "is_free": mesh.is_free if len(mesh.is_free) else None,
             "is_removed": None if is_removed is None else np.asarray(is_removed, bool),
-            "new_points": _reals(new_points),
+            "new_points": _points("new_points", new_points),
             **_options(
                 criterion=criterion,
                 edge_length=edge_length,
