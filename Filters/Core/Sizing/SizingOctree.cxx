@@ -202,7 +202,7 @@ int SizingOctree::FindSplitAxes(Node& node) const
   for (int axis = 0; axis < 3; ++axis)
   {
     // Splitting all axes that are about as long keeps cells cubic where the spacing is isotropic.
-    axes |= ratios[axis] > largest / std::sqrt(2.0) ? 1 << axis : 0;
+    axes |= std::sqrt(2.0) * ratios[axis] >= largest ? 1 << axis : 0;
   }
   return axes;
 }
