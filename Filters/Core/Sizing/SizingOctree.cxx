@@ -40,9 +40,13 @@ Vec3 GetLargestSpacings(const Vec3& low, const Vec3& extents, const SizingField&
   Vec3 largest;
   for (int place = 0; place < 27; ++place)
   {
-    const Vec3 shares{ 0.5 * (place % 3), 0.5 * (place / 3 % 3), 0.5 * (place / 9) };
-    const Vec3 lengths = GetAlongAxes(
-      sizing(low + Vec3{ shares.X * extents.X, shares.Y * extents.Y, shares.Z * extents.Z }));
+    const int steps[3] = { place % 3, place / 3 % 3, place / 9 };
+    Vec3 position = low;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      position[axis] += 0.5 * steps[axis] * extents[axis];
+    }
+    const Vec3 lengths = GetAlongAxes(sizing(position));
     for (int axis = 0; axis < 3; ++axis)
     {
       largest[axis] = std::max(largest[axis], lengths[axis]);
