@@ -17,9 +17,9 @@
  *
  * MeshFor says what the mesh is for. It decides Criterion, MaximumEdgeLength, GenerateMeshPoints,
  * AddSteinerPoints, RemoveSlivers, DihedralAngleTarget and RadiusEdgeRatio
- * (Core/Pipeline/MeshPurpose.h), each as long as it is AUTOMATIC (-1), its default; what is set counts. The field arrays of the mesh MeshFor
- * (int) and MaximumEdgeLength (double, model units) have what was used, and the last line of the
- * certificate has all of it.
+ * (Core/Pipeline/MeshPurpose.h), each as long as it is AUTOMATIC (-1), its default; what is set
+ * counts. The field arrays of the mesh MeshFor (int) and MaximumEdgeLength (double, model units)
+ * have what was used, and the last line of the certificate has all of it.
  *
  * Inputs: port 0: vtkPolyData, any list of polygons, optionally with the two-component cell array
  * BoundaryLabels (region ids on the front and back side, -1 outside) and the field array

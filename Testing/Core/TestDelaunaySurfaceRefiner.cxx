@@ -200,7 +200,6 @@ TEST(DelaunaySurfaceRefiner, HonoursAreaAngleAndSizing)
   MeshAndCheck(refined);
 }
 
-/** Many more flips than the few triangles of the input have need of. */
 /** What can never end is not begun: it was five minutes of work, and no mesh. */
 TEST(DelaunaySurfaceRefiner, RefusesSizesThatNeedTooManyPoints)
 {
@@ -219,6 +218,7 @@ TEST(DelaunaySurfaceRefiner, RefusesSizesThatNeedTooManyPoints)
   }
 }
 
+/** Many more flips than the few triangles of the input have need of. */
 TEST(DelaunaySurfaceRefiner, RefinesFewLargeTrianglesToManySmallOnes)
 {
   DelaunaySurfaceRefinerOptions options;

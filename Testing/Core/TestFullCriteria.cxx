@@ -56,6 +56,34 @@ TEST(FullCriteria, QualityOfTheRegularTetrahedron)
   EXPECT_NEAR(quality.SmallestDihedralAngle, quality.LargestDihedralAngle, 1e-12);
 }
 
+/** A volume below 1e-10 of the median is said in the first line, before anything else. */
+TEST(FullCriteria, SaysTinyTetrahedraInTheFirstLine)
+{
+  for (const double height : { 1e-9, 1e-11 })
+  {
+    std::vector<Vec3> points;
+    RawVector<TetrahedronIds> tetrahedra;
+    for (const double h : { 1.0, 1.0, height })
+    {
+      const Id first = static_cast<Id>(points.size());
+      const double x = 10.0 * first;
+      for (const Vec3& point :
+        { Vec3{ x, 0.0, 0.0 }, Vec3{ x + 1.0, 0.0, 0.0 }, Vec3{ x, 1.0, 0.0 }, Vec3{ x, 0.0, h } })
+      {
+        points.push_back(point);
+      }
+      tetrahedra.push_back({ first, first + 1, first + 2, first + 3 });
+    }
+    const MeshCertificate report = Evaluate(MakeMesh(points, tetrahedra));
+    EXPECT_NEAR(report.SmallestVolumeRatio, height, 1e-6 * height);
+    const std::string text = report.GetText();
+    EXPECT_EQ(text.find(", but the smallest tetrahedron has 1e-11 of the median volume\n") ==
+        std::string(report.GetVerdictName()).size(),
+      height < MeshCertificate::TinyVolumeRatio)
+      << text;
+  }
+}
+
 /** Closed forms of what solvers compute that add up boxes without the signs of their parts. */
 TEST(FullCriteria, UnsignedBoxes)
 {

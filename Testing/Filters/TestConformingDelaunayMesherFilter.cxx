@@ -783,7 +783,7 @@ TEST(ConformingDelaunayMesherFilter, GeneratesMeshPoints)
   vtkNew<EventRecorder> recorder;
   recorder->Watch(filter);
   filter->Update();
-  EXPECT_EQ(recorder->Errors, "");
+  EXPECT_EQ(recorder->GetFaults(), "");
   ExpectProgress(recorder);
   vtkUnstructuredGrid* mesh = filter->GetOutput();
   ExpectLinear(mesh);
@@ -817,7 +817,7 @@ TEST(ConformingDelaunayMesherFilter, GeneratesMeshPoints)
   recorder->Warnings.clear();
   filter->SetMeshPointClearanceRatio(1e-6);
   filter->Update();
-  EXPECT_EQ(recorder->Errors, "");
+  EXPECT_EQ(recorder->GetFaults(), "");
   EXPECT_EQ(countAt(0.999), inLayer);
 
   // Points of the second port are used as well; a wrong layer is this filter's error.

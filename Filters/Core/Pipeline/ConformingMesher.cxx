@@ -2,11 +2,11 @@
 #include "Core/Pipeline/ConformingMesher.h"
 
 #include "Core/Basics/SortedIds.h"
-#include "Core/Geometry/Measures.h"
 #include "Core/Improvement/BoundarySpheres.h"
 #include "Core/Improvement/SliverRemover.h"
 #include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/MeshBoundary.h"
+#include "Core/Meshes/SurfaceArea.h"
 #include "Core/Pipeline/SurfaceCoarsener.h"
 #include "Core/Search/BallIndex.h"
 #include "Core/Search/PointOctree.h"
@@ -45,18 +45,13 @@ std::vector<T> Compose(const std::vector<T>& from, const std::vector<Id>& via, T
 double GetPeeledVolumeRatio(
   const TriangleMesh& boundary, const MeshCertificate& report, double flatnessRatio)
 {
-  double area = 0.0;
-  for (const TriangleIds& ids : boundary.Triangles)
-  {
-    area +=
-      GetTriangleArea(boundary.Points[ids[0]], boundary.Points[ids[1]], boundary.Points[ids[2]]);
-  }
   double smallest = std::numeric_limits<double>::max();
   for (const RegionVolume& region : report.Regions)
   {
     smallest = std::min(smallest, region.Volume);
   }
-  return flatnessRatio * GetBoundingBoxDiagonal(boundary.Points) * area / smallest;
+  return flatnessRatio * GetBoundingBoxDiagonal(boundary.Points) * GetSurfaceArea(boundary) /
+    smallest;
 }
 
 /** The run: each stage takes what the one before has left in the members. */
@@ -91,7 +86,7 @@ private:
   {
     return this->Context.Part(begin, end).Named(stage);
   }
-  /** Of MeshPointSources: generated ones have larger numbers. */
+  /** Whether a number of MeshPointSources is that of a given point; generated ones are larger. */
   bool IsGivenMeshPoint(Id source) const
   {
     return this->Input.MeshPoints != nullptr &&

@@ -15,9 +15,9 @@
  * | MaximumEdgeLength   | DefaultSize.h   | DefaultSize.h   | 0: off        |
  * | GeneratesMeshPoints | with a size     | with a size     | no            |
  *
- * With a sizing MaximumEdgeLength is off unless it is given: the sizing says how large. Mesh points
- * are generated where Steiner points would come to be for the size alone: in a lattice they are up
- * to half as many.
+ * MaximumEdgeLength is off if there is a sizing, unless it is given: the sizing says how large edges
+ * are. Mesh points are generated where Steiner points would come to be for the size alone: with a
+ * lattice the mesh has up to half of the tetrahedra.
  *
  * Finite volumes: with Steiner points and criterion 3.1 no coupling of the box method is negative:
  * circumcenters lie in their regions (Fig. 3.4), and structural edges with a negative coupling are

@@ -3,6 +3,7 @@
 
 #include "Core/Geometry/Box.h"
 #include "Core/Geometry/Measures.h"
+#include "Core/Meshes/SurfaceArea.h"
 #include "Core/Meshes/VolumeSums.h"
 #include "Core/Sizing/RegionLocator.h"
 
@@ -74,14 +75,12 @@ double GetDefaultSize(const TriangleMesh& surface)
     return 0.0;
   }
   Box box;
-  double area = 0.0;
   for (const TriangleIds& ids : surface.Triangles)
   {
     for (const Id id : ids)
     {
       box.Add(surface.Points[id]);
     }
-    area += GetTriangleArea(surface.Points[ids[0]], surface.Points[ids[1]], surface.Points[ids[2]]);
   }
   const Vec3 sides = box.High - box.Low;
   const std::map<Id, RegionExtent> regions = MeasureRegions(surface);
@@ -91,7 +90,7 @@ double GetDefaultSize(const TriangleMesh& surface)
     volume += extent.GetVolume();
   }
   const double least = std::max(std::cbrt(volume * TetrahedraPerVolume / Tetrahedra),
-    std::sqrt(area * TetrahedraPerArea / Tetrahedra));
+    std::sqrt(GetSurfaceArea(surface) * TetrahedraPerArea / Tetrahedra));
   double size = DiagonalRatio * Norm(sides);
   for (const auto& [region, extent] : regions)
   {

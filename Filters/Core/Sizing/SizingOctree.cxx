@@ -15,11 +15,14 @@ namespace
 {
 constexpr int MaximumLevel = 16;
 constexpr std::uint32_t RootSize = 1u << MaximumLevel;
-/** Of a box with more cells, the roots fill it to an eighth of a cell in each direction. */
+/**
+ * The largest number of roots along an axis. A box with more cells is filled to an eighth: roots are
+ * halved, and there are at least eight.
+ */
 constexpr int MaximumRoots = 15;
-/** Roots along the longest side of a box that is thinner than a cell. */
+/** The largest number of roots along the longest side of a box that is thinner than a cell. */
 constexpr int MaximumCubicRoots = 8;
-/** More than the roots and their levels can be divided into. */
+/** A number of cells along an axis that no octree has: spacings may vanish. */
 constexpr double LargestCells = 1e9;
 /** Rounding must not split what is as large as it may be. */
 constexpr double RoundingSlack = 1e-9;

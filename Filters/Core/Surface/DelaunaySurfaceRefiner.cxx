@@ -3,8 +3,8 @@
 
 #include "Core/Basics/IdLimits.h"
 #include "Core/Basics/SortedIds.h"
-#include "Core/Geometry/Measures.h"
 #include "Core/Meshes/DuplicateTriangles.h"
+#include "Core/Meshes/SurfaceArea.h"
 #include "Core/Surface/MeshPointClearance.h"
 #include "Core/Surface/SurfaceChecks.h"
 #include "Core/Surface/SurfaceRefinement.h"
@@ -479,13 +479,9 @@ Status CheckNumberOfPoints(const TriangleMesh& surface, double maximumEdgeLength
   {
     return {};
   }
-  double area = 0.0;
-  for (const TriangleIds& ids : surface.Triangles)
-  {
-    area += GetTriangleArea(surface.Points[ids[0]], surface.Points[ids[1]], surface.Points[ids[2]]);
-  }
   // No triangle is larger than the equilateral one, and there is a point for two of them.
-  const double points = area / (0.5 * std::sqrt(3.0)) / maximumEdgeLength / maximumEdgeLength;
+  const double points =
+    GetSurfaceArea(surface) / (0.5 * std::sqrt(3.0)) / maximumEdgeLength / maximumEdgeLength;
   if (points <= static_cast<double>(LargestId))
   {
     return {};
