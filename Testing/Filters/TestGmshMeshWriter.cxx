@@ -26,7 +26,13 @@ using namespace testing_filters;
 
 namespace
 {
-const std::string FileName = std::string(CDM_OUTPUT_DIR) + "/TestGmshMeshWriter.msh";
+/** Tests run beside each other: each has a file of its own. */
+class GmshMeshWriter : public testing::Test
+{
+protected:
+  const std::string FileName = std::string(CDM_OUTPUT_DIR) + "/TestGmshMeshWriter" +
+    testing::UnitTest::GetInstance()->current_test_info()->name() + ".msh";
+};
 
 /**
  * A Gmsh 2.2 file, read by the rules of DEVSIM's reader: the format line, names of dimension 0 to 3
@@ -199,7 +205,7 @@ bool RunGmshCheck(const std::string& file, std::string& output)
 }
 } // namespace
 
-TEST(GmshMeshWriter, DeviceWithNames)
+TEST_F(GmshMeshWriter, DeviceWithNames)
 {
   vtkNew<vtkTechnologyStructureSource> device;
   device->SetStructureToMosTransistor();
@@ -253,7 +259,7 @@ TEST(GmshMeshWriter, DeviceWithNames)
   EXPECT_NEAR(0.24, file.GetArea(file.GetNumber("Bulk_zmin")), 1e-12);
 }
 
-TEST(GmshMeshWriter, NamesOutliveTheWritersOfVtk)
+TEST_F(GmshMeshWriter, NamesOutliveTheWritersOfVtk)
 {
   // What XML and the encoding stand on, and an umlaut; a name may be empty.
   const std::vector<std::string> odd = { "Si & \"Ge\" <30%>", "", "100%25", "\xc3\xbc\n'" };
@@ -319,7 +325,7 @@ vtkSmartPointer<vtkPolyData> NameContacts(
 
 // Two regions have all of a contact between them: it keeps its name. Others change neither numbers
 // nor names.
-TEST(GmshMeshWriter, ContactsKeepTheirNamesAndChangeNoOthers)
+TEST_F(GmshMeshWriter, ContactsKeepTheirNamesAndChangeNoOthers)
 {
   const auto boxes = MakeBoxesWithContacts(
     [](const double* bounds) {
@@ -363,7 +369,7 @@ TEST(GmshMeshWriter, ContactsKeepTheirNamesAndChangeNoOthers)
   EXPECT_EQ(before.Names.size() + 1, after.Names.size());
 }
 
-TEST(GmshMeshWriter, ContactsOfTheMesherAreFound)
+TEST_F(GmshMeshWriter, ContactsOfTheMesherAreFound)
 {
   vtkNew<vtkTechnologyStructureSource> device;
   device->SetStructureToMosTransistor();
@@ -402,7 +408,7 @@ TEST(GmshMeshWriter, ContactsOfTheMesherAreFound)
   }
 }
 
-TEST(GmshMeshWriter, ContactsOfSeveralRegions)
+TEST_F(GmshMeshWriter, ContactsOfSeveralRegions)
 {
   // The ends of the long box, and its bottom, which belongs to both regions.
   const auto boxes = MakeBoxesWithContacts(
@@ -454,7 +460,7 @@ TEST(GmshMeshWriter, ContactsOfSeveralRegions)
   EXPECT_FALSE(std::ifstream(FileName).good()) << "no file";
 }
 
-TEST(GmshMeshWriter, GmshAcceptsIt)
+TEST_F(GmshMeshWriter, GmshAcceptsIt)
 {
   if (std::system("gmsh -version > /dev/null 2>&1") != 0)
   {
@@ -477,7 +483,7 @@ TEST(GmshMeshWriter, GmshAcceptsIt)
   EXPECT_TRUE(Contains(output, std::to_string(file.Nodes.size()) + " nodes")) << output;
 }
 
-TEST(GmshMeshWriter, BadInputAndFiles)
+TEST_F(GmshMeshWriter, BadInputAndFiles)
 {
   vtkNew<vtkConformingDelaunayMesher> mesher;
   mesher->SetMeshForToFewestPoints();
