@@ -178,10 +178,9 @@ TEST(MeshPurpose, FiniteVolumesAreTheDefault)
   }
 }
 
-/** A plate of many small triangles stays a plate: the bound is a tenth of its thickness. */
-TEST(MeshPurpose, ThePlateThatIsMadeCoarserKeepsItsThickness)
+/** A plate of n x n squares of side 1 on either side, with waves. */
+PolygonSoup MakePlate(int n, double thickness, double wave)
 {
-  constexpr int n = 20;
   PolygonSoup plate;
   for (int k = 0; k < 2; ++k)
   {
@@ -189,12 +188,11 @@ TEST(MeshPurpose, ThePlateThatIsMadeCoarserKeepsItsThickness)
     {
       for (int j = 0; j <= n; ++j)
       {
-        // Waves as high as a third of the thickness.
-        plate.Points.push_back({ 1.0 * i, 1.0 * j, 0.3 * k + 0.1 * ((i + j) % 2) });
+        plate.Points.push_back({ 1.0 * i, 1.0 * j, thickness * k + wave * ((i + j) % 2) });
       }
     }
   }
-  const auto point = [](int i, int j, int k) { return (k * (n + 1) + i) * (n + 1) + j; };
+  const auto point = [n](int i, int j, int k) { return (k * (n + 1) + i) * (n + 1) + j; };
   plate.Offsets.push_back(0);
   const auto add = [&](Id a, Id b, Id c, Id d)
   {
@@ -219,6 +217,15 @@ TEST(MeshPurpose, ThePlateThatIsMadeCoarserKeepsItsThickness)
     add(point(0, i, 0), point(0, i, 1), point(0, i + 1, 1), point(0, i + 1, 0));
     add(point(n, i, 0), point(n, i + 1, 0), point(n, i + 1, 1), point(n, i, 1));
   }
+  return plate;
+}
+
+/** A plate of many small triangles stays a plate: the bound is a tenth of its thickness. */
+TEST(MeshPurpose, ThePlateThatIsMadeCoarserKeepsItsThickness)
+{
+  constexpr int n = 20;
+  // Waves as high as a third of the thickness.
+  const PolygonSoup plate = MakePlate(n, 0.3, 0.1);
   ConformingMesherOptions options;
   options.Choices.MaximumEdgeLength = 5.0;
   const ConformingMesherOutput output = Mesh(plate, options);
@@ -231,6 +238,25 @@ TEST(MeshPurpose, ThePlateThatIsMadeCoarserKeepsItsThickness)
   // No point is farther than a tenth of the thickness from where it was, on either side.
   EXPECT_NEAR(sixVolumes.Get() / 6.0 / (n * n * 0.3), 1.0, 0.2);
   EXPECT_TRUE(output.Certificate.IsDelaunay()) << output.Certificate.GetText();
+}
+
+/** Where half of the edges are shorter than the remesher leaves them: 0.6 of the longest length. */
+TEST(MeshPurpose, SurfacesThatWouldGetCoarserAreMadeCoarser)
+{
+  // Two thirds of the edges have length 1.
+  const PolygonSoup plate = MakePlate(16, 4.0, 0.0);
+  for (const auto& [ratio, isRemeshed] : { std::pair(0.55, true), std::pair(0.65, false) })
+  {
+    ConformingMesherOptions options;
+    options.MeshFor = MeshPurpose::FewestPoints;
+    options.Choices.MaximumEdgeLength = 1.0 / ratio;
+    bool isSaid = false;
+    for (const Warning& warning : Mesh(plate, options).Warnings)
+    {
+      isSaid |= warning.Message.find("was remeshed to the wanted size") != std::string::npos;
+    }
+    EXPECT_EQ(isSaid, isRemeshed) << ratio;
+  }
 }
 
 TEST(MeshPurpose, TheDefaultSizeFollowsTheThinnestRegion)

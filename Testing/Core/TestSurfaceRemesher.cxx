@@ -5,6 +5,7 @@
 #include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/TriangleIntersection.h"
 #include "Core/Search/BoxTree.h"
+#include "Core/Surface/CurvatureLengths.h"
 #include "Core/Surface/SurfaceRemesher.h"
 #include "EnclosedVolumes.h"
 
@@ -350,6 +351,77 @@ SurfaceRemesherOutput Remesh(
   const Status status = RemeshSurface(input, options, {}, output);
   EXPECT_TRUE(status.IsOk()) << status.Message;
   return output;
+}
+
+/** Edges are no longer where curvature says so, and triangles have no small angles. */
+TEST(SurfaceRemesher, KeepsThinLimbsEven)
+{
+  const double deviation = 0.15;
+  const TriangleMesh torus = MakeTorus(192, 64);
+  const SurfaceRemesherOutput output = Remesh(torus, 2.0, deviation);
+  Check(torus, output, deviation);
+  const double allowed = std::sqrt(6.0 * deviation - 3.0 * deviation * deviation);
+  EXPECT_LT(GetMedianEdge(output.Surface), 1.2 * allowed);
+  EXPECT_GT(GetMedianEdge(output.Surface), 0.8 * allowed);
+  for (const TriangleIds& ids : output.Surface.Triangles)
+  {
+    for (int i = 0; i < 3; ++i)
+    {
+      const Vec3& corner = output.Surface.Points[ids[i]];
+      const Vec3 first = output.Surface.Points[ids[(i + 1) % 3]] - corner;
+      const Vec3 second = output.Surface.Points[ids[(i + 2) % 3]] - corner;
+      EXPECT_GT(std::atan2(Norm(Cross(first, second)), Dot(first, second)) * 180.0 / M_PI, 20.0);
+    }
+  }
+}
+
+TEST(CurvatureLengths, ArePlainOnSpheresAndPlanes)
+{
+  for (const double radius : { 1e-6, 1.0, 1e6 })
+  {
+    SurfaceBuilder sphere;
+    sphere.AddSphere(radius, 40, Outer);
+    for (const double ratio : { 0.001, 0.1, 2.0 })
+    {
+      const double deviation = ratio * radius;
+      const std::vector<double> lengths = GetCurvatureLengths(sphere.Surface, {},
+        std::vector<double>(sphere.Surface.Points.size(), 0.3 * radius), deviation);
+      const double larger = std::max(radius, deviation);
+      const double wanted = std::sqrt(6.0 * deviation * larger - 3.0 * deviation * deviation);
+      for (const double length : lengths)
+      {
+        EXPECT_NEAR(length, wanted, 0.05 * wanted);
+      }
+    }
+  }
+  SurfaceBuilder plane;
+  plane.AddPatch([](double u, double v) { return Vec3{ u, v, u - v }; }, 20, 20, Outer);
+  for (const double length : GetCurvatureLengths(
+         plane.Surface, {}, std::vector<double>(plane.Surface.Points.size(), 0.5), 0.01))
+  {
+    EXPECT_GT(length, 1e3);
+  }
+}
+
+/** The cap of a box knows nothing of its walls, whose normals chains keep apart. */
+TEST(CurvatureLengths, EndAtChains)
+{
+  const TriangleMesh box = MakeTwoRegions(16, 0.0);
+  StructuralEdgesOutput edges;
+  ASSERT_TRUE(ExtractStructuralEdges(box, {}, {}, edges).IsOk());
+  ASSERT_FALSE(edges.Edges.empty());
+  for (const double length :
+    GetCurvatureLengths(box, edges.Edges, std::vector<double>(box.Points.size(), 10.0), 0.01))
+  {
+    EXPECT_GT(length, 1e3);
+  }
+  double shortest = 1e3;
+  for (const double length :
+    GetCurvatureLengths(box, {}, std::vector<double>(box.Points.size(), 0.3), 0.01))
+  {
+    shortest = std::min(shortest, length);
+  }
+  EXPECT_LT(shortest, 0.3) << "without chains the edges of the box are curved";
 }
 
 TEST(SurfaceRemesher, EvensOutASphere)

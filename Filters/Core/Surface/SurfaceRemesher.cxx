@@ -5,6 +5,7 @@
 #include "Core/Geometry/Measures.h"
 #include "Core/Search/PlaceSearch.h"
 #include "Core/Surface/ChangeableSurface.h"
+#include "Core/Surface/CurvatureLengths.h"
 #include "Core/Surface/FeatureChains.h"
 
 #include <algorithm>
@@ -25,8 +26,11 @@ constexpr double SettledRatio = 0.98;
 /** Edges are split above and collapse below these ratios of the wanted length. */
 constexpr double SplitRatio = 4.0 / 3.0;
 constexpr double CollapseRatio = 4.0 / 5.0;
+/** How far around a point curvature is measured: at most, of the wanted length and of the bound. */
+constexpr double CurvatureReachRatio = 0.5;
+constexpr double CurvatureReachBounds = 4.0;
 /** Moves below this ratio of the wanted length are not worth their cost. */
-constexpr double SmallestMoveRatio = 0.05;
+constexpr double SmallestMoveRatio = 0.1;
 /** Cosine of the largest turn of a chain at a point that is no corner: 40 degrees. */
 constexpr double SmallestChainCosine = 0.766;
 /** The same where edges are far too short, below this ratio of the wanted length: 3 degrees. */
@@ -73,9 +77,22 @@ public:
     std::vector<double> lengths, const std::vector<Id>& facets,
     const std::vector<StructuralEdge>& edges)
     : Input(input), Options(options),
-      Surface(*input.Surface, facets, edges, options.MaximumDeviation), Lengths(std::move(lengths))
+      Surface(*input.Surface, facets, edges, options.MaximumDeviation),
+      WantedLengths(std::move(lengths))
   {
     this->FindFixedPoints();
+    std::vector<double> reaches;
+    for (const double length : this->WantedLengths)
+    {
+      reaches.push_back(std::min(
+        CurvatureReachRatio * length, CurvatureReachBounds * options.MaximumDeviation));
+    }
+    this->CurvatureLengths =
+      GetCurvatureLengths(*input.Surface, edges, reaches, options.MaximumDeviation);
+    for (std::size_t i = 0; i < reaches.size(); ++i)
+    {
+      this->Lengths.push_back(std::min(this->WantedLengths[i], this->CurvatureLengths[i]));
+    }
   }
 
   /** False if aborted. */
@@ -111,18 +128,15 @@ public:
   void MakeOutput(SurfaceRemesherOutput& output) const;
 
 private:
-  double GetLengthAt(const Vec3& position) const
-  {
-    return GetWantedLength(this->Input, this->Options, position);
-  }
   const Vec3& GetPoint(Id point) const { return this->Surface.GetPoints()[point]; }
-  /** Length of an edge, 1 as wanted. */
-  double GetRatio(Id a, Id b) const
+  /** Length of an edge, 1 as wanted by lengths at its ends. */
+  double GetRatio(Id a, Id b, const std::vector<double>& lengths) const
   {
-    return Distance(this->GetPoint(a), this->GetPoint(b)) /
-      std::min(this->Lengths[a], this->Lengths[b]);
+    return Distance(this->GetPoint(a), this->GetPoint(b)) / std::min(lengths[a], lengths[b]);
   }
 
+  /** Of a point that is new or has moved. */
+  void SetLengths(Id point);
   Id CountTriangles() const;
   void FindFixedPoints();
   bool IsRegular(Id point) const;
@@ -143,12 +157,34 @@ private:
   const SurfaceRemesherInput& Input;
   const SurfaceRemesherOptions& Options;
   ChangeableSurface Surface;
-  /** Wanted length of edges at each point. */
+  /** Wanted length of edges at each point, and the same where the surface is curved. */
+  std::vector<double> WantedLengths;
   std::vector<double> Lengths;
+  /** By points of the input. */
+  std::vector<double> CurvatureLengths;
   std::vector<char> IsFixed;
   /** Every other round: the next one mends what that has made. */
   bool AcceptsSmallAngles = false;
 };
+
+void Remesher::SetLengths(Id point)
+{
+  const double wanted = GetWantedLength(this->Input, this->Options, this->GetPoint(point));
+  this->WantedLengths[point] = wanted;
+  this->Lengths[point] = wanted;
+  Vec3 nearest;
+  const Id triangle =
+    this->Surface.FindOriginalTriangle(point, 1.001 * this->Options.MaximumDeviation, nearest);
+  if (triangle != NoId)
+  {
+    for (const Id id : this->Input.Surface->Triangles[triangle])
+    {
+      // Large triangles are flat away from their corners.
+      this->Lengths[point] = std::min(this->Lengths[point],
+        this->CurvatureLengths[id] + Distance(nearest, this->Input.Surface->Points[id]));
+    }
+  }
+}
 
 Id Remesher::CountTriangles() const
 {
@@ -250,7 +286,8 @@ bool Remesher::Split(const ExecutionContext& context)
   std::priority_queue<Entry> queue;
   const auto enqueue = [&](const EdgeIds& edge)
   {
-    const double ratio = this->GetRatio(edge[0], edge[1]);
+    // Long edges in curved parts are as near as the bound asks for.
+    const double ratio = this->GetRatio(edge[0], edge[1], this->WantedLengths);
     if (ratio > SplitRatio)
     {
       queue.emplace(ratio, edge);
@@ -304,7 +341,9 @@ void Remesher::SplitEdge(const EdgeIds& edge)
   }
   if (!change.Removed.empty() && this->Surface.TryChange(change))
   {
-    this->Lengths.push_back(this->GetLengthAt(change.Position));
+    this->WantedLengths.push_back(0.0);
+    this->Lengths.push_back(0.0);
+    this->SetLengths(change.Point);
     this->IsFixed.push_back(0);
   }
 }
@@ -315,7 +354,7 @@ bool Remesher::Collapse(const ExecutionContext& context)
   std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
   const auto enqueue = [&](const EdgeIds& edge)
   {
-    const double ratio = this->GetRatio(edge[0], edge[1]);
+    const double ratio = this->GetRatio(edge[0], edge[1], this->Lengths);
     if (ratio < CollapseRatio)
     {
       queue.emplace(ratio, edge);
@@ -390,7 +429,7 @@ bool Remesher::CollapseEdge(Id point, Id target)
     for (int i = 0; i < 3; ++i)
     {
       swept[i + 1] = this->GetPoint(ids[i]);
-      if (ids[i] != target && this->GetRatio(ids[i], target) > SplitRatio)
+      if (ids[i] != target && this->GetRatio(ids[i], target, this->Lengths) > SplitRatio)
       {
         return false;
       }
@@ -398,7 +437,7 @@ bool Remesher::CollapseEdge(Id point, Id target)
     change.Swept.push_back(swept);
   }
   const bool isFarTooShort =
-    this->AcceptsSmallAngles && this->GetRatio(point, target) < FarTooShortRatio;
+    this->AcceptsSmallAngles && this->GetRatio(point, target, this->Lengths) < FarTooShortRatio;
   const double limit = isFarTooShort ? TinyAngleCosine : SmallAngleCosine;
   return this->GetWorstAngleCosine(change.Added, NoId, {}) <= std::max(old, limit) &&
     this->Surface.KeepsTopology(point, target) && this->Surface.TryChange(change);
@@ -600,7 +639,7 @@ bool Remesher::Move(Id point, const Vec3& place)
   {
     return false;
   }
-  this->Lengths[point] = this->GetLengthAt(place);
+  this->SetLengths(point);
   return true;
 }
 
