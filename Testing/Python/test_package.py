@@ -470,7 +470,15 @@ class CommandLine(unittest.TestCase):
         run = self.run_command(2, "mesh", "binary.stl", "a.vtu", "--edge-length=-5", "--json")
         self.assertEqual(json.loads(run.stdout)["code"], "INVALID_OPTION")
         self.run_command(2, "mesh", "nothing.stl", "a.vtu")
-        self.run_command(2, "mesh", "binary.stl", "a.unknown", *self.options)
+        # Before there is a mesh, which may take long: sizes for which it would never end.
+        long = ("--edge-length", "1e-4")
+        for target, said in (("a.unknown", "a.unknown"), ("a.stl", "no tetrahedra"),
+                             (os.path.join("nowhere", "a.vtu"), "no folder nowhere")):
+            self.assertIn(said, self.run_command(2, "mesh", "binary.stl", target, *long).stderr)
+        self.assertIn("scale is 0", self.run_command(
+            2, "mesh", "binary.stl", "a.msh", "--scale", "0", *long).stderr)
+        self.assertIn("asks for at least", self.run_command(
+            2, "mesh", "binary.stl", "a.vtu", "--edge-length", "1e-30").stderr)
         self.run_command(2, "check")
         open_cube = cd.Surface.read(self.path("binary.stl"))
         cd.Surface.from_triangles(open_cube.points, open_cube.triangles[1:]).save(
@@ -478,6 +486,17 @@ class CommandLine(unittest.TestCase):
         run = self.run_command(2, "mesh", "open.stl", "a.vtu", "--json")
         self.assertEqual(json.loads(run.stdout)["code"], "NOT_CLOSED")
         self.assertTrue(json.loads(run.stdout)["cells"])
+
+    @unittest.skipUnless(HAS_VTK, "no VTK")
+    def test_files_that_vtk_cannot_read(self):
+        for name in ("a.vtp", "a.vtk", "a.obj", "a.ply", "a.vtm"):
+            with open(self.path(name), "wb") as file:
+                file.write(bytes(range(256)) * 8)
+            run = self.run_command(2, "mesh", name, "a.vtu")
+            self.assertRegex(run.stderr, "^error: %s (cannot be read as|has no polygons)" % name)
+            self.assertEqual(run.stderr.count("\n"), 1, run.stderr)
+        run = self.run_command(2, "mesh", "a.unknown", "a.vtu")
+        self.assertIn("what is read are .stl, .vtp", run.stderr)
 
     def test_sizes_of_regions(self):
         points, quads, labels = two_cubes()

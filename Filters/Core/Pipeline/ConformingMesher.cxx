@@ -13,6 +13,7 @@
 #include "Core/Sizing/DefaultSize.h"
 #include "Core/Surface/MeshPointClearance.h"
 #include "Core/Surface/StructuralEdges.h"
+#include "Core/Surface/SurfaceChecks.h"
 #include "Core/Surface/SurfaceDelaunayTest.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 
@@ -186,8 +187,13 @@ Status ConformingMesher::ChooseSettings()
     this->Settings.MaximumEdgeLength = GetDefaultSize(this->Surface);
   }
   this->Sizing = this->Input.Sizing;
-  Status status = LimitByRegions(
-    this->Surface, this->Options.RegionSizes, this->Settings.MaximumEdgeLength, this->Sizing);
+  Status status = CheckMaximumEdgeLength(this->Surface, this->Settings.MaximumEdgeLength)
+                    .Then(
+                      [&]
+                      {
+                        return LimitByRegions(this->Surface, this->Options.RegionSizes,
+                          this->Settings.MaximumEdgeLength, this->Sizing);
+                      });
   if (!given.GeneratesMeshPoints && !this->Sizing && this->Settings.MaximumEdgeLength == 0.0)
   {
     this->Settings.GeneratesMeshPoints = false;

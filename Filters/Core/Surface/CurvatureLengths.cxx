@@ -24,8 +24,8 @@ class SecantSearch
 {
 public:
   SecantSearch(const TriangleMesh& surface, const std::vector<StructuralEdge>& chains)
-    : Points(surface.Points), Normals(surface.Points.size()),
-      IsOnChain(surface.Points.size(), 0), SeenFrom(surface.Points.size(), NoId)
+    : Points(surface.Points), Normals(surface.Points.size()), IsOnChain(surface.Points.size(), 0),
+      SeenFrom(surface.Points.size(), NoId)
   {
     for (const StructuralEdge& edge : chains)
     {
@@ -34,8 +34,8 @@ public:
     }
     for (const TriangleIds& ids : surface.Triangles)
     {
-      const Vec3 normal = Cross(this->Points[ids[1]] - this->Points[ids[0]],
-        this->Points[ids[2]] - this->Points[ids[0]]);
+      const Vec3 normal = Cross(
+        this->Points[ids[1]] - this->Points[ids[0]], this->Points[ids[2]] - this->Points[ids[0]]);
       for (int i = 0; i < 3; ++i)
       {
         this->Normals[ids[i]] = this->Normals[ids[i]] + normal;
@@ -120,8 +120,7 @@ std::vector<double> GetCurvatureLengths(const TriangleMesh& surface,
       continue;
     }
     const double bend = std::min(1.0, deviation * search.Find(point, reaches[point]));
-    const double length =
-      bend > 0.0 ? deviation * std::sqrt(6.0 / bend - 3.0) : Infinity;
+    const double length = bend > 0.0 ? deviation * std::sqrt(6.0 / bend - 3.0) : Infinity;
     for (const Id near : search.GetNear())
     {
       if (Distance(surface.Points[near], surface.Points[point]) <= CoveredRatio * reaches[point])

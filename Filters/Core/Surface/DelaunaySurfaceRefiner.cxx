@@ -4,14 +4,11 @@
 #include "Core/Basics/IdLimits.h"
 #include "Core/Basics/SortedIds.h"
 #include "Core/Meshes/DuplicateTriangles.h"
-#include "Core/Meshes/SurfaceArea.h"
 #include "Core/Surface/MeshPointClearance.h"
 #include "Core/Surface/SurfaceChecks.h"
 #include "Core/Surface/SurfaceRefinement.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <string>
@@ -470,32 +467,6 @@ std::vector<Warning> MakeWarnings(
 }
 } // namespace
 
-namespace
-{
-/** Whether ids can count the points that edges so short need on the surface, at least. */
-Status CheckNumberOfPoints(const TriangleMesh& surface, double maximumEdgeLength)
-{
-  if (!(maximumEdgeLength > 0.0))
-  {
-    return {};
-  }
-  // No triangle is larger than the equilateral one, and there is a point for two of them.
-  const double points =
-    GetSurfaceArea(surface) / (0.5 * std::sqrt(3.0)) / maximumEdgeLength / maximumEdgeLength;
-  if (points <= static_cast<double>(LargestId))
-  {
-    return {};
-  }
-  char text[160];
-  std::snprintf(text, sizeof text,
-    "A maximum edge length of %.4g asks for at least %.3g points on the surface, more than the "
-    "%.3g "
-    "that can be counted. Enlarge it.",
-    maximumEdgeLength, points, static_cast<double>(LargestId));
-  return Status::Failure(StatusCode::LimitReached, text);
-}
-} // namespace
-
 Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,
   const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
   DelaunaySurfaceRefinerOutput& output)
@@ -505,7 +476,7 @@ Status RefineDelaunaySurface(const DelaunaySurfaceRefinerInput& input,
     {
       output = DelaunaySurfaceRefinerOutput();
       const Status status =
-        CheckNumberOfPoints(*input.Surface, options.MaximumEdgeLength)
+        CheckMaximumEdgeLength(*input.Surface, options.MaximumEdgeLength)
           .Then([&] { return SurfaceAttempts(input, options, context, output).Run(); });
       if (!status.IsOk())
       {

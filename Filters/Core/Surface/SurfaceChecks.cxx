@@ -4,8 +4,11 @@
 #include "Core/Basics/IdLimits.h"
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Predicates.h"
+#include "Core/Meshes/SurfaceArea.h"
 #include "Core/Search/SpatialSort.h"
 
+#include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -73,5 +76,27 @@ Status CheckRefinableSurface(const TriangleMesh& surface, std::size_t numberOfMe
       std::move(degenerate));
   }
   return Status();
+}
+
+Status CheckMaximumEdgeLength(const TriangleMesh& surface, double maximumEdgeLength)
+{
+  if (!(maximumEdgeLength > 0.0))
+  {
+    return {};
+  }
+  // No triangle is larger than the equilateral one, and there is a point for two of them.
+  const double points =
+    GetSurfaceArea(surface) / (0.5 * std::sqrt(3.0)) / maximumEdgeLength / maximumEdgeLength;
+  if (points <= static_cast<double>(LargestId))
+  {
+    return {};
+  }
+  char text[160];
+  std::snprintf(text, sizeof text,
+    "A maximum edge length of %.4g asks for at least %.3g points on the surface, more than the "
+    "%.3g "
+    "that can be counted. Enlarge it.",
+    maximumEdgeLength, points, static_cast<double>(LargestId));
+  return Status::Failure(StatusCode::LimitReached, text);
 }
 } // namespace cdm

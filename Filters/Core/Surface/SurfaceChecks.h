@@ -21,6 +21,12 @@ namespace cdm
  * @param numberOfMeshPoints mesh points beside those of the surface
  */
 Status CheckRefinableSurface(const TriangleMesh& surface, std::size_t numberOfMeshPoints);
+
+/**
+ * LimitReached where edges so short need more points on the surface than ids count.
+ * @param maximumEdgeLength model units; 0: none
+ */
+Status CheckMaximumEdgeLength(const TriangleMesh& surface, double maximumEdgeLength);
 } // namespace cdm
 
 #endif

@@ -84,8 +84,8 @@ public:
     std::vector<double> reaches;
     for (const double length : this->WantedLengths)
     {
-      reaches.push_back(std::min(
-        CurvatureReachRatio * length, CurvatureReachBounds * options.MaximumDeviation));
+      reaches.push_back(
+        std::min(CurvatureReachRatio * length, CurvatureReachBounds * options.MaximumDeviation));
     }
     this->CurvatureLengths =
       GetCurvatureLengths(*input.Surface, edges, reaches, options.MaximumDeviation);

@@ -26,6 +26,7 @@ from . import (
     certify,
     control_volumes,
     extract_interfaces,
+    files,
     mesh,
 )
 from .meshing import CHOICES, FLAGS, WHOLE_NUMBERS
@@ -226,6 +227,7 @@ def _mesh(options: Dict[str, Any], progress: Any, as_json: bool) -> int:
     start = time.perf_counter()
     target, source = options.pop("output"), options.pop("input")
     save = {name: options.pop(name) for name in ("gmsh_format", "scale")}
+    files.check_mesh_path(target, **save)
     options["region_sizes"] = dict(options["region_sizes"] or [])
     made = mesh(source, progress=progress, **options)
     made.save(target, **save)
@@ -239,6 +241,8 @@ def _mesh(options: Dict[str, Any], progress: Any, as_json: bool) -> int:
 
 def _check(options: Dict[str, Any], progress: Any, as_json: bool) -> int:
     source = options["input"]
+    if "output" in options:
+        files.check_folder(options["output"])
     read = Mesh.read(source)
     if "output" in options:
         boxes = vars(control_volumes(read, progress=progress))
@@ -249,6 +253,7 @@ def _check(options: Dict[str, Any], progress: Any, as_json: bool) -> int:
 
 def _interfaces(options: Dict[str, Any], progress: Any, as_json: bool) -> int:
     source, target = options.pop("input"), options.pop("output")
+    files.check_surface_path(target)
     voxels = np.load(source) if source.endswith(".npy") else source
     surface = extract_interfaces(voxels, progress=progress, **options)
     surface.save(target)

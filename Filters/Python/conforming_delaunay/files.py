@@ -111,10 +111,41 @@ def read_mesh(path: Path) -> "Mesh":
     return Mesh(np.asarray(read.points, np.float64), tetrahedra, regions)
 
 
+def check_folder(path: Path) -> None:
+    """FileNotFoundError if a file has no folder to be written into."""
+    folder = os.path.dirname(os.fspath(path))
+    if folder and not os.path.isdir(folder):
+        raise FileNotFoundError(f"There is no folder {folder}.")
+
+
+def check_mesh_path(path: Path, *, gmsh_format: str = "2.2", scale: float = 1.0) -> None:
+    """Raises what write_mesh() would, as far as that is known before there is a mesh."""
+    check_folder(path)
+    name = os.fspath(path)
+    suffix = os.path.splitext(name)[1].lower()
+    if suffix == ".msh":
+        from .gmsh import check_options
+
+        check_options(gmsh_format, scale)
+    elif suffix in (".stl", ".obj"):
+        raise ValueError(f"{name} would have no tetrahedra: save the boundary there, mesh.boundary.save().")
+    elif suffix not in (".vtu", ".vtk"):
+        try:
+            import meshio
+        except ImportError:
+            raise ValueError(
+                f"{name}: .vtu, .vtk and .msh are written with NumPy alone; others need meshio, which "
+                "is not installed."
+            ) from None
+        if not name.lower().endswith(tuple(meshio.extension_to_filetypes)):
+            raise ValueError(f"{name} cannot be written: no format has this ending.")
+
+
 def write_mesh(
     path: Path, mesh: "Mesh", *, gmsh_format: str = "2.2", scale: float = 1.0
 ) -> None:
     """Writes a mesh; the ending of the name tells the format. See Mesh.save()."""
+    check_mesh_path(path, gmsh_format=gmsh_format, scale=scale)
     name = os.fspath(path)
     suffix = os.path.splitext(name)[1].lower()
     if suffix == ".vtu":
@@ -125,16 +156,9 @@ def write_mesh(
         from .gmsh import write_msh
 
         write_msh(path, mesh, gmsh_format=gmsh_format, scale=scale)
-    elif suffix in (".stl", ".obj"):
-        raise ValueError(f"{name} would have no tetrahedra: save the boundary there, mesh.boundary.save().")
     else:
-        try:
-            import meshio
-        except ImportError:
-            raise ValueError(
-                f"{name}: .vtu, .vtk and .msh are written with NumPy alone; others need meshio, which "
-                "is not installed."
-            ) from None
+        import meshio
+
         try:
             meshio.write(path, mesh.to_meshio())
         except (meshio.ReadError, meshio.WriteError) as error:
@@ -217,15 +241,20 @@ def write_vtu(path: Path, mesh: "Mesh") -> None:
     _write_xml(path, "UnstructuredGrid", f'NumberOfCells="{count}"', mesh.points, sections, texts)
 
 
+def check_surface_path(path: Path) -> None:
+    """Raises what write_surface() would, as far as that is known before there is a surface."""
+    check_folder(path)
+    if os.path.splitext(os.fspath(path))[1].lower() not in (".vtp", ".stl"):
+        raise ValueError(f"{os.fspath(path)}: surfaces are written as .vtp or .stl.")
+
+
 def write_surface(path: Path, surface: "Surface") -> None:
     """Writes polygons; the ending of the name tells the format. See Surface.save()."""
-    suffix = os.path.splitext(os.fspath(path))[1].lower()
-    if suffix == ".vtp":
+    check_surface_path(path)
+    if os.path.splitext(os.fspath(path))[1].lower() == ".vtp":
         write_vtp(path, surface)
-    elif suffix == ".stl":
-        write_stl(path, surface)
     else:
-        raise ValueError(f"{os.fspath(path)}: surfaces are written as .vtp or .stl.")
+        write_stl(path, surface)
 
 
 def write_vtp(path: Path, surface: "Surface") -> None:

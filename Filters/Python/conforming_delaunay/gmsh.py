@@ -58,6 +58,14 @@ def _lines(rows: Iterable[List[float]]) -> str:
     return "".join(" ".join(map(repr, row)) + "\n" for row in rows)
 
 
+def check_options(gmsh_format: str, scale: float) -> None:
+    """ValueError for another format, or a scale that is not above 0."""
+    if str(gmsh_format) not in FORMATS:
+        raise ValueError(f"gmsh_format is {gmsh_format!r}: it has to be one of {', '.join(FORMATS)}.")
+    if not 0.0 < scale < float("inf"):
+        raise ValueError(f"scale is {scale!r}: it has to be above 0, and finite.")
+
+
 def write_msh(
     path: "Union[str, os.PathLike[str]]",
     mesh: "Mesh",
@@ -83,10 +91,7 @@ def write_msh(
     ValueError
         For another format or scale, or a mesh without tetrahedra.
     """
-    if str(gmsh_format) not in FORMATS:
-        raise ValueError(f"gmsh_format is {gmsh_format!r}: it has to be one of {', '.join(FORMATS)}.")
-    if not 0.0 < scale < float("inf"):
-        raise ValueError(f"scale is {scale!r}: it has to be above 0, and finite.")
+    check_options(gmsh_format, scale)
     if len(mesh.tetrahedra) == 0:
         raise ValueError("The mesh has no tetrahedra.")
     contents = _Contents(mesh, scale)

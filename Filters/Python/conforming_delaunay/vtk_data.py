@@ -178,23 +178,38 @@ def from_mesh(mesh: "Mesh", copy: bool = True) -> "vtkUnstructuredGrid":
 
 
 def _read(path: str, readers: Mapping[str, str]) -> Any:
-    """What the reader for the ending of the name gives; composite data become one data set."""
+    """What the reader for the ending of the name gives; ValueError says what it has against the file."""
     import importlib
+    import re
+
+    from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in readers:
-        raise ValueError(f"{path}: what is read are {', '.join(readers)}.")
+        # STL files are read without VTK.
+        endings = ([".stl"] if ".vtp" in readers else []) + list(readers)
+        raise ValueError(f"{path}: what is read are {', '.join(endings)}.")
     if not os.path.exists(path):
         raise FileNotFoundError(f"There is no file {path}.")
     module, name = readers[suffix].split(".")
     reader = getattr(importlib.import_module("vtkmodules." + module), name)()
-    problems: List[str] = []
-    reader.AddObserver("ErrorEvent", lambda *_: problems.append("no"))
-    reader.SetFileName(path)
-    reader.Update()
+    # What VTK says goes into the exception, not to the terminal.
+    window, shown = vtkStringOutputWindow(), vtkOutputWindow.GetInstance()
+    logged = vtkLogger.GetCurrentVerbosityCutoff()
+    vtkOutputWindow.SetInstance(window)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    try:
+        reader.SetFileName(path)
+        reader.Update()
+    finally:
+        vtkLogger.SetStderrVerbosity(logged)
+        vtkOutputWindow.SetInstance(shown)
     data = reader.GetOutputDataObject(0)
-    if problems or data is None:
-        raise ValueError(f"{path} cannot be read as {suffix}.")
+    said = window.GetOutput() or ""
+    if data is None or "ERR" in said:
+        reason = re.search(r"\(0x[0-9a-f]+\): (.+)", said)
+        text = f": {reason[1]}" if reason else "."
+        raise ValueError(f"{path} cannot be read as {suffix}{text}")
     return data
 
 
