@@ -21,7 +21,7 @@ namespace
 constexpr double WantedLengthRatio = 0.75;
 /** The automatic bound, of the maximum edge length and of the thickness of regions. */
 constexpr double AutomaticRatio = 0.1;
-/** What counts as many triangles, and as small ones: of the maximum edge length. */
+/** What counts as many triangles, and as small ones, which collapse: of the maximum edge length. */
 constexpr Id ManyTriangles = 500;
 constexpr double SmallEdgeRatio = 0.6;
 
