@@ -3,9 +3,9 @@
 
 Starts ParaView with the command of the README, and plays the events of Gui.xml; looks at the
 picture, at the states that it saves after a change was undone and redone, at the colors and names of
-the regions there, and at the picture of Plugin/Examples/mos_transistor.pvsm. Plays those of Repair.xml
-with a surface that intersects itself, and looks at what is shown while there is no mesh, and when
-there is one.
+the regions there, and at the picture of Plugin/Examples/mos_transistor.pvsm. Plays those of Layers.xml,
+and looks for the layers in the mesh that is saved. Plays those of Repair.xml with a surface that
+intersects itself, and looks at what is shown while there is no mesh, and when there is one.
 """
 
 import ast
@@ -18,6 +18,8 @@ import xml.etree.ElementTree as ElementTree
 
 import GuiTesting
 import ImageComparison
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 
 NAMES = ["Bulk", "GateOxide", "Gate", "LeftSpacer", "RightSpacer"]
@@ -122,6 +124,19 @@ def CheckRepair(folder):
                 os.path.join(os.environ["CDM_OUTPUT_DIR"], "GuiMended.png"))
 
 
+def CheckLayers(folder):
+    """Two layers of points in the bulk below the gate oxide, whose table has names."""
+    GuiTesting.Run(folder, "Layers.xml")
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(os.path.join(folder, "layers.vtu"))
+    reader.Update()
+    heights = vtk_to_numpy(reader.GetOutput().GetPoints().GetData())[:, 2]
+    for depth in (0.01, 0.03):
+        found = (abs(heights + depth) < 1e-12).sum()
+        print("%d points of the layer at %g" % (found, depth))
+        assert found > 100, (depth, found)
+
+
 with tempfile.TemporaryDirectory() as folder:
     shutil.copy(os.path.join(os.environ["CDM_SOURCE_DIR"], "Plugin", "Examples",
                              "mos_transistor.pvsm"), folder)
@@ -138,6 +153,8 @@ with tempfile.TemporaryDirectory() as folder:
     if "CDM_HAS_CLIENT_PART" in os.environ:
         CheckLegend(os.path.join(folder, "redone.pvsm"))
     shutil.copy(picture, os.path.join(os.environ["CDM_OUTPUT_DIR"], "Gui.png"))
+with tempfile.TemporaryDirectory() as folder:
+    CheckLayers(folder)
 if "CDM_HAS_CLIENT_PART" in os.environ:
     with tempfile.TemporaryDirectory() as folder:
         CheckRepair(folder)
