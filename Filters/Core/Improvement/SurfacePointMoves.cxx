@@ -81,7 +81,8 @@ SurfacePointMoves::SurfacePointMoves(DynamicTetrahedralization& mesh, const Tria
   const IdLists& pointTriangles, const std::vector<StructuralEdge>& edges,
   const std::vector<StructuralEdge>& keptEdges, Rules rules)
   : Mesh(mesh), Surface(surface), Points(surface.Points), PointTriangles(pointTriangles),
-    Edges(edges), KeptEdges(keptEdges), Given(std::move(rules))
+    Edges(edges), KeptEdges(keptEdges), Given(std::move(rules)),
+    SearchedAt(surface.Points.size(), NoId)
 {
   Box box;
   for (const Vec3& point : surface.Points)
@@ -451,11 +452,17 @@ bool SurfacePointMoves::Move(Id point, const TetrahedronIds& sliver, double targ
       TryPlace(Project(this->Mesh.GetPoint(other), old, support.Axis, support.IsLine), rate, best);
     }
   }
-  SearchPlace(old, FirstMove * nearest, support.Directions, target, rate, best);
+  // A point of many slivers would be searched in vain, at the same positions, for each of them.
+  if (best.IsFound || this->SearchedAt[point] != this->NumberOfMoves)
+  {
+    SearchPlace(old, FirstMove * nearest, support.Directions, target, rate, best);
+  }
   if (!best.IsFound)
   {
+    this->SearchedAt[point] = this->NumberOfMoves;
     return false;
   }
+  ++this->NumberOfMoves;
   // The position that was tried last need not be the best one.
   this->CollectCavity(point, best.Position);
   this->Filling.Run(this->Around);

@@ -99,6 +99,9 @@ private:
   const Rules Given;
   /** Triangles count as coplanar if they deviate by less than this. Model units. */
   double Flatness = 0.0;
+  Id NumberOfMoves = 0;
+  /** For each point how many moves there were when a search for it was in vain; NoId: none was. */
+  std::vector<Id> SearchedAt;
   /** Tetrahedra at the point that is moved. */
   std::vector<Id> Star;
   /** Work space for one position: the tetrahedra that it changes, and the facets around these. */
