@@ -5,6 +5,7 @@
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "RandomComplexes.h"
+#include "SurfaceAngles.h"
 
 #include <gtest/gtest.h>
 
@@ -166,20 +167,12 @@ TEST(DelaunaySurfaceRefiner, HonoursAreaAngleAndSizing)
   options.MaximumArea = 0.01;
   options.MinimumAngle = 20.0;
   DelaunaySurfaceRefinerOutput refined = Refine(box, options);
-  double smallest = 180.0;
   for (const TriangleIds& ids : refined.Surface.Triangles)
   {
-    const Vec3& a = refined.Surface.Points[ids[0]];
-    const Vec3& b = refined.Surface.Points[ids[1]];
-    const Vec3& c = refined.Surface.Points[ids[2]];
-    EXPECT_LE(GetTriangleArea(a, b, c), 0.01);
-    for (const auto& [p, q, r] : { std::tie(a, b, c), std::tie(b, c, a), std::tie(c, a, b) })
-    {
-      smallest =
-        std::min(smallest, std::atan2(Norm(Cross(q - p, r - p)), Dot(q - p, r - p)) * 180.0 / Pi);
-    }
+    const std::vector<Vec3>& points = refined.Surface.Points;
+    EXPECT_LE(GetTriangleArea(points[ids[0]], points[ids[1]], points[ids[2]]), 0.01);
   }
-  EXPECT_GE(smallest, 20.0);
+  EXPECT_GE(testing_core::GetSmallestAngle(refined.Surface), 20.0);
   MeshAndCheck(refined);
 
   DelaunaySurfaceRefinerInput input;

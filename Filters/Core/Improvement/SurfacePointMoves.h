@@ -99,6 +99,7 @@ private:
   const Rules Given;
   /** Triangles count as coplanar if they deviate by less than this. Model units. */
   double Flatness = 0.0;
+  /** Moves that were done. */
   Id NumberOfMoves = 0;
   /** For each point how many moves there were when a search for it was in vain; NoId: none was. */
   std::vector<Id> SearchedAt;

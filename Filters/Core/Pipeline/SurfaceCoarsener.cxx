@@ -23,7 +23,7 @@ constexpr double WantedLengthRatio = 0.75;
 constexpr double AutomaticRatio = 0.1;
 /** What counts as many triangles, and as small ones, which collapse: of the maximum edge length. */
 constexpr Id ManyTriangles = 500;
-constexpr double SmallEdgeRatio = 0.6;
+constexpr double SmallEdgeRatio = WantedLengthRatio * CollapseRatio;
 
 /** The maximum length of edges at a position; 0: none. */
 double GetMaximumLength(const SizingField& sizing, double maximumEdgeLength, const Vec3& position)

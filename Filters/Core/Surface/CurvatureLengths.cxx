@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Surface/CurvatureLengths.h"
 
-#include "Core/Basics/SortedIds.h"
+#include "Core/Basics/IdLists.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,9 @@ class SecantSearch
 {
 public:
   SecantSearch(const TriangleMesh& surface, const std::vector<StructuralEdge>& chains)
-    : Points(surface.Points), Normals(surface.Points.size()), IsOnChain(surface.Points.size(), 0),
+    : Points(surface.Points), Triangles(surface.Triangles),
+      PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
+      Normals(surface.Points.size()), IsOnChain(surface.Points.size(), 0),
       SeenFrom(surface.Points.size(), NoId)
   {
     for (const StructuralEdge& edge : chains)
@@ -36,11 +38,9 @@ public:
     {
       const Vec3 normal = Cross(
         this->Points[ids[1]] - this->Points[ids[0]], this->Points[ids[2]] - this->Points[ids[0]]);
-      for (int i = 0; i < 3; ++i)
+      for (const Id id : ids)
       {
-        this->Normals[ids[i]] = this->Normals[ids[i]] + normal;
-        this->Arcs.push_back({ ids[i], ids[(i + 1) % 3] });
-        this->Arcs.push_back({ ids[(i + 1) % 3], ids[i] });
+        this->Normals[id] = this->Normals[id] + normal;
       }
     }
     for (Vec3& normal : this->Normals)
@@ -48,7 +48,6 @@ public:
       const double length = Norm(normal);
       normal = length > 0.0 ? (1.0 / length) * normal : normal;
     }
-    SortUnique(this->Arcs);
   }
 
   bool HasNormal(Id point) const { return !this->IsOnChain[point]; }
@@ -61,21 +60,11 @@ public:
     std::vector<double> curvatures;
     for (std::size_t i = 0; i < this->Near.size(); ++i)
     {
-      const Id at = this->Near[i];
-      for (auto arc = std::lower_bound(this->Arcs.begin(), this->Arcs.end(), EdgeIds{ at, 0 });
-           arc != this->Arcs.end() && (*arc)[0] == at; ++arc)
+      for (const Id triangle : this->PointTriangles[this->Near[i]])
       {
-        const Id next = (*arc)[1];
-        const double distance = Distance(this->Points[next], this->Points[point]);
-        if (this->IsOnChain[next] || this->SeenFrom[next] == point || distance > reach)
+        for (const Id next : this->Triangles[triangle])
         {
-          continue;
-        }
-        this->SeenFrom[next] = point;
-        this->Near.push_back(next);
-        if (distance > ShortestSecantRatio * reach)
-        {
-          curvatures.push_back(Norm(this->Normals[next] - this->Normals[point]) / distance);
+          this->See(next, point, reach, curvatures);
         }
       }
     }
@@ -94,10 +83,26 @@ public:
   const std::vector<Id>& GetNear() const { return this->Near; }
 
 private:
+  /** A point that may be near, and not be seen yet. */
+  void See(Id next, Id point, double reach, std::vector<double>& curvatures)
+  {
+    const double distance = Distance(this->Points[next], this->Points[point]);
+    if (this->IsOnChain[next] || this->SeenFrom[next] == point || distance > reach)
+    {
+      return;
+    }
+    this->SeenFrom[next] = point;
+    this->Near.push_back(next);
+    if (distance > ShortestSecantRatio * reach)
+    {
+      curvatures.push_back(Norm(this->Normals[next] - this->Normals[point]) / distance);
+    }
+  }
+
   const std::vector<Vec3>& Points;
+  const std::vector<TriangleIds>& Triangles;
+  const IdLists PointTriangles;
   std::vector<Vec3> Normals;
-  /** Both directions of each edge, by their first point. */
-  std::vector<EdgeIds> Arcs;
   std::vector<char> IsOnChain;
   /** The point from which each one was seen last. */
   std::vector<Id> SeenFrom;

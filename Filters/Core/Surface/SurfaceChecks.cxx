@@ -94,8 +94,7 @@ Status CheckMaximumEdgeLength(const TriangleMesh& surface, double maximumEdgeLen
   char text[160];
   std::snprintf(text, sizeof text,
     "A maximum edge length of %.4g asks for at least %.3g points on the surface, more than the "
-    "%.3g "
-    "that can be counted. Enlarge it.",
+    "%.3g that can be counted. Enlarge it.",
     maximumEdgeLength, points, static_cast<double>(LargestId));
   return Status::Failure(StatusCode::LimitReached, text);
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceChecks.h
- * @brief Checks whether a surface can be refined.
+ * @brief Checks whether a surface can be refined, and to a length of edges.
  *
  * Coordinates are finite, points do not coincide, triangles have an area; there are triangles, and
- * as many points as ids reach. Exact. Cost: O(n log n).
+ * as many points as ids reach. Exact. Cost: O(n log n). Of a length: O(n).
  */
 #ifndef cdmSurfaceChecks_h
 #define cdmSurfaceChecks_h

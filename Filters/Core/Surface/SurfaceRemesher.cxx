@@ -23,9 +23,8 @@ constexpr Id StepsBetweenChecks = 256;
 constexpr int MinimumRounds = 6;
 constexpr int MaximumRounds = 30;
 constexpr double SettledRatio = 0.98;
-/** Edges are split above and collapse below these ratios of the wanted length. */
+/** Edges longer than this part of the wanted length are split. */
 constexpr double SplitRatio = 4.0 / 3.0;
-constexpr double CollapseRatio = 4.0 / 5.0;
 /**
  * Curvature makes the wanted length no shorter than this part of it. Bounds far below it, as of thin
  * plates, would else ask for short edges along cylinders, too: 60,000 instead of 34,000 tetrahedra.
@@ -86,20 +85,7 @@ public:
       WantedLengths(std::move(lengths))
   {
     this->FindFixedPoints();
-    std::vector<double> reaches;
-    for (const double length : this->WantedLengths)
-    {
-      reaches.push_back(
-        std::min(CurvatureReachRatio * length, CurvatureReachBounds * options.MaximumDeviation));
-    }
-    this->CurvatureLengths =
-      GetCurvatureLengths(*input.Surface, edges, reaches, options.MaximumDeviation);
-    for (std::size_t i = 0; i < reaches.size(); ++i)
-    {
-      this->CurvatureLengths[i] =
-        std::max(this->CurvatureLengths[i], LeastCurvatureLengthRatio * this->WantedLengths[i]);
-      this->Lengths.push_back(std::min(this->WantedLengths[i], this->CurvatureLengths[i]));
-    }
+    this->FindCurvatureLengths(edges);
   }
 
   /** False if aborted. */
@@ -142,7 +128,8 @@ private:
     return Distance(this->GetPoint(a), this->GetPoint(b)) / std::min(lengths[a], lengths[b]);
   }
 
-  /** Of a point that is new or has moved. */
+  void FindCurvatureLengths(const std::vector<StructuralEdge>& edges);
+  /** Finds the lengths of edges at a point that is new or has moved. */
   void SetLengths(Id point);
   Id CountTriangles() const;
   void FindFixedPoints();
@@ -167,15 +154,34 @@ private:
   /** Wanted length of edges at each point, and the same where the surface is curved. */
   std::vector<double> WantedLengths;
   std::vector<double> Lengths;
-  /** By points of the input. */
+  /** For each point of the input how long edges may be there, as the surface is curved. */
   std::vector<double> CurvatureLengths;
   std::vector<char> IsFixed;
   /** Every other round: the next one mends what that has made. */
   bool AcceptsSmallAngles = false;
 };
 
+void Remesher::FindCurvatureLengths(const std::vector<StructuralEdge>& edges)
+{
+  const double deviation = this->Options.MaximumDeviation;
+  std::vector<double> reaches;
+  for (const double length : this->WantedLengths)
+  {
+    reaches.push_back(std::min(CurvatureReachRatio * length, CurvatureReachBounds * deviation));
+  }
+  this->CurvatureLengths = GetCurvatureLengths(*this->Input.Surface, edges, reaches, deviation);
+  for (std::size_t i = 0; i < reaches.size(); ++i)
+  {
+    this->CurvatureLengths[i] =
+      std::max(this->CurvatureLengths[i], LeastCurvatureLengthRatio * this->WantedLengths[i]);
+    this->Lengths.push_back(std::min(this->WantedLengths[i], this->CurvatureLengths[i]));
+  }
+}
+
 void Remesher::SetLengths(Id point)
 {
+  this->WantedLengths.resize(this->Surface.GetNewPoint());
+  this->Lengths.resize(this->Surface.GetNewPoint());
   const double wanted = GetWantedLength(this->Input, this->Options, this->GetPoint(point));
   this->WantedLengths[point] = wanted;
   this->Lengths[point] = wanted;
@@ -348,8 +354,6 @@ void Remesher::SplitEdge(const EdgeIds& edge)
   }
   if (!change.Removed.empty() && this->Surface.TryChange(change))
   {
-    this->WantedLengths.push_back(0.0);
-    this->Lengths.push_back(0.0);
     this->SetLengths(change.Point);
     this->IsFixed.push_back(0);
   }

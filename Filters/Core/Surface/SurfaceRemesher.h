@@ -42,6 +42,9 @@
 
 namespace cdm
 {
+/** Edges shorter than this part of the wanted length collapse. */
+constexpr double CollapseRatio = 4.0 / 5.0;
+
 struct SurfaceRemesherOptions
 {
   /** What edges are to be like, without a sizing field. Model units, > 0. */

@@ -177,8 +177,11 @@ def from_mesh(mesh: "Mesh", copy: bool = True) -> "vtkUnstructuredGrid":
     return grid
 
 
-def _read(path: str, readers: Mapping[str, str]) -> Any:
-    """What the reader for the ending of the name gives; ValueError says what it has against the file."""
+def _read(path: str, readers: Mapping[str, str], others: Sequence[str] = ()) -> Any:
+    """What the reader for the ending of the name gives; ValueError says what it has against the file.
+
+    others: endings that are read without VTK, for the error.
+    """
     import importlib
     import re
 
@@ -186,9 +189,7 @@ def _read(path: str, readers: Mapping[str, str]) -> Any:
 
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in readers:
-        # STL files are read without VTK.
-        endings = ([".stl"] if ".vtp" in readers else []) + list(readers)
-        raise ValueError(f"{path}: what is read are {', '.join(endings)}.")
+        raise ValueError(f"{path}: what is read are {', '.join([*others, *readers])}.")
     if not os.path.exists(path):
         raise FileNotFoundError(f"There is no file {path}.")
     module, name = readers[suffix].split(".")
@@ -240,6 +241,7 @@ def read_surface(path: str) -> "Surface":
             ".ply": "vtkIOPLY.vtkPLYReader",
             ".obj": "vtkIOGeometry.vtkOBJReader",
         },
+        others=[".stl"],
     )
     if data.IsA("vtkCompositeDataSet"):
         data = _merge_blocks(data)
