@@ -244,9 +244,10 @@ def Measure(program, files, limit, programs):
 def ReadTetgenTable(path):
     """Rows of a .node or .ele file without their first column."""
     with open(path, encoding="ascii") as file:
-        count, *_ = file.readline().split()
+        count, *_ = map(int, file.readline().split())
         text = file.read().split("#")[0]
-    return numpy.fromstring(text, sep=" ").reshape(int(count), -1)
+    # How many columns there are cannot be told without a row.
+    return numpy.fromstring(text, sep=" ").reshape(count, -1 if count > 0 else 0)
 
 
 def MakeGrid(points, tetrahedra, regions):

@@ -240,12 +240,12 @@ TEST(MeshPurpose, ThePlateThatIsMadeCoarserKeepsItsThickness)
   EXPECT_TRUE(output.Certificate.IsDelaunay()) << output.Certificate.GetText();
 }
 
-/** Where half of the edges are shorter than the remesher leaves them: 0.6 of the longest length. */
+/** Where half of the edges are shorter than the remesher leaves them: 0.64 of the longest one. */
 TEST(MeshPurpose, SurfacesThatWouldGetCoarserAreMadeCoarser)
 {
   // Two thirds of the edges have length 1.
   const PolygonSoup plate = MakePlate(16, 4.0, 0.0);
-  for (const auto& [ratio, isRemeshed] : { std::pair(0.55, true), std::pair(0.65, false) })
+  for (const auto& [ratio, isRemeshed] : { std::pair(0.6, true), std::pair(0.68, false) })
   {
     ConformingMesherOptions options;
     options.MeshFor = MeshPurpose::FewestPoints;

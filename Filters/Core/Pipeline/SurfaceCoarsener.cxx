@@ -18,7 +18,7 @@ namespace cdm
 namespace
 {
 /** The wanted length of edges, in maximum edge lengths; edges get a third longer or shorter. */
-constexpr double WantedLengthRatio = 0.75;
+constexpr double WantedLengthRatio = 0.8;
 /** The automatic bound, of the maximum edge length and of the thickness of regions. */
 constexpr double AutomaticRatio = 0.1;
 /** What counts as many triangles, and as small ones, which collapse: of the maximum edge length. */
