@@ -4,9 +4,9 @@
  * @brief Whether and how far the surface of a run is made coarser before it is meshed.
  *
  * A target size alone only refines. With a bound of the deviation the clean surface is remeshed
- * (SurfaceRemesher.h) to three quarters of the maximum edge length or the sizing, so that few of
- * its edges, which differ by a third, are longer than the maximum; without either as coarsely as the
- * bound allows.
+ * (SurfaceRemesher.h) to 0.8 of the maximum edge length or the sizing. Edges may be a third longer
+ * than that; the few that are longer than the maximum are split by the surface refiner. Without
+ * either length the surface gets as coarse as the bound allows.
  *
  * The automatic bound is a tenth of that maximum, or of the smallest sizing on the surface, and at
  * most a tenth of how thick the thinnest region is (DefaultSize.h): plates stay plates. It is used
