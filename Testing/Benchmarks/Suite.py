@@ -224,7 +224,8 @@ def Measure(program, files, limit, programs):
     own = re.search(r"\bmegabytes (\S+)", run.stdout)
     if own:
         result["megabytes"] = float(own[1])
-    tetrahedra = re.search(r"\btetrahedra (\d+)", run.stdout)
+    # Not a number in a warning.
+    tetrahedra = re.search(r"\bpoints \d+ tetrahedra (\d+)", run.stdout)
     if tetrahedra:
         result["tetrahedra"] = int(tetrahedra[1])
     ended, status = int(result.pop("signal")), int(result.pop("exit"))
