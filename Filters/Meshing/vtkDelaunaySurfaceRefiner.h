@@ -84,9 +84,10 @@ public:
 
   ///@{
   /**
-   * Distance within which triangles count as flat, as a ratio of the bounding box diagonal or, far
-   * from the origin, of 5e-7 times the largest coordinate: the rounding of coordinates. Raise it to 1e-7 for coordinates that were rounded to
-   * single precision, which saves points. Default 1e-9; range 0 to 1.
+   * How far points of a facet may be from its plane, as a ratio of the bounding box diagonal. It
+   * allows for coordinates that were rounded to six or seven digits in a file. Edges in such facets
+   * are smooth, and the surface moves by no more than twice that. At 1e-9 and below, edges are
+   * judged one by one. Default 1e-6; range 0 to 1.
    */
   vtkSetInRangeMacro(FlatnessRatio, double, 0.0, 1.0, "ratio of the bounding box diagonal");
   vtkGetMacro(FlatnessRatio, double);
@@ -126,7 +127,7 @@ public:
   ///@{
   /**
    * No edge is made shorter: a guard against endless refinement. Ratio of the bounding box
-   * diagonal; default 1e-9; range 0 to 1.
+   * diagonal; default 1e-6; range 0 to 1.
    */
   vtkSetInRangeMacro(MinimumEdgeRatio, double, 0.0, 1.0, "ratio of the bounding box diagonal");
   vtkGetMacro(MinimumEdgeRatio, double);
@@ -160,7 +161,7 @@ protected:
 
   int Criterion = Delaunay;
   double AccuracyAngle = 0.0;
-  double FlatnessRatio = 1e-9;
+  double FlatnessRatio = 1e-6;
   double MinimumAngle = 0.0;
   double MaximumArea = 0.0;
   double MaximumEdgeLength = 0.0;

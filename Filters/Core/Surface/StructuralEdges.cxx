@@ -3,6 +3,7 @@
 
 #include "Core/Basics/DisjointSets.h"
 #include "Core/Geometry/WideVec3.h"
+#include "Core/Surface/FlatFacets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,8 +27,8 @@ constexpr double SafeAngle = 1e-5;
 /** How many loop steps pass between two calls of ExecutionContext::Continue(). */
 constexpr std::size_t ContinueInterval = 1 << 14;
 
-/** The size of a surface is at least this part of its largest coordinate; see StructuralEdges.h. */
-constexpr double CoordinateSize = 5e-7;
+/** What double coordinates are rounded by, four times; see StructuralEdges.h. */
+constexpr double CoordinateRounding = 5e-16;
 
 /** The half plane that begins at the edge a-b and holds a third point. */
 struct HalfPlane
@@ -357,74 +358,166 @@ double GetFlatness(double flatnessRatio, const std::vector<Vec3>& points)
   {
     largest = std::max({ largest, std::abs(point.X), std::abs(point.Y), std::abs(point.Z) });
   }
-  return flatnessRatio * std::max(GetBoundingBoxDiagonal(points), CoordinateSize * largest);
+  return flatnessRatio > 0.0
+    ? std::max(flatnessRatio * GetBoundingBoxDiagonal(points), CoordinateRounding * largest)
+    : 0.0;
 }
 
 namespace
 {
-Status RunExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeOptions& options,
-  const ExecutionContext& context, StructuralEdgesOutput& output)
+/** Edges of a surface, each a range of its uses. */
+class EdgeJudge
 {
-  output = {};
-  const Status status = CheckSurface(surface);
-  if (!status.IsOk())
+public:
+  EdgeJudge(const TriangleMesh& surface, const StructuralEdgeOptions& options)
+    : Surface(surface), Options(options),
+      Uses(SortEdgeUses(surface.Triangles, surface.Points.size()))
   {
-    return status;
+    this->FindFlat();
   }
-  const double flatness = GetFlatness(options.FlatnessRatio, surface.Points);
-  const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
-  const auto isExact = [&options](Id use)
-  { return !options.IsExact.empty() && options.IsExact[use / 3] != 0; };
 
+  Status Judge(const ExecutionContext& context, std::vector<StructuralEdge>& edges) const;
+
+private:
+  void FindFlat();
+  std::size_t FindEnd(std::size_t begin) const;
+  /** Whether the edge ends or borders facets whatever its angle, and its kind. */
+  bool IsBorder(std::size_t begin, std::size_t end, StructuralEdgeKind& kind) const;
+  bool IsExact(std::size_t begin) const;
+  bool IsSmoothPair(std::size_t begin, double accuracyAngle, double flatness) const;
+  bool IsSmooth(std::size_t begin) const;
+
+  const TriangleMesh& Surface;
+  const StructuralEdgeOptions& Options;
+  const std::vector<EdgeUse> Uses;
+  /** Whether the edge that begins at a use is flat. */
+  std::vector<char> IsFlat;
+};
+
+std::size_t EdgeJudge::FindEnd(std::size_t begin) const
+{
+  std::size_t end = begin + 1;
+  while (end < this->Uses.size() && this->Uses[end].Edge == this->Uses[begin].Edge)
+  {
+    ++end;
+  }
+  return end;
+}
+
+bool EdgeJudge::IsBorder(std::size_t begin, std::size_t end, StructuralEdgeKind& kind) const
+{
+  if (end - begin != 2)
+  {
+    kind = end - begin == 1 ? StructuralEdgeKind::Open : StructuralEdgeKind::NonManifold;
+    return true;
+  }
+  const Id first = this->Uses[begin].Use;
+  const Id second = this->Uses[begin + 1].Use;
+  const bool isLabelChange = HaveDifferentLabels(this->Surface, first, second);
+  kind = isLabelChange ? StructuralEdgeKind::LabelChange : StructuralEdgeKind::Sharp;
+  return isLabelChange || HaveDifferentFacets(this->Options, first, second);
+}
+
+bool EdgeJudge::IsExact(std::size_t begin) const
+{
+  const std::vector<char>& isExact = this->Options.IsExact;
+  return !isExact.empty() &&
+    (isExact[this->Uses[begin].Use / 3] != 0 || isExact[this->Uses[begin + 1].Use / 3] != 0);
+}
+
+bool EdgeJudge::IsSmoothPair(std::size_t begin, double accuracyAngle, double flatness) const
+{
+  const EdgeIds ends = this->Uses[begin].GetPoints();
+  return IsSmoothEdge(this->Surface.Points[ends[0]], this->Surface.Points[ends[1]],
+    GetOpposite(this->Surface, this->Uses[begin].Use),
+    GetOpposite(this->Surface, this->Uses[begin + 1].Use), accuracyAngle, flatness);
+}
+
+/** Of edges at exact triangles only those count that are flat to rounding. */
+void EdgeJudge::FindFlat()
+{
+  const double ratio = this->Options.FlatnessRatio;
+  FlatFacetOptions options;
+  options.AreFacetsKnown = !this->Options.Facets.empty();
+  options.RoundedTolerance =
+    GetFlatness(std::min(ratio, RoundedFlatnessRatio), this->Surface.Points);
+  options.Tolerance = GetFlatness(ratio, this->Surface.Points);
+  this->IsFlat.assign(this->Uses.size(), 0);
+  std::vector<UsePair> pairs;
+  std::vector<std::size_t> begins;
+  for (std::size_t begin = 0, end = 0; begin < this->Uses.size(); begin = end)
+  {
+    end = this->FindEnd(begin);
+    StructuralEdgeKind kind;
+    if (this->IsBorder(begin, end, kind))
+    {
+      continue;
+    }
+    if (this->IsExact(begin))
+    {
+      this->IsFlat[begin] = this->IsSmoothPair(begin, 0.0, options.RoundedTolerance) ? 1 : 0;
+      continue;
+    }
+    pairs.emplace_back(this->Uses[begin].Use, this->Uses[begin + 1].Use);
+    begins.push_back(begin);
+  }
+  const std::vector<char> areFlat = FindFlatEdges(this->Surface, pairs, options);
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+  {
+    this->IsFlat[begins[i]] = areFlat[i];
+  }
+}
+
+/** Whether an edge that is no border is flat, or bends by no more than the accuracy angle. */
+bool EdgeJudge::IsSmooth(std::size_t begin) const
+{
+  const double angle = this->Options.AccuracyAngle;
+  return this->IsFlat[begin] != 0 ||
+    (angle > 0.0 && !this->IsExact(begin) && this->IsSmoothPair(begin, angle, 0.0));
+}
+
+Status EdgeJudge::Judge(const ExecutionContext& context, std::vector<StructuralEdge>& edges) const
+{
   std::vector<double> turns;
   std::size_t nextContinue = 0;
-  for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end)
+  for (std::size_t begin = 0, end = 0; begin < this->Uses.size(); begin = end)
   {
     if (begin >= nextContinue)
     {
       nextContinue = begin + ContinueInterval;
-      if (!context.Continue(static_cast<double>(begin) / uses.size(), "Judging edges"))
+      if (!context.Continue(static_cast<double>(begin) / this->Uses.size(), "Judging edges"))
       {
-        output = {};
         return Status::Aborted();
       }
     }
-    const EdgeUse& first = uses[begin];
-    for (end = begin + 1; end < uses.size() && uses[end].Edge == first.Edge; ++end)
-    {
-    }
+    end = this->FindEnd(begin);
     StructuralEdge edge;
-    edge.Points = first.GetPoints();
-    if (end - begin == 1)
+    if (!this->IsBorder(begin, end, edge.Kind) && this->IsSmooth(begin))
     {
-      edge.Kind = StructuralEdgeKind::Open;
-      edge.DihedralAngle = -1.0;
+      continue;
     }
-    else
-    {
-      const Id second = uses[begin + 1].Use;
-      if (end - begin > 2)
-      {
-        edge.Kind = StructuralEdgeKind::NonManifold;
-      }
-      else if (HaveDifferentLabels(surface, first.Use, second))
-      {
-        edge.Kind = StructuralEdgeKind::LabelChange;
-      }
-      else if (HaveDifferentFacets(options, first.Use, second) ||
-        !IsSmoothEdge(surface.Points[edge.Points[0]], surface.Points[edge.Points[1]],
-          GetOpposite(surface, first.Use), GetOpposite(surface, second),
-          isExact(first.Use) || isExact(second) ? 0.0 : options.AccuracyAngle, flatness))
-      {
-        edge.Kind = StructuralEdgeKind::Sharp;
-      }
-      else
-      {
-        continue;
-      }
-      edge.DihedralAngle = GetSmallestAngle(surface, &first, uses.data() + end, turns);
-    }
-    output.Edges.push_back(edge);
+    edge.Points = this->Uses[begin].GetPoints();
+    edge.DihedralAngle = edge.Kind == StructuralEdgeKind::Open
+      ? -1.0
+      : GetSmallestAngle(this->Surface, &this->Uses[begin], this->Uses.data() + end, turns);
+    edges.push_back(edge);
+  }
+  return {};
+}
+
+Status RunExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeOptions& options,
+  const ExecutionContext& context, StructuralEdgesOutput& output)
+{
+  output = {};
+  Status status = CheckSurface(surface);
+  if (status.IsOk())
+  {
+    status = EdgeJudge(surface, options).Judge(context, output.Edges);
+  }
+  if (!status.IsOk())
+  {
+    output = {};
+    return status;
   }
   TraceChains(surface.Points.size(), output);
   context.Continue(1.0, "Structural edges found");

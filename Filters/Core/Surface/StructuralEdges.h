@@ -7,21 +7,21 @@
  *
  * An edge is structural if it is open (one triangle), shared by more than two triangles, a border
  * between different BoundaryLabels, or if its dihedral angle differs from 180 degrees by more than
- * the accuracy angle. Two triangles count as flat, whatever the accuracy angle, if they bend by
- * less than one degree and if each opposite vertex is no farther from the other's plane than
- * FlatnessRatio times the size of the surface: coordinates in files are rounded. Far from the
- * origin coordinates are rounded to more than that. So the size is the diagonal of the bounding box
- * or, if that is larger, 5e-7 times the largest coordinate: with the default ratio, about four
- * times what the largest coordinate is rounded by.
+ * the accuracy angle. Whatever the accuracy angle, edges are smooth in facets that are plane to
+ * FlatnessRatio times the size of the surface, because coordinates in files are rounded
+ * (FlatFacets.h). The size is the diagonal of the bounding box. Far from the origin coordinates are
+ * rounded to more than that: the distance is at least 5e-16 times the largest coordinate, about
+ * four times what that is rounded by.
  *
  * Exactly: let n and m be the normals of the two triangles, reversed where needed so that the
  * triangles are oriented consistently along their edge; the edge bends by the angle between n and m
  * (0 is flat, 180 folded back). The edge is smooth if it bends by no more than the accuracy angle,
- * or by no more than one degree with both distances within FlatnessRatio * size. A triangle
- * without area has no normal: its edges are never smooth. Labels are compared after the triangles
- * have been oriented consistently; surfaces without labels have no label change. After a
- * refinement, small triangles may bend within FlatnessRatio at edges that were structural: the
- * option Facets keeps these edges.
+ * if its facet is plane, or if it bends by no more than one degree and each opposite vertex is no
+ * farther from the other's plane than 1e-9 times the size. A triangle without area has no normal:
+ * its edges are never smooth but in a plane facet. Labels are compared after the triangles have
+ * been oriented consistently; surfaces without labels have no label change. After a refinement,
+ * small triangles may bend by as little at edges that were structural: the option Facets keeps
+ * these edges, and the facets whole.
  *
  * Method:
  *  1. sort all edges of all triangles, judge each group of equal edges;
@@ -73,14 +73,17 @@ struct StructuralEdgeOptions
 {
   /** Degrees, 0 to 180: edges that bend by no more are smooth. 0: only numerically flat ones. */
   double AccuracyAngle = 0.0;
-  /** Distance, as a ratio of the size of the surface, within which triangles count as flat. */
-  double FlatnessRatio = 1e-9;
+  /** How far points of plane facets are from their plane, as a ratio of the size; 0 to 1. */
+  double FlatnessRatio = 1e-6;
   /**
    * Surface facet of each triangle, as NumberFacets() gave it for the surface that this one
    * refines: edges between different facets are structural. Empty: not known.
    */
   std::vector<Id> Facets = {};
-  /** Marks triangles at whose edges the accuracy angle does not count; empty: none. */
+  /**
+   * Marks triangles at whose edges accuracy angle and plane facets do not count, only rounding;
+   * empty: none.
+   */
   std::vector<char> IsExact = {};
 };
 
@@ -118,7 +121,7 @@ bool IsSmoothEdge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, do
 /** Diagonal of the bounding box of the points; 0 without points. */
 double GetBoundingBoxDiagonal(const std::vector<Vec3>& points);
 
-/** The distance within which triangles of a surface with these points count as flat. */
+/** FlatnessRatio as a distance in model units, for a surface with these points. */
 double GetFlatness(double flatnessRatio, const std::vector<Vec3>& points);
 } // namespace cdm
 

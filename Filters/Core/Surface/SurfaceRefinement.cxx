@@ -67,7 +67,7 @@ SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
   this->Octree.Insert(this->Points);
   this->Surface = std::make_unique<RefinableSurface>(surface, edges, this->Points);
   this->Flips = std::make_unique<SurfaceFlips>(
-    *this->Surface, this->Points, this->Flatness, options.StructuralEdges.AccuracyAngle);
+    *this->Surface, this->Points, 2.0 * this->Flatness, options.StructuralEdges.AccuracyAngle);
   if (options.StructuralEdges.AccuracyAngle > 0.0)
   {
     for (const TriangleIds& ids : surface.Triangles)

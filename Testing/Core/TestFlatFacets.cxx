@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Plane facets whose points were rounded in a file, and curved facets that bend as little.
+#include "Core/Meshes/EdgeUses.h"
+#include "Core/Pipeline/ConformingMesher.h"
+#include "Core/Surface/FlatFacets.h"
+#include "Core/Surface/StructuralEdges.h"
+#include "RandomComplexes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace cdm;
+using namespace testing_core;
+
+namespace
+{
+/** A box of 3 x 2 x 1 with n x n rectangles of two triangles on each side, moved within sides. */
+TriangleMesh MakeBox(int n, std::mt19937& generator)
+{
+  std::uniform_real_distribution<double> shift(-0.3, 0.3);
+  TriangleMesh box;
+  std::map<std::array<int, 3>, Id> ids;
+  const auto getPoint = [&](const std::array<int, 3>& place, int fixed)
+  {
+    const auto [found, isNew] = ids.try_emplace(place, static_cast<Id>(box.Points.size()));
+    if (isNew)
+    {
+      Vec3 point;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const bool isInside = place[(fixed + 1) % 3] % n != 0 && place[(fixed + 2) % 3] % n != 0;
+        const double moved = axis != fixed && isInside ? shift(generator) : 0.0;
+        point[axis] = (3.0 - axis) * (place[axis] + moved) / n;
+      }
+      box.Points.push_back(point);
+    }
+    return found->second;
+  };
+  for (int fixed = 0; fixed < 3; ++fixed)
+  {
+    for (int side : { 0, n })
+    {
+      for (int i = 0; i < n * n; ++i)
+      {
+        std::array<Id, 4> corners{};
+        for (int corner = 0; corner < 4; ++corner)
+        {
+          std::array<int, 3> place{};
+          place[fixed] = side;
+          place[(fixed + 1) % 3] = i % n + (corner == 1 || corner == 2 ? 1 : 0);
+          place[(fixed + 2) % 3] = i / n + corner / 2;
+          corners[corner] = getPoint(place, fixed);
+        }
+        const auto [a, b, c, d] = corners;
+        box.Triangles.push_back(side == 0 ? TriangleIds{ a, c, b } : TriangleIds{ a, b, c });
+        box.Triangles.push_back(side == 0 ? TriangleIds{ a, d, c } : TriangleIds{ a, c, d });
+      }
+    }
+  }
+  return box;
+}
+
+/** Rounds to single precision, which keeps seven digits. */
+void RoundPoints(TriangleMesh& surface)
+{
+  for (Vec3& point : surface.Points)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      point[axis] = static_cast<float>(point[axis]);
+    }
+  }
+}
+
+std::vector<StructuralEdge> Extract(
+  const TriangleMesh& surface, const StructuralEdgeOptions& options = {})
+{
+  StructuralEdgesOutput output;
+  const Status status = ExtractStructuralEdges(surface, options, {}, output);
+  EXPECT_TRUE(status.IsOk()) << status.Message;
+  return output.Edges;
+}
+
+std::vector<Id> GetFacets(const TriangleMesh& surface)
+{
+  return NumberFacets(SortEdgeUses(surface.Triangles, surface.Points.size()), Extract(surface));
+}
+
+Id CountFacets(const TriangleMesh& surface)
+{
+  const std::vector<Id> facets = GetFacets(surface);
+  return *std::max_element(facets.begin(), facets.end()) + 1;
+}
+
+/** A ball of triangles that bend by about 180 / n degrees. */
+TriangleMesh MakeBall(int n, double radius)
+{
+  TriangleMesh ball;
+  const double pi = std::acos(-1.0);
+  for (int i = 1; i < n; ++i)
+  {
+    for (int j = 0; j < 2 * n; ++j)
+    {
+      const double sine = std::sin(i * pi / n);
+      ball.Points.push_back({ radius * sine * std::cos(j * pi / n),
+        radius * sine * std::sin(j * pi / n), radius * std::cos(i * pi / n) });
+    }
+  }
+  const Id top = static_cast<Id>(ball.Points.size());
+  ball.Points.push_back({ 0.0, 0.0, radius });
+  ball.Points.push_back({ 0.0, 0.0, -radius });
+  for (int i = 1; i < n; ++i)
+  {
+    for (int j = 0; j < 2 * n; ++j)
+    {
+      const int next = (j + 1) % (2 * n);
+      const auto get = [n](int row, int column) { return (row - 1) * 2 * n + column; };
+      if (i == 1)
+      {
+        ball.Triangles.push_back({ top, get(1, j), get(1, next) });
+      }
+      if (i + 1 == n)
+      {
+        ball.Triangles.push_back({ top + 1, get(i, next), get(i, j) });
+        continue;
+      }
+      ball.Triangles.push_back({ get(i, j), get(i + 1, j), get(i + 1, next) });
+      ball.Triangles.push_back({ get(i, j), get(i + 1, next), get(i, next) });
+    }
+  }
+  return ball;
+}
+} // namespace
+
+TEST(FlatFacets, RoundedBoxesHaveSixFacets)
+{
+  for (unsigned seed = 1; seed <= 20; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 generator(seed);
+    TriangleMesh box = MakeBox(8, generator);
+    Rotate(box.Points, MakeRandomDirection(generator), 0.1 * seed);
+    RoundPoints(box);
+    // Which way triangles look does not matter.
+    for (TriangleIds& ids : box.Triangles)
+    {
+      if (generator() % 2 == 0)
+      {
+        std::swap(ids[0], ids[1]);
+      }
+    }
+    EXPECT_EQ(CountFacets(box), 6);
+    StructuralEdgeOptions strict;
+    strict.FlatnessRatio = RoundedFlatnessRatio;
+    EXPECT_GT(Extract(box, strict).size(), 4 * Extract(box).size());
+  }
+}
+
+TEST(FlatFacets, ACurvedFacetIsNotPlaneHoweverLittleItBends)
+{
+  // Beside a point far away each edge of the ball bends by less than the tolerance.
+  for (const double radius : { 1e-2, 1e-3, 1e-4, 1e-5 })
+  {
+    SCOPED_TRACE(radius);
+    TriangleMesh ball = MakeBall(200, radius);
+    const Id triangles = static_cast<Id>(ball.Triangles.size());
+    ball.Points.insert(ball.Points.end(), { { 10, 0, 0 }, { 10, 1, 0 }, { 10, 0, 1 } });
+    const Id last = static_cast<Id>(ball.Points.size()) - 1;
+    ball.Triangles.push_back({ last - 2, last - 1, last });
+    const double tolerance = GetFlatness(StructuralEdgeOptions().FlatnessRatio, ball.Points);
+    const std::vector<Id> facets = GetFacets(ball);
+    std::map<Id, std::array<Vec3, 2>> ranges;
+    std::map<Id, int> counts;
+    for (Id t = 0; t < triangles; ++t)
+    {
+      ++counts[facets[t]];
+      for (Id id : ball.Triangles[t])
+      {
+        const auto range =
+          ranges.try_emplace(facets[t], std::array<Vec3, 2>{ ball.Points[id], ball.Points[id] });
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          Vec3& lower = range.first->second[0];
+          Vec3& upper = range.first->second[1];
+          lower[axis] = std::min(lower[axis], ball.Points[id][axis]);
+          upper[axis] = std::max(upper[axis], ball.Points[id][axis]);
+        }
+      }
+    }
+    // A cap with the height h has the diameter 2 sqrt(2 r h).
+    const double widest = 2.0 * std::sqrt(4.0 * radius * tolerance) * std::sqrt(3.0);
+    for (const auto& [facet, range] : ranges)
+    {
+      if (counts[facet] > 2)
+      {
+        EXPECT_LE(Distance(range[0], range[1]), widest) << facet;
+      }
+    }
+  }
+}
+
+TEST(FlatFacets, LowStepsStay)
+{
+  // A step as high as a tenth of the tolerance, between two wide sheets.
+  TriangleMesh step;
+  const double height = 1e-7;
+  for (const double y : { 0.0, 1.0 })
+  {
+    step.Points.insert(step.Points.end(),
+      { { 0.0, y, 0.0 }, { 0.5, y, 0.0 }, { 0.5, y, height }, { 1.0, y, height } });
+  }
+  for (Id i = 0; i < 3; ++i)
+  {
+    step.Triangles.push_back({ i, i + 1, i + 5 });
+    step.Triangles.push_back({ i, i + 5, i + 4 });
+  }
+  EXPECT_EQ(CountFacets(step), 3);
+}
+
+TEST(FlatFacets, ExactTrianglesKeepTheirEdges)
+{
+  std::mt19937 generator(3);
+  TriangleMesh box = MakeBox(4, generator);
+  Rotate(box.Points, MakeRandomDirection(generator), 1.0);
+  RoundPoints(box);
+  StructuralEdgeOptions options;
+  options.IsExact.assign(box.Triangles.size(), 1);
+  StructuralEdgeOptions strict;
+  strict.FlatnessRatio = RoundedFlatnessRatio;
+  EXPECT_EQ(Extract(box, options).size(), Extract(box, strict).size());
+}
+
+/** A refined surface has the facets of the surface before, and so have later ones. */
+TEST(FlatFacets, StayWhenTheSurfaceIsRefined)
+{
+  for (unsigned seed = 1; seed <= 5; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 generator(seed);
+    TriangleMesh box = MakeBox(6, generator);
+    Rotate(box.Points, MakeRandomDirection(generator), 0.2 * seed);
+    RoundPoints(box);
+    const std::vector<Id> facets = GetFacets(box);
+    DelaunaySurfaceRefinerInput input;
+    input.Surface = &box;
+    DelaunaySurfaceRefinerOptions options;
+    options.Criterion = SurfaceCriterion::SmallestSphere;
+    options.MaximumEdgeLength = 0.1;
+    DelaunaySurfaceRefinerOutput refined;
+    ASSERT_TRUE(RefineDelaunaySurface(input, options, {}, refined).IsOk());
+    EXPECT_GT(refined.Surface.Triangles.size(), 4 * box.Triangles.size());
+    EXPECT_EQ(CountFacets(refined.Surface), 6);
+    StructuralEdgeOptions known;
+    for (Id source : refined.Surface.SourceCells)
+    {
+      known.Facets.push_back(facets[source]);
+    }
+    const std::vector<StructuralEdge> edges = Extract(refined.Surface, known);
+    ASSERT_EQ(edges.size(), refined.StructuralEdges.size());
+    for (std::size_t e = 0; e < edges.size(); ++e)
+    {
+      EXPECT_EQ(edges[e].Points, refined.StructuralEdges[e].Points);
+    }
+  }
+}
+
+/** What rounding costs: no sliver, and few more tetrahedra than the box has as it was drawn. */
+TEST(FlatFacets, RoundedBoxesAreMeshedLikeThePlaneOnes)
+{
+  for (unsigned seed = 1; seed <= 3; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 generator(seed);
+    TriangleMesh box = MakeBox(6, generator);
+    std::array<std::size_t, 2> counts{};
+    for (std::size_t i = 0; i < 2; ++i)
+    {
+      if (i == 1)
+      {
+        Rotate(box.Points, MakeRandomDirection(generator), 0.3 * seed);
+        RoundPoints(box);
+      }
+      PolygonSoup soup;
+      soup.Points = box.Points;
+      for (const TriangleIds& ids : box.Triangles)
+      {
+        soup.Connectivity.insert(soup.Connectivity.end(), ids.begin(), ids.end());
+        soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+      }
+      ConformingMesherInput input;
+      input.Polygons = &soup;
+      ConformingMesherOptions options;
+      options.Choices.Criterion = SurfaceCriterion::SmallestSphere;
+      options.Choices.AddsSteinerPoints = true;
+      options.Choices.MaximumEdgeLength = 0.0;
+      options.MaximumDeviation = 0.0;
+      ConformingMesherOutput output;
+      const Status status = MeshPolygons(input, options, {}, output);
+      ASSERT_TRUE(status.IsOk()) << status.Message;
+      counts[i] = output.Mesh.Tetrahedra.size();
+      EXPECT_TRUE(output.Warnings.empty()) << output.Warnings.front().Message;
+    }
+    EXPECT_LT(counts[1], 1.3 * counts[0]);
+  }
+}
