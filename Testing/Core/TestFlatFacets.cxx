@@ -17,12 +17,11 @@
 #include <vector>
 
 using namespace cdm;
-using namespace testing_core;
 
 namespace
 {
 /** A box of 3 x 2 x 1 with n x n rectangles of two triangles on each side, moved within sides. */
-TriangleMesh MakeBox(int n, std::mt19937& generator)
+TriangleMesh MakeBox(int n, std::mt19937_64& generator)
 {
   std::uniform_real_distribution<double> shift(-0.3, 0.3);
   TriangleMesh box;
@@ -144,7 +143,7 @@ TEST(FlatFacets, RoundedBoxesHaveSixFacets)
   for (unsigned seed = 1; seed <= 20; ++seed)
   {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    std::mt19937 generator(seed);
+    std::mt19937_64 generator(seed);
     TriangleMesh box = MakeBox(8, generator);
     Rotate(box.Points, MakeRandomDirection(generator), 0.1 * seed);
     RoundPoints(box);
@@ -226,7 +225,7 @@ TEST(FlatFacets, LowStepsStay)
 
 TEST(FlatFacets, ExactTrianglesKeepTheirEdges)
 {
-  std::mt19937 generator(3);
+  std::mt19937_64 generator(3);
   TriangleMesh box = MakeBox(4, generator);
   Rotate(box.Points, MakeRandomDirection(generator), 1.0);
   RoundPoints(box);
@@ -243,7 +242,7 @@ TEST(FlatFacets, StayWhenTheSurfaceIsRefined)
   for (unsigned seed = 1; seed <= 5; ++seed)
   {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    std::mt19937 generator(seed);
+    std::mt19937_64 generator(seed);
     TriangleMesh box = MakeBox(6, generator);
     Rotate(box.Points, MakeRandomDirection(generator), 0.2 * seed);
     RoundPoints(box);
@@ -277,7 +276,7 @@ TEST(FlatFacets, RoundedBoxesAreMeshedLikeThePlaneOnes)
   for (unsigned seed = 1; seed <= 3; ++seed)
   {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    std::mt19937 generator(seed);
+    std::mt19937_64 generator(seed);
     TriangleMesh box = MakeBox(6, generator);
     std::array<std::size_t, 2> counts{};
     for (std::size_t i = 0; i < 2; ++i)
