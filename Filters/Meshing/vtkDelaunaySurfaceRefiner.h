@@ -87,7 +87,7 @@ public:
    * How far points of a facet may be from its plane, as a ratio of the bounding box diagonal. It
    * allows for coordinates that were rounded to six or seven digits in a file. Edges in such facets
    * are smooth, and the surface moves by no more than twice that. At 1e-9 and below, edges are
-   * judged one by one. Default 1e-6; range 0 to 1.
+   * judged one by one. Default 5e-7; range 0 to 1.
    */
   vtkSetInRangeMacro(FlatnessRatio, double, 0.0, 1.0, "ratio of the bounding box diagonal");
   vtkGetMacro(FlatnessRatio, double);
@@ -127,7 +127,7 @@ public:
   ///@{
   /**
    * No edge is made shorter: a guard against endless refinement. Ratio of the bounding box
-   * diagonal; default 1e-6; range 0 to 1.
+   * diagonal; default 5e-7; range 0 to 1.
    */
   vtkSetInRangeMacro(MinimumEdgeRatio, double, 0.0, 1.0, "ratio of the bounding box diagonal");
   vtkGetMacro(MinimumEdgeRatio, double);
@@ -161,7 +161,7 @@ protected:
 
   int Criterion = Delaunay;
   double AccuracyAngle = 0.0;
-  double FlatnessRatio = 1e-6;
+  double FlatnessRatio = 5e-7;
   double MinimumAngle = 0.0;
   double MaximumArea = 0.0;
   double MaximumEdgeLength = 0.0;

@@ -141,7 +141,7 @@ public:
 
   ///@{
   /**
-   * See vtkDelaunaySurfaceRefiner. Ratio of the bounding box diagonal; default 1e-6; range 0 to 1.
+   * See vtkDelaunaySurfaceRefiner. Ratio of the bounding box diagonal; default 5e-7; range 0 to 1.
    */
   vtkSetInRangeMacro(FlatnessRatio, double, 0.0, 1.0, "ratio of the bounding box diagonal");
   vtkGetMacro(FlatnessRatio, double);
@@ -187,7 +187,7 @@ protected:
   double MinimumEdgeLength = 0.0;
   bool FreeInteriorPoints = false;
   double AccuracyAngle = 0.0;
-  double FlatnessRatio = 1e-6;
+  double FlatnessRatio = 5e-7;
   int MaximumNewPoints = 0;
 
   vtkIdType NumberOfBoundaryPoints = 0;

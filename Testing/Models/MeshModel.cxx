@@ -62,10 +62,12 @@ bool Run(vtkAlgorithm* filter, const char* name)
 
 int main(int argc, char* argv[])
 {
+  vtkNew<vtkDelaunaySurfaceRefiner> refiner;
   vtkNew<vtkSliverRemover> remover;
   std::map<std::string, double> options{ { "--criterion", 0.0 }, { "--maximum-edge-length", 0.0 },
     { "--maximum-new-points", 0.0 }, { "--maximum-gap-edges", 0.0 }, { "--resolve", 0.0 },
     { "--merge-tolerance", 0.0 }, { "--accuracy-angle", 0.0 },
+    { "--facet-flatness-ratio", refiner->GetFlatnessRatio() },
     { "--flatness-ratio", remover->GetFlatnessRatio() } };
   bool isRightUse = argc >= 3 && argc % 2 == 1;
   for (int i = 3; isRightUse && i < argc; i += 2)
@@ -94,7 +96,7 @@ int main(int argc, char* argv[])
   triangulator->SetResolveSelfIntersections(options["--resolve"] != 0.0);
   triangulator->SetMergeTolerance(options["--merge-tolerance"]);
   triangulator->SetInputConnection(reader->GetOutputPort());
-  vtkNew<vtkDelaunaySurfaceRefiner> refiner;
+  refiner->SetFlatnessRatio(options["--facet-flatness-ratio"]);
   refiner->SetCriterion(static_cast<int>(options["--criterion"]));
   refiner->SetAccuracyAngle(options["--accuracy-angle"]);
   refiner->SetMaximumEdgeLength(options["--maximum-edge-length"]);

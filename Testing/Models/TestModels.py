@@ -39,6 +39,7 @@ REFUSAL_TIME_LIMIT = 10
 DEVICE_POINTS = 10000
 DEVICE_EDGE = 0.055
 NEW_POINTS_LIMIT = 300000
+EXACTNESS = "1e-9"
 GAP_EDGES = 200
 
 # Sheets of one surface that lie this close together, model units: cracks of a file whose coordinates
@@ -73,7 +74,9 @@ class Runner:
     def mesh(self, path, result, time_limit, **options):
         """Runs the pipeline. Returns the file of the mesh (None if there is none) and the errors."""
         mesh = os.path.join(self.arguments.output, result.name + ".vtu")
-        command = [self.arguments.mesher, path, mesh]
+        # The validator wants the surface as exactly as it is given, also where its file has rounded
+        # it; what rounded facets become without that is judged in TestSteinerModels.py.
+        command = [self.arguments.mesher, path, mesh, "--facet-flatness-ratio", EXACTNESS]
         for name, value in options.items():
             command += ["--" + name.replace("_", "-"), str(value)]
         limit = (int(time_limit), int(time_limit) + 1)
@@ -103,7 +106,7 @@ class Runner:
         """Runs the validator, and removes the mesh if there is nothing to find in it."""
         run = subprocess.run(
             [self.arguments.validator, path, mesh, "--quiet", "--threads", "1",
-             "--samples", "50000", "--tol", "1e-9", *options],
+             "--samples", "50000", "--tol", EXACTNESS, *options],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
         report = json.loads(run.stdout)
         result.outcome = report["verdict"]

@@ -7,6 +7,7 @@
 #include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/MeshBoundary.h"
 #include "Core/Meshes/SurfaceArea.h"
+#include "Core/Pipeline/RegionVolumes.h"
 #include "Core/Pipeline/SurfaceCoarsener.h"
 #include "Core/Search/BallIndex.h"
 #include "Core/Search/PointOctree.h"
@@ -21,6 +22,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace cdm
@@ -28,6 +30,8 @@ namespace cdm
 namespace
 {
 constexpr double LargestSteinerAngle = 40.0;
+/** How much of the volume of a region facets of rounded points may change, as a ratio. */
+constexpr double LargestVolumeChange = 5e-7;
 
 /** from[via[i]] for all i; NoId stays. */
 template <typename T>
@@ -72,6 +76,7 @@ private:
   Status ChooseSettings();
   Status Coarsen();
   Status PlaceMeshPoints();
+  Status MakeBoundaryMesh();
   Status RefineSurface();
   BallIndex FindProofs() const;
   void AddUnencroachingPoints(Id firstNumber, const std::vector<StructuralEdge>& edges);
@@ -107,6 +112,15 @@ private:
   const ConformingMesherOptions& Options;
   const ExecutionContext& Context;
   ConformingMesherOutput& Output;
+  /** The surface that was refined last, if facets of rounded points have been divided anew. */
+  struct RoundedSurface
+  {
+    TriangleMesh Surface;
+    std::vector<Vec3> MeshPoints;
+    /** Triangles of it that the refined ones come from. */
+    std::vector<Id> Sources;
+  };
+
   /** What the choices became. */
   MeshSettings Settings;
   /** The sizing of the input, lowered to the sizes of regions. */
@@ -122,6 +136,9 @@ private:
   std::vector<Id> Facets;
   std::vector<char> IsUnresolved;
   std::vector<char> IsFree;
+  std::optional<RoundedSurface> Rounded;
+  /** Marks triangles whose facets are to keep their edges, to rounding. */
+  std::vector<char> IsExact;
   Id PeeledTetrahedra = 0;
   double FlatnessRatio = 0.0;
 };
@@ -259,6 +276,26 @@ Status ConformingMesher::PlaceMeshPoints()
   return status;
 }
 
+/**
+ * Refines and tetrahedralizes the surface; anew, with the edges as they are, where facets of rounded
+ * points have changed the volume of a region.
+ */
+Status ConformingMesher::MakeBoundaryMesh()
+{
+  const std::size_t warnings = this->Output.Warnings.size();
+  const auto make = [this]
+  { return this->RefineSurface().Then([this] { return this->Tetrahedralize(); }); };
+  Status status = make();
+  if (!status.IsOk() || this->IsExact.empty())
+  {
+    return status;
+  }
+  this->Output.Warnings.resize(warnings);
+  this->Surface = std::move(this->Rounded->Surface);
+  this->MeshPoints = std::move(this->Rounded->MeshPoints);
+  return make();
+}
+
 Status ConformingMesher::RefineSurface()
 {
   DelaunaySurfaceRefinerInput input;
@@ -272,6 +309,7 @@ Status ConformingMesher::RefineSurface()
   {
     options.StructuralEdges.Facets = Compose(this->Input.Facets, this->Surface.SourceCells, Id(0));
   }
+  options.StructuralEdges.IsExact = this->IsExact;
   DelaunaySurfaceRefinerOutput refined;
   Status status = RefineDelaunaySurface(input, options,
     this->GetPart("Surface refinement", this->Settings.GeneratesMeshPoints ? 0.2 : 0.1, 0.5),
@@ -281,8 +319,14 @@ Status ConformingMesher::RefineSurface()
     return this->Name(std::move(status), this->Surface.SourceCells);
   }
   this->TakeWarnings(std::move(refined.Warnings), this->Surface.SourceCells);
-  refined.Surface.SourceCells =
-    Compose(this->Surface.SourceCells, refined.Surface.SourceCells, NoId);
+  std::vector<Id> sources = std::move(refined.Surface.SourceCells);
+  refined.Surface.SourceCells = Compose(this->Surface.SourceCells, sources, NoId);
+  this->Rounded.reset();
+  if (refined.Report.HasRoundedFacets && options.StructuralEdges.AccuracyAngle == 0.0)
+  {
+    this->Rounded =
+      RoundedSurface{ std::move(this->Surface), this->MeshPoints, std::move(sources) };
+  }
   this->Surface = std::move(refined.Surface);
   this->Facets = NumberFacets(
     SortEdgeUses(this->Surface.Triangles, this->Surface.Points.size()), refined.StructuralEdges);
@@ -401,6 +445,17 @@ Status ConformingMesher::Tetrahedralize()
     Compose(this->MeshPointSources, made.MeshPointSources, NoId);
   const std::vector<Id> sources = std::move(made.Boundary.SourceCells);
   this->Output.Boundary = std::move(made.Boundary);
+  if (this->Rounded && this->IsExact.empty())
+  {
+    this->Output.Boundary.SourceCells = Compose(this->Rounded->Sources, sources, NoId);
+    this->IsExact =
+      FindChangedRegions(this->Rounded->Surface, this->Output.Boundary, LargestVolumeChange);
+    if (!this->IsExact.empty())
+    {
+      return status;
+    }
+  }
+  this->Rounded.reset();
   this->FollowBoundary(sources);
   this->FindFreePoints();
   return this->MakeFirstMesh(options, this->GetPart("Tetrahedralization", end - 0.01, end));
@@ -625,8 +680,7 @@ Status ConformingMesher::Run()
   return this->TriangulateSurface()
     .Then([this] { return this->Coarsen(); })
     .Then([this] { return this->PlaceMeshPoints(); })
-    .Then([this] { return this->RefineSurface(); })
-    .Then([this] { return this->Tetrahedralize(); })
+    .Then([this] { return this->MakeBoundaryMesh(); })
     .Then(
       [this]
       {

@@ -103,6 +103,7 @@ Status SurfaceRefiner::Prepare(int numberOfThreads)
   {
     return status;
   }
+  this->Output.Report.HasRoundedFacets = edges.HasRoundedFacets;
   const std::vector<Vec3> meshPoints = this->CollectMeshPoints(numberOfThreads);
   this->NumberOfSurfacePoints = static_cast<Id>(surface.Points.size());
   this->NumberOfGivenPoints = this->NumberOfSurfacePoints + static_cast<Id>(meshPoints.size());

@@ -118,6 +118,8 @@ struct DelaunaySurfaceRefinerReport
   Id DroppedMeshPoints = 0;
   /** Triangles that are larger than asked for, as a limit has ended the refinement. */
   Id TooCoarse = 0;
+  /** Whether facets count as plane that are so but for the digits of their points (FlatFacets.h). */
+  bool HasRoundedFacets = false;
 };
 
 struct DelaunaySurfaceRefinerOutput

@@ -377,6 +377,7 @@ public:
   }
 
   Status Judge(const ExecutionContext& context, std::vector<StructuralEdge>& edges) const;
+  bool HasRoundedFacets() const { return this->IsAnyRounded; }
 
 private:
   void FindFlat();
@@ -392,6 +393,7 @@ private:
   const std::vector<EdgeUse> Uses;
   /** Whether the edge that begins at a use is flat. */
   std::vector<char> IsFlat;
+  bool IsAnyRounded = false;
 };
 
 std::size_t EdgeJudge::FindEnd(std::size_t begin) const
@@ -465,6 +467,8 @@ void EdgeJudge::FindFlat()
   for (std::size_t i = 0; i < pairs.size(); ++i)
   {
     this->IsFlat[begins[i]] = areFlat[i];
+    this->IsAnyRounded = this->IsAnyRounded ||
+      (areFlat[i] != 0 && !this->IsSmoothPair(begins[i], 0.0, options.RoundedTolerance));
   }
 }
 
@@ -512,7 +516,9 @@ Status RunExtractStructuralEdges(const TriangleMesh& surface, const StructuralEd
   Status status = CheckSurface(surface);
   if (status.IsOk())
   {
-    status = EdgeJudge(surface, options).Judge(context, output.Edges);
+    const EdgeJudge judge(surface, options);
+    output.HasRoundedFacets = judge.HasRoundedFacets();
+    status = judge.Judge(context, output.Edges);
   }
   if (!status.IsOk())
   {

@@ -74,7 +74,7 @@ struct StructuralEdgeOptions
   /** Degrees, 0 to 180: edges that bend by no more are smooth. 0: only numerically flat ones. */
   double AccuracyAngle = 0.0;
   /** How far points of plane facets are from their plane, as a ratio of the size; 0 to 1. */
-  double FlatnessRatio = 1e-6;
+  double FlatnessRatio = 5e-7;
   /**
    * Surface facet of each triangle, as NumberFacets() gave it for the surface that this one
    * refines: edges between different facets are structural. Empty: not known.
@@ -93,6 +93,8 @@ struct StructuralEdgesOutput
   /** Points where chains end, ascending. */
   std::vector<Id> Corners;
   Id NumberOfChains = 0;
+  /** Whether a plane facet bends by more than the rounding of double precision. */
+  bool HasRoundedFacets = false;
 };
 
 Status ExtractStructuralEdges(const TriangleMesh& surface, const StructuralEdgeOptions& options,

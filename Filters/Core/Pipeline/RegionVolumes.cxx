@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Pipeline/RegionVolumes.h"
+
+#include "Core/Meshes/VolumeSums.h"
+
+#include <cmath>
+#include <map>
+
+namespace cdm
+{
+namespace
+{
+Vec3 GetNormal(const TriangleMesh& surface, const TriangleIds& ids)
+{
+  const Vec3& a = surface.Points[ids[0]];
+  return Cross(surface.Points[ids[1]] - a, surface.Points[ids[2]] - a);
+}
+
+/** Six times the volumes of regions. */
+class Volumes
+{
+public:
+  explicit Volumes(const Vec3& origin) : Origin(origin) {}
+
+  void Add(
+    const TriangleMesh& surface, const TriangleIds& ids, bool isReversed, const RegionPair& labels)
+  {
+    const long double volume = (isReversed ? -1.0L : 1.0L) *
+      GetSixVolumes(
+        this->Origin, surface.Points[ids[0]], surface.Points[ids[1]], surface.Points[ids[2]]);
+    // The back is where the normal points away from.
+    if (labels.Back >= 0)
+    {
+      this->Sums[labels.Back].Add(volume);
+    }
+    if (labels.Front >= 0)
+    {
+      this->Sums[labels.Front].Add(-volume);
+    }
+  }
+  double Get(Id region) const { return this->Sums.at(region).Get(); }
+
+private:
+  std::map<Id, CompensatedSum> Sums;
+  const Vec3 Origin;
+};
+} // namespace
+
+std::vector<char> FindChangedRegions(
+  const TriangleMesh& before, const TriangleMesh& boundary, double ratio)
+{
+  std::vector<Id> triangles(before.Triangles.size(), NoId);
+  for (std::size_t t = 0; t < boundary.Triangles.size(); ++t)
+  {
+    triangles[boundary.SourceCells[t]] = static_cast<Id>(t);
+  }
+  const Vec3 origin = before.Points.empty() ? Vec3() : before.Points.front();
+  Volumes now(origin);
+  Volumes then(origin);
+  for (std::size_t t = 0; t < boundary.Triangles.size(); ++t)
+  {
+    now.Add(boundary, boundary.Triangles[t], false, boundary.Labels[t]);
+  }
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+  {
+    if (triangles[t] != NoId)
+    {
+      const TriangleIds& ids = before.Triangles[t];
+      const bool isReversed =
+        Dot(GetNormal(before, ids), GetNormal(boundary, boundary.Triangles[triangles[t]])) < 0.0;
+      then.Add(before, ids, isReversed, boundary.Labels[triangles[t]]);
+    }
+  }
+  const auto isChanged = [&](Id region)
+  {
+    return region >= 0 &&
+      std::abs(now.Get(region) - then.Get(region)) > ratio * std::abs(now.Get(region));
+  };
+  std::vector<char> marks(before.Triangles.size(), 0);
+  bool isAny = false;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+  {
+    if (triangles[t] != NoId)
+    {
+      const RegionPair& labels = boundary.Labels[triangles[t]];
+      marks[t] = isChanged(labels.Front) || isChanged(labels.Back) ? 1 : 0;
+      isAny = isAny || marks[t] != 0;
+    }
+  }
+  return isAny ? marks : std::vector<char>();
+}
+} // namespace cdm
