@@ -4,6 +4,7 @@
 #include "Core/Improvement/SteinerPointRefiner.h"
 #include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
+#include "Core/Surface/FlatFacets.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 #include "RandomComplexes.h"
 
@@ -651,6 +652,8 @@ TEST(SteinerPointRefiner, NeedlesKeepTheirFacets)
   input.Mesh = &mesh.Output.Mesh;
   SteinerPointRefinerOptions options;
   options.MaximumEdgeLength = 0.08;
+  // By default the lid counts as plane.
+  options.StructuralEdges.FlatnessRatio = RoundedFlatnessRatio;
   const SteinerPointRefinerOutput output = Refine(input, options);
   // Each triangle is in the plane of one that there was.
   for (const TriangleIds& ids : output.Boundary.Triangles)

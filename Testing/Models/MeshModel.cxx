@@ -6,7 +6,8 @@
  *     MeshModel INPUT.vtp OUTPUT.vtu [--OPTION VALUE]...
  *
  * Options: criterion (0 Delaunay, 1 smallest sphere, 2 smallest sphere of triangle and edges),
- * maximum-edge-length, maximum-new-points, maximum-gap-edges, flatness-ratio (of the sliver
+ * maximum-edge-length, maximum-new-points, maximum-gap-edges, facet-flatness-ratio (of the surface
+ * refiner; its default), flatness-ratio (of the sliver
  * remover; 0: nothing is peeled off), resolve (1: self-intersections), merge-tolerance,
  * accuracy-angle.
  *

@@ -4,6 +4,7 @@
 #include "Core/Basics/IdLimits.h"
 #include "Core/Basics/SortedIds.h"
 #include "Core/Meshes/DuplicateTriangles.h"
+#include "Core/Surface/FlatFacets.h"
 #include "Core/Surface/MeshPointClearance.h"
 #include "Core/Surface/SurfaceChecks.h"
 #include "Core/Surface/SurfaceRefinement.h"
@@ -107,8 +108,10 @@ Status SurfaceRefiner::Prepare(int numberOfThreads)
   const std::vector<Vec3> meshPoints = this->CollectMeshPoints(numberOfThreads);
   this->NumberOfSurfacePoints = static_cast<Id>(surface.Points.size());
   this->NumberOfGivenPoints = this->NumberOfSurfacePoints + static_cast<Id>(meshPoints.size());
+  SurfaceRefinementPlan plan = this->Plan;
+  plan.IsTrial = plan.IsTrial && edges.HasRoundedFacets;
   this->Refinement = std::make_unique<SurfaceRefinement>(
-    surface, edges.Edges, meshPoints, this->Options, this->Input.Sizing, false, this->Plan);
+    surface, edges.Edges, meshPoints, this->Options, this->Input.Sizing, false, plan);
   return Status();
 }
 
@@ -290,9 +293,9 @@ Status SurfaceRefiner::Run()
 }
 
 /**
- * Attempts to refine one surface: with the usual rules, with those for corners, thin layers and
- * stacks, by criterion 3.2 in place of 3.1, and by the criterion Delaunay alone, until one attempt
- * ends.
+ * Attempts to refine one surface: with the usual rules, with facets that are plane in double
+ * precision only, with the rules for corners, thin layers and stacks, by criterion 3.2 in place of
+ * 3.1, and by the criterion Delaunay alone, until one attempt ends.
  */
 class SurfaceAttempts
 {
@@ -324,6 +327,8 @@ private:
   bool HasBest = false;
   /** Whether the last attempt came to its end, see SurfaceRefiner. */
   bool IsSettled = false;
+  /** Whether its facets were plane but for rounding. */
+  bool HasRoundedFacets = false;
   double Begin = 0.0;
 };
 
@@ -355,6 +360,7 @@ Status SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
         return status;
       }
       this->IsSettled = refiner.IsSettled();
+      this->HasRoundedFacets = output.Report.HasRoundedFacets;
       this->Keep(std::move(output));
       return status;
     }
@@ -387,7 +393,9 @@ Status SurfaceAttempts::Run()
     this->Options.MinimumAngle > 0.0 || this->Input.Sizing;
   SurfaceRefinementPlan plan;
   plan.GivesUp = !hasSizes;
+  plan.IsTrial = true;
   const Status first = this->RunPlan(plan);
+  plan.IsTrial = false;
   if (first.IsAborted() || this->IsSettled ||
     (hasSizes && this->HasBest && this->Best.NonDelaunayTriangles.empty() &&
       this->IsStoppedByUser(this->Best)))
@@ -396,6 +404,12 @@ Status SurfaceAttempts::Run()
   }
   Status status;
   const auto isOpen = [&] { return !status.IsAborted() && !this->IsSettled; };
+  double& flatness = this->Options.StructuralEdges.FlatnessRatio;
+  if (this->HasRoundedFacets && flatness > RoundedFlatnessRatio)
+  {
+    flatness = RoundedFlatnessRatio;
+    status = this->RunPlan(plan);
+  }
   for (const MatchingRules rules :
     { MatchingRules::Corners, MatchingRules::ThinLayers, MatchingRules::Stacks })
   {

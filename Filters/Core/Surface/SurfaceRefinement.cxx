@@ -58,10 +58,12 @@ SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
 {
   this->Points.insert(this->Points.end(), meshPoints.begin(), meshPoints.end());
   // Without a limit of the user's, one that only a runaway refinement reaches: sheets a hair apart.
-  this->UsualMaximum = static_cast<Id>(std::min<std::size_t>(
-    std::max<std::size_t>(this->Limits.HasAny() ? 1000000 : 20000, 50 * surface.Triangles.size()) +
-      meshPoints.size(),
-    LargestId / 8));
+  const std::size_t perTriangle = plan.IsTrial ? 10 : 50;
+  this->UsualMaximum = static_cast<Id>(
+    std::min<std::size_t>(std::max<std::size_t>(this->Limits.HasAny() ? 1000000 : 20000,
+                            perTriangle * surface.Triangles.size()) +
+        meshPoints.size(),
+      LargestId / 8));
   this->MaximumNewPoints =
     options.MaximumNewPoints > 0 ? options.MaximumNewPoints : this->UsualMaximum;
   this->Octree.Insert(this->Points);

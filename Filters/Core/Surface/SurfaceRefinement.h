@@ -45,6 +45,11 @@ struct SurfaceRefinementPlan
    * what the criterion Delaunay needs.
    */
   bool GivesUp = false;
+  /**
+   * Whether another plan follows that is likely to end. Then the largest number of points, if the
+   * user gives none and no sizes, is a fifth of the usual one.
+   */
+  bool IsTrial = false;
 };
 
 class SurfaceRefinement
