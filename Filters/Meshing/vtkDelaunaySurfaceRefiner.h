@@ -87,7 +87,8 @@ public:
    * How far points of a facet may be from its plane, as a ratio of the bounding box diagonal. It
    * allows for coordinates that were rounded to six or seven digits in a file. Edges in such facets
    * are smooth, and the surface moves by no more than twice that. At 1e-9 and below, edges are
-   * judged one by one. Default 5e-7; range 0 to 1.
+   * judged one by one: for closed control volumes without Steiner points, as couplings in rounded
+   * facets may be negative by as little. Default 5e-7; range 0 to 1.
    */
   vtkSetInRangeMacro(FlatnessRatio, double, 0.0, 1.0, "ratio of the bounding box diagonal");
   vtkGetMacro(FlatnessRatio, double);

@@ -190,6 +190,8 @@ def MakeBoxes(refiner, front):
     """The same again with closed control volumes: criterion 3.2, and every bend is a structural edge."""
     refiner.SetCriterionToSmallestSphereAndEdges()
     refiner.SetAccuracyAngle(0.0)
+    # No Steiner points follow, which would mend couplings in facets whose points a file has rounded.
+    refiner.SetFlatnessRatio(1e-9)
     front.Update()
     return gallery.Certify(front.GetOutputDataObject(0), front.GetOutputDataObject(1))
 

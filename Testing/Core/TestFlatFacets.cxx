@@ -167,7 +167,7 @@ TEST(FlatFacets, RoundedBoxesHaveSixFacets)
 TEST(FlatFacets, ACurvedFacetIsNotPlaneHoweverLittleItBends)
 {
   // Beside a point far away each edge of the ball bends by less than the tolerance.
-  for (const double radius : { 1e-1, 1e-2, 1e-3, 1e-4 })
+  for (const double radius : { 1e-2, 1e-3, 1e-4 })
   {
     SCOPED_TRACE(radius);
     TriangleMesh ball = MakeBall(200, radius);

@@ -12,6 +12,7 @@
 #include "Core/Search/BallIndex.h"
 #include "Core/Search/PointOctree.h"
 #include "Core/Sizing/DefaultSize.h"
+#include "Core/Surface/FlatFacets.h"
 #include "Core/Surface/MeshPointClearance.h"
 #include "Core/Surface/StructuralEdges.h"
 #include "Core/Surface/SurfaceChecks.h"
@@ -310,6 +311,12 @@ Status ConformingMesher::RefineSurface()
     options.StructuralEdges.Facets = Compose(this->Input.Facets, this->Surface.SourceCells, Id(0));
   }
   options.StructuralEdges.IsExact = this->IsExact;
+  if (this->Settings.Criterion != SurfaceCriterion::Delaunay && !this->Settings.AddsSteinerPoints)
+  {
+    // No stage follows that mends couplings which are negative by as little as facets are bent.
+    double& flatness = options.StructuralEdges.FlatnessRatio;
+    flatness = std::min(flatness, RoundedFlatnessRatio);
+  }
   DelaunaySurfaceRefinerOutput refined;
   Status status = RefineDelaunaySurface(input, options,
     this->GetPart("Surface refinement", this->Settings.GeneratesMeshPoints ? 0.2 : 0.1, 0.5),
