@@ -16,6 +16,8 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 /** Cosine of 60 degrees: no triangle is turned from the plane of its facet by more. */
 constexpr double LeastCosine = 0.5;
+/** Cosine of one degree: triangles that are united bend by no more. */
+constexpr double LeastPairCosine = 0.99984769515639127;
 /** From one tolerance to the next. */
 constexpr double ToleranceStep = 0.1;
 /** New points of known facets lie in their planes but for rounding. */
@@ -36,14 +38,6 @@ Fold GetFold(const TriangleMesh& surface, const UsePair& pair)
   { return surface.Points[surface.Triangles[use / 3][(use + i) % 3]]; };
   return { getPoint(pair.first, 0), getPoint(pair.first, 1), getPoint(pair.first, 2),
     getPoint(pair.second, 2) };
-}
-
-/** The height of the wider triangle over the edge. */
-double GetWidth(const Fold& fold)
-{
-  const Vec3 edge = fold.B - fold.A;
-  return std::max(Norm(Cross(edge, fold.C - fold.A)), Norm(Cross(edge, fold.D - fold.A))) /
-    Norm(edge);
 }
 
 class FlatFacets
@@ -150,11 +144,18 @@ std::vector<FlatFacets::Facet> FlatFacets::MeasureFacets(const std::vector<Id>& 
   return measured;
 }
 
+/** In double precision: the tolerance is far above what that rounds. */
 bool FlatFacets::AreFlat(const UsePair& pair, double tolerance) const
 {
   const Fold fold = GetFold(this->Surface, pair);
-  return IsSmoothEdge(fold.A, fold.B, fold.C, fold.D, 0.0, tolerance) &&
-    GetWidth(fold) > this->Options.Tolerance;
+  const Vec3 edge = fold.B - fold.A;
+  const Vec3 other = fold.D - fold.A;
+  const Vec3 first = Cross(edge, fold.C - fold.A);
+  const Vec3 second = Cross(other, edge);
+  const double wider = std::max(Norm(first), Norm(second));
+  return std::abs(Dot(first, other)) <= tolerance * wider &&
+    wider > this->Options.Tolerance * Norm(edge) &&
+    Dot(first, second) >= LeastPairCosine * Norm(first) * Norm(second);
 }
 
 template <typename Condition>

@@ -9,9 +9,9 @@
  * little from one to the next, so facets are looked at as a whole.
  *
  * Method:
- *  1. two triangles are united at an edge where they bend by at most one degree, each opposite
- *     vertex is within the tolerance of the other's plane, and one of them is wider than the
- *     tolerance: narrower ones have no plane of their own;
+ *  1. two triangles are united at an edge where they bend by at most one degree, the vertex of the
+ *     narrower one is within the tolerance of the other's plane, and the other one is wider than
+ *     the tolerance: narrower ones have no plane of their own;
  *  2. united triangles make up a facet. Its plane is normal to its vector area, which depends on
  *     its outline only: it is the same however the facet is divided;
  *  3. the facet is plane if its points differ by at most twice the tolerance in height over that
