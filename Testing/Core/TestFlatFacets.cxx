@@ -100,6 +100,26 @@ Id CountFacets(const TriangleMesh& surface)
   return *std::max_element(facets.begin(), facets.end()) + 1;
 }
 
+/** The mesh of a surface all triangles of which stay, without any size. */
+ConformingMesherOutput Mesh(const TriangleMesh& surface, ConformingMesherOptions options)
+{
+  PolygonSoup soup;
+  soup.Points = surface.Points;
+  for (const TriangleIds& ids : surface.Triangles)
+  {
+    soup.Connectivity.insert(soup.Connectivity.end(), ids.begin(), ids.end());
+    soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+  }
+  ConformingMesherInput input;
+  input.Polygons = &soup;
+  options.Choices.MaximumEdgeLength = 0.0;
+  options.MaximumDeviation = 0.0;
+  ConformingMesherOutput output;
+  const Status status = MeshPolygons(input, options, {}, output);
+  EXPECT_TRUE(status.IsOk()) << status.Message;
+  return output;
+}
+
 /** A ball of triangles that bend by about 180 / n degrees. */
 TriangleMesh MakeBall(int n, double radius)
 {
@@ -290,23 +310,10 @@ TEST(FlatFacets, RoundedBoxesAreMeshedLikeThePlaneOnes)
         Rotate(box.Points, MakeRandomDirection(generator), 0.3 * seed);
         RoundPoints(box);
       }
-      PolygonSoup soup;
-      soup.Points = box.Points;
-      for (const TriangleIds& ids : box.Triangles)
-      {
-        soup.Connectivity.insert(soup.Connectivity.end(), ids.begin(), ids.end());
-        soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
-      }
-      ConformingMesherInput input;
-      input.Polygons = &soup;
       ConformingMesherOptions options;
       options.Choices.Criterion = SurfaceCriterion::SmallestSphere;
       options.Choices.AddsSteinerPoints = true;
-      options.Choices.MaximumEdgeLength = 0.0;
-      options.MaximumDeviation = 0.0;
-      ConformingMesherOutput output;
-      const Status status = MeshPolygons(input, options, {}, output);
-      ASSERT_TRUE(status.IsOk()) << status.Message;
+      const ConformingMesherOutput output = Mesh(box, options);
       counts[i] = output.Mesh.Tetrahedra.size();
       EXPECT_TRUE(output.Warnings.empty()) << output.Warnings.front().Message;
     }
@@ -314,41 +321,28 @@ TEST(FlatFacets, RoundedBoxesAreMeshedLikeThePlaneOnes)
   }
 }
 
-/** A flat box whose lid is dented: all is plane to the tolerance, but not to a part of the volume. */
+/** The lid of a box is plane to the tolerance, but not to a small part of the volume. */
 TEST(FlatFacets, VolumesOfThinRegionsStay)
 {
-  for (const double height : { 1e-2, 1.0 })
+  for (const double height : { 1e-3, 1.0 })
   {
     SCOPED_TRACE(height);
     std::mt19937_64 generator(7);
+    std::uniform_real_distribution<double> shift(-5e-7, 5e-7);
     TriangleMesh box = MakeBox(6, generator);
     double volume = 0.0;
     for (Vec3& point : box.Points)
     {
-      const bool isDented = point.Z == 1.0 && std::min(point.X, 3.0 - point.X) > 0.1 &&
-        std::min(point.Y, 2.0 - point.Y) > 0.1;
-      point.Z = height * point.Z - (isDented ? 1e-7 : 0.0);
+      point.Z = height * point.Z + (point.Z == 1.0 ? shift(generator) : 0.0);
     }
     for (const TriangleIds& ids : box.Triangles)
     {
       volume += Dot(box.Points[ids[0]], Cross(box.Points[ids[1]], box.Points[ids[2]])) / 6.0;
     }
-    PolygonSoup soup;
-    soup.Points = box.Points;
-    for (const TriangleIds& ids : box.Triangles)
-    {
-      soup.Connectivity.insert(soup.Connectivity.end(), ids.begin(), ids.end());
-      soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
-    }
-    ConformingMesherInput input;
-    input.Polygons = &soup;
     ConformingMesherOptions options;
+    options.Choices.Criterion = SurfaceCriterion::Delaunay;
     options.Choices.AddsSteinerPoints = false;
-    options.Choices.MaximumEdgeLength = 0.0;
-    options.MaximumDeviation = 0.0;
-    ConformingMesherOutput output;
-    const Status status = MeshPolygons(input, options, {}, output);
-    ASSERT_TRUE(status.IsOk()) << status.Message;
+    const ConformingMesherOutput output = Mesh(box, options);
     double meshed = 0.0;
     for (const TetrahedronIds& ids : output.Mesh.Tetrahedra)
     {
@@ -357,6 +351,25 @@ TEST(FlatFacets, VolumesOfThinRegionsStay)
     }
     EXPECT_NEAR(meshed, std::abs(volume), 5.1e-7 * std::abs(volume));
   }
+}
+
+/** The convex hull, which closes the mesh of an open surface, comes from no triangle of it. */
+TEST(FlatFacets, OpenRoundedSurfacesAreClosed)
+{
+  std::mt19937_64 generator(5);
+  TriangleMesh box = MakeBox(6, generator);
+  Rotate(box.Points, MakeRandomDirection(generator), 0.7);
+  RoundPoints(box);
+  box.Triangles.pop_back();
+  ConformingMesherOptions options;
+  options.Choices.Criterion = SurfaceCriterion::Delaunay;
+  options.Choices.AddsSteinerPoints = false;
+  options.CloseOpenBoundary = true;
+  const ConformingMesherOutput output = Mesh(box, options);
+  EXPECT_FALSE(output.Mesh.Tetrahedra.empty());
+  EXPECT_EQ(output.Certificate.GetCount(MeshFault::NonDelaunayFacet), 0);
+  const std::vector<Id>& sources = output.Boundary.SourceCells;
+  EXPECT_GT(std::count(sources.begin(), sources.end(), NoId), 0);
 }
 
 TEST(FlatFacets, RegionsWhoseVolumeHasChangedAreFound)
@@ -399,4 +412,13 @@ TEST(FlatFacets, RegionsWhoseVolumeHasChangedAreFound)
     std::swap(ids[0], ids[1]);
   }
   EXPECT_EQ(FindChangedRegions(before, after, 0.0004), changed);
+  // What closes an open surface comes from no triangle of it, and its volume counts before, too.
+  for (const bool isChanged : { false, true })
+  {
+    TriangleMesh closed = after;
+    const std::size_t missing = isChanged ? 23 : 11;
+    closed.SourceCells[missing] = NoId;
+    EXPECT_EQ(FindChangedRegions(before, closed, 0.0004).size(), before.Triangles.size());
+    EXPECT_TRUE(FindChangedRegions(before, closed, 0.0006).empty()) << missing;
+  }
 }

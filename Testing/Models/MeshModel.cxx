@@ -7,9 +7,8 @@
  *
  * Options: criterion (0 Delaunay, 1 smallest sphere, 2 smallest sphere of triangle and edges),
  * maximum-edge-length, maximum-new-points, maximum-gap-edges, facet-flatness-ratio (of the surface
- * refiner; its default), flatness-ratio (of the sliver
- * remover; 0: nothing is peeled off), resolve (1: self-intersections), merge-tolerance,
- * accuracy-angle.
+ * refiner; its default), flatness-ratio (of the sliver remover; 0: nothing is peeled off), resolve
+ * (1: self-intersections), merge-tolerance, accuracy-angle.
  *
  * One line of "name value" pairs goes to the standard output: open edges and points of the cleaned
  * input, points added, tetrahedra, seconds of each stage. Errors and warnings of the filters go to

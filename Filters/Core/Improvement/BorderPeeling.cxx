@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/BorderPeeling.h"
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
 
 #include <algorithm>
@@ -69,58 +70,24 @@ bool BorderPeeling::FindPeeledEdges(
     angles[outerEdge] >= 180.0 - LargestPeelBend;
 }
 
-void BorderPeeling::ListIncidence()
-{
-  const TetMesh& mesh = this->Mesh.GetMesh();
-  this->IncidenceBegin.assign(mesh.Points.size() + 1, 0);
-  for (const TetrahedronIds& ids : mesh.Tetrahedra)
-  {
-    for (const Id point : ids)
-    {
-      if (point != NoId)
-      {
-        ++this->IncidenceBegin[point + 1];
-      }
-    }
-  }
-  for (std::size_t i = 1; i < this->IncidenceBegin.size(); ++i)
-  {
-    this->IncidenceBegin[i] += this->IncidenceBegin[i - 1];
-  }
-  this->Incidence.resize(this->IncidenceBegin.back());
-  std::vector<Id> next(this->IncidenceBegin.begin(), this->IncidenceBegin.end() - 1);
-  for (Id other = 0; other < static_cast<Id>(mesh.Tetrahedra.size()); ++other)
-  {
-    for (const Id point : mesh.Tetrahedra[other])
-    {
-      if (point != NoId)
-      {
-        this->Incidence[next[point]++] = other;
-      }
-    }
-  }
-}
-
 bool BorderPeeling::IsOnlyTetrahedronAtEdge(Id tetrahedron, int edge)
 {
-  if (this->IncidenceBegin.empty())
+  const TetMesh& mesh = this->Mesh.GetMesh();
+  if (!this->Incidence)
   {
-    this->ListIncidence();
+    this->Incidence.emplace(mesh, 1);
   }
-  const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[tetrahedron];
-  const Id begin = ids[EdgeVertices[edge][0]];
+  const TetrahedronIds& ids = mesh.Tetrahedra[tetrahedron];
   const Id end = ids[EdgeVertices[edge][1]];
-  for (Id i = this->IncidenceBegin[begin]; i < this->IncidenceBegin[begin + 1]; ++i)
-  {
-    const Id other = this->Incidence[i];
-    const TetrahedronIds& otherIds = this->Mesh.GetMesh().Tetrahedra[other];
-    if (other != tetrahedron && !this->Mesh.IsDead(other) &&
-      std::find(otherIds.begin(), otherIds.end(), end) != otherIds.end())
+  bool isOnly = true;
+  this->Incidence->ForEachTetrahedron(ids[EdgeVertices[edge][0]],
+    [&](Id other, int)
     {
-      return false;
-    }
-  }
-  return true;
+      isOnly = isOnly &&
+        (other == tetrahedron || this->Mesh.IsDead(other) ||
+          !Contains(mesh.Tetrahedra[other], end));
+    });
+  return isOnly;
 }
 
 bool BorderPeeling::PeelOff(Id tetrahedron)

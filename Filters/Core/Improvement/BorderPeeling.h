@@ -15,8 +15,9 @@
 
 #include "Core/Improvement/FlipSearch.h"
 #include "Core/Improvement/FlippableMesh.h"
+#include "Core/Meshes/SimplexIncidence.h"
 
-#include <vector>
+#include <optional>
 
 namespace cdm
 {
@@ -43,15 +44,13 @@ public:
 
 private:
   bool FindPeeledEdges(Id tetrahedron, int& outerEdge, int& innerEdge, Id& neighborRegion) const;
-  void ListIncidence();
   bool IsOnlyTetrahedronAtEdge(Id tetrahedron, int edge);
 
   FlippableMesh& Mesh;
   const FlipSearch& Flips;
   const double Flatness;
   /** The points' tetrahedra before the first flip; made when the first one may be peeled off. */
-  std::vector<Id> IncidenceBegin;
-  std::vector<Id> Incidence;
+  std::optional<SimplexIncidence> Incidence;
 };
 } // namespace cdm
 

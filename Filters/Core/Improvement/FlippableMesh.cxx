@@ -36,14 +36,8 @@ void FlippableMesh::MeasureAngles(int numberOfThreads)
 {
   const std::size_t count = this->Mesh.Tetrahedra.size();
   this->Angles.resize(count);
-  ParallelLoop(count, { numberOfThreads }, {}, "",
-    [this](std::size_t begin, std::size_t end, std::size_t)
-    {
-      for (std::size_t t = begin; t < end; ++t)
-      {
-        this->Angles[t] = this->MeasureAngle(this->Mesh.Tetrahedra[t]);
-      }
-    });
+  ForEach(count, numberOfThreads,
+    [this](std::size_t t) { this->Angles[t] = this->MeasureAngle(this->Mesh.Tetrahedra[t]); });
   this->Stamps.resize(count, 0);
 }
 
@@ -229,7 +223,7 @@ void FlippableMesh::Remove(Id tetrahedron)
     if (neighbor != NoId)
     {
       this->Mesh.Neighbors[neighbor / 4][neighbor % 4] = NoId;
-      // With a facet on the boundary it may be the next one.
+      // Now a facet of the neighbor is on the boundary, and it may be peeled off next.
       this->Schedule(neighbor / 4);
     }
   }

@@ -14,7 +14,6 @@
 
 #include "Core/Meshes/TetMesh.h"
 
-#include <array>
 #include <cstdint>
 #include <queue>
 #include <vector>
@@ -79,7 +78,7 @@ public:
   /** The smallest dihedral angle, in degrees; of dead tetrahedra 180. */
   double GetAngle(Id tetrahedron) const { return this->Angles[tetrahedron]; }
   double MeasureAngle(const TetrahedronIds& ids) const;
-  /** Of all tetrahedra; 0 without any. */
+  /** The smallest dihedral angle of all tetrahedra; 0 without any. */
   double GetSmallestAngle() const;
 
   /** False if the ring is open or longer than it may be. */

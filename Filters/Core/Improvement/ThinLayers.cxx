@@ -3,6 +3,7 @@
 
 #include "Core/Basics/DisjointSets.h"
 #include "Core/Meshes/EdgeUses.h"
+#include "Core/Meshes/SurfaceArea.h"
 #include "Core/Meshes/TetMesh.h"
 
 #include <algorithm>
@@ -31,14 +32,6 @@ constexpr double VeryThinRatio = 0.35;
 /** Smaller heights above a side are zero up to rounding, in lengths of the edge. */
 constexpr double FlatRatio = 1e-12;
 
-/** Normal to the front, twice as long as the area. */
-Vec3 GetNormal(const TriangleMesh& surface, Id t)
-{
-  const TriangleIds& ids = surface.Triangles[t];
-  const Vec3& a = surface.Points[ids[0]];
-  return Cross(surface.Points[ids[1]] - a, surface.Points[ids[2]] - a);
-}
-
 Id GetRegion(const TriangleMesh& surface, Id face)
 {
   const RegionPair& labels = surface.Labels[face / 2];
@@ -51,7 +44,7 @@ ThinLayers::ThinLayers(const TriangleMesh& surface, const IdLists& pointTriangle
 {
   for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()); ++t)
   {
-    const Vec3 normal = GetNormal(surface, t);
+    const Vec3 normal = GetAreaVector(surface, surface.Triangles[t]);
     for (double sign : { 1.0, -1.0 })
     {
       this->Faces.push_back({ sign / Norm(normal) * normal });
@@ -124,7 +117,8 @@ void ThinLayers::MeasureWidths()
   }
   for (Id face = 0; face < static_cast<Id>(count); ++face)
   {
-    areas[sides.Find(face)] += 0.5 * Norm(GetNormal(this->Surface, face / 2));
+    areas[sides.Find(face)] +=
+      0.5 * Norm(GetAreaVector(this->Surface, this->Surface.Triangles[face / 2]));
   }
   for (Id face = 0; face < static_cast<Id>(count); ++face)
   {

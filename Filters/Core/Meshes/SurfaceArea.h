@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceArea.h
- * @brief The area of all triangles of a surface, each counted once.
+ * @brief Areas of the triangles of a surface.
  */
 #ifndef cdmSurfaceArea_h
 #define cdmSurfaceArea_h
@@ -11,7 +11,14 @@
 
 namespace cdm
 {
-/** Square model units. */
+/** Twice the area as a vector: it points to the front of the triangle. */
+inline Vec3 GetAreaVector(const TriangleMesh& surface, const TriangleIds& ids)
+{
+  const Vec3& a = surface.Points[ids[0]];
+  return Cross(surface.Points[ids[1]] - a, surface.Points[ids[2]] - a);
+}
+
+/** The sum over all triangles, each counted once, in square model units. */
 inline double GetSurfaceArea(const TriangleMesh& surface)
 {
   double area = 0.0;

@@ -73,6 +73,15 @@ public:
   Status Run();
 
 private:
+  /** The surface that was refined last, if facets of rounded points have been divided anew. */
+  struct RoundedSurface
+  {
+    TriangleMesh Surface;
+    std::vector<Vec3> MeshPoints;
+    /** Triangles of it that the refined ones come from. */
+    std::vector<Id> Sources;
+  };
+
   Status TriangulateSurface();
   Status ChooseSettings();
   Status Coarsen();
@@ -113,15 +122,6 @@ private:
   const ConformingMesherOptions& Options;
   const ExecutionContext& Context;
   ConformingMesherOutput& Output;
-  /** The surface that was refined last, if facets of rounded points have been divided anew. */
-  struct RoundedSurface
-  {
-    TriangleMesh Surface;
-    std::vector<Vec3> MeshPoints;
-    /** Triangles of it that the refined ones come from. */
-    std::vector<Id> Sources;
-  };
-
   /** What the choices became. */
   MeshSettings Settings;
   /** The sizing of the input, lowered to the sizes of regions. */

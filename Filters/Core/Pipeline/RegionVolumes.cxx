@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Pipeline/RegionVolumes.h"
 
+#include "Core/Meshes/SurfaceArea.h"
 #include "Core/Meshes/VolumeSums.h"
 
 #include <cmath>
@@ -10,12 +11,6 @@ namespace cdm
 {
 namespace
 {
-Vec3 GetNormal(const TriangleMesh& surface, const TriangleIds& ids)
-{
-  const Vec3& a = surface.Points[ids[0]];
-  return Cross(surface.Points[ids[1]] - a, surface.Points[ids[2]] - a);
-}
-
 /** Six times the volumes of regions. */
 class Volumes
 {
@@ -49,25 +44,30 @@ private:
 std::vector<char> FindChangedRegions(
   const TriangleMesh& before, const TriangleMesh& boundary, double ratio)
 {
+  // One of the boundary triangles that come from each triangle before.
   std::vector<Id> triangles(before.Triangles.size(), NoId);
-  for (std::size_t t = 0; t < boundary.Triangles.size(); ++t)
-  {
-    triangles[boundary.SourceCells[t]] = static_cast<Id>(t);
-  }
   const Vec3 origin = before.Points.empty() ? Vec3() : before.Points.front();
   Volumes now(origin);
   Volumes then(origin);
   for (std::size_t t = 0; t < boundary.Triangles.size(); ++t)
   {
     now.Add(boundary, boundary.Triangles[t], false, boundary.Labels[t]);
+    if (boundary.SourceCells[t] != NoId)
+    {
+      triangles[boundary.SourceCells[t]] = static_cast<Id>(t);
+    }
+    else
+    {
+      then.Add(boundary, boundary.Triangles[t], false, boundary.Labels[t]);
+    }
   }
   for (std::size_t t = 0; t < triangles.size(); ++t)
   {
     if (triangles[t] != NoId)
     {
       const TriangleIds& ids = before.Triangles[t];
-      const bool isReversed =
-        Dot(GetNormal(before, ids), GetNormal(boundary, boundary.Triangles[triangles[t]])) < 0.0;
+      const bool isReversed = Dot(GetAreaVector(before, ids),
+                                GetAreaVector(boundary, boundary.Triangles[triangles[t]])) < 0.0;
       then.Add(before, ids, isReversed, boundary.Labels[triangles[t]]);
     }
   }

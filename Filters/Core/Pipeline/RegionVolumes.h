@@ -24,8 +24,8 @@ namespace cdm
 /**
  * Marks the triangles of the surface before that bound a region whose volume differs by more than a
  * ratio of it; empty if there is no such region.
- * @param before every triangle of it is the source of at least one boundary triangle
- * @param boundary has labels; its source cells are triangles of the surface before
+ * @param boundary has labels; its source cells are triangles of the surface before. Those that come
+ *        from none close the surface, before as well.
  */
 std::vector<char> FindChangedRegions(
   const TriangleMesh& before, const TriangleMesh& boundary, double ratio);

@@ -2,6 +2,7 @@
 #include "Core/Surface/FlatFacets.h"
 
 #include "Core/Basics/DisjointSets.h"
+#include "Core/Meshes/SurfaceArea.h"
 #include "Core/Surface/StructuralEdges.h"
 
 #include <algorithm>
@@ -107,12 +108,10 @@ void FlatFacets::Orient()
   }
 }
 
-/** As long as twice the area. */
+/** The area vector, to the side that the triangle looks to with its surface. */
 Vec3 FlatFacets::GetNormal(Id triangle) const
 {
-  const TriangleIds& ids = this->Surface.Triangles[triangle];
-  const Vec3& a = this->Surface.Points[ids[0]];
-  const Vec3 normal = Cross(this->Surface.Points[ids[1]] - a, this->Surface.Points[ids[2]] - a);
+  const Vec3 normal = GetAreaVector(this->Surface, this->Surface.Triangles[triangle]);
   return this->IsReversed[triangle] != 0 ? -1.0 * normal : normal;
 }
 

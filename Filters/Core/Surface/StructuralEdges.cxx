@@ -435,7 +435,7 @@ bool EdgeJudge::IsSmoothPair(std::size_t begin, double accuracyAngle, double fla
     GetOpposite(this->Surface, this->Uses[begin + 1].Use), accuracyAngle, flatness);
 }
 
-/** Of edges at exact triangles only those count that are flat to rounding. */
+/** Fills IsFlat. Edges at exact triangles are flat only if their triangles are plane to rounding. */
 void EdgeJudge::FindFlat()
 {
   const double ratio = this->Options.FlatnessRatio;
