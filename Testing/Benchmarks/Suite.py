@@ -224,8 +224,8 @@ def Measure(program, files, limit, programs):
     own = re.search(r"\bmegabytes (\S+)", run.stdout)
     if own:
         result["megabytes"] = float(own[1])
-    # Not a number in a warning.
-    tetrahedra = re.search(r"\bpoints \d+ tetrahedra (\d+)", run.stdout)
+    # In the line that our programs print of themselves: warnings have such numbers, too.
+    tetrahedra = re.search(r"^(?:seconds|points) .*\btetrahedra (\d+)", run.stdout, re.MULTILINE)
     if tetrahedra:
         result["tetrahedra"] = int(tetrahedra[1])
     ended, status = int(result.pop("signal")), int(result.pop("exit"))
