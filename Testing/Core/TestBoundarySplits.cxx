@@ -74,7 +74,7 @@ public:
     BoundarySpheres spheres(this->Surface, this->Edges);
     BoundarySpheres::Encroached encroached;
     std::uniform_real_distribution<double> uniform(0.1, 1.0);
-    DynamicTetrahedralization::PointCavity cavity;
+    PointCavity cavity;
     for (int i = 0; i < tries; ++i)
     {
       const Id t = this->Draw(this->Mesh->GetNumberOfTetrahedra());

@@ -147,7 +147,7 @@ void ExpectMeshOfStage3(const DynamicTetrahedralization& dynamic, const Triangle
 
 /** Whether the point can be inserted: found from any tetrahedron in conflict. */
 bool FindCavity(DynamicTetrahedralization& mesh, BoundarySpheres& spheres, const Vec3& position,
-  Id number, DynamicTetrahedralization::PointCavity& cavity)
+  Id number, PointCavity& cavity)
 {
   BoundarySpheres::Encroached encroached;
   spheres.Find(position, encroached);
@@ -180,15 +180,16 @@ void ExpectUndone(const TetMesh& before, const std::vector<std::int64_t>& stamps
 }
 
 /** Whoever looks at facets as they are found sees those of the cavity, and may end the search. */
-void ExpectFacetsAsTheyAreFound(DynamicTetrahedralization& mesh, const Vec3& position,
-  const DynamicTetrahedralization::PointCavity& cavity)
+void ExpectFacetsAsTheyAreFound(
+  const DynamicTetrahedralization& mesh, const Vec3& position, const PointCavity& cavity)
 {
+  CavitySearch search = mesh.MakeSearch(false);
   for (std::size_t last = 0; last <= cavity.Facets.size(); ++last)
   {
-    DynamicTetrahedralization::PointCavity again;
+    PointCavity again;
     std::vector<TriangleIds> facets;
     const bool isFound =
-      mesh.FindCavity(position, mesh.GetNumberOfPoints(), cavity.Tetrahedra.front(), again,
+      search.FindCavity(position, mesh.GetNumberOfPoints(), cavity.Tetrahedra.front(), again,
         [&](const TriangleIds& facet)
         {
           facets.push_back(facet);
@@ -200,6 +201,36 @@ void ExpectFacetsAsTheyAreFound(DynamicTetrahedralization& mesh, const Vec3& pos
   }
 }
 
+/** Removes a point; a search that left it out before has found what the mesh finds then. */
+void ExpectFoundWithoutThePoint(Id point, const Vec3& position, DynamicTetrahedralization& mesh)
+{
+  CavitySearch search = mesh.MakeSearch(true);
+  search.StartRecord();
+  ASSERT_TRUE(search.LeaveOut(point));
+  const Id first = search.GetFirstCell();
+  const Id place = search.Locate(position, first);
+  PointCavity foreseen;
+  const bool isForeseen = place != NoId && search.FindCavity(position, point, place, foreseen);
+  const std::vector<Id> visited = search.GetVisited();
+  search.TakeBack();
+  EXPECT_EQ(search.GetVisited(), visited);
+
+  ASSERT_TRUE(mesh.Remove(point));
+  const std::vector<Id> made = mesh.GetChanged();
+  const auto getId = [&](Id t) { return t < first ? t : made[t - first]; };
+  ASSERT_EQ(mesh.Locate(position, made.front()), place == NoId ? NoId : getId(place));
+  PointCavity cavity;
+  ASSERT_EQ(place != NoId && mesh.FindCavity(position, point, getId(place), cavity), isForeseen);
+  EXPECT_EQ(foreseen.Facets, cavity.Facets);
+  ASSERT_EQ(foreseen.Tetrahedra.size(), cavity.Tetrahedra.size());
+  for (std::size_t i = 0; i < cavity.Tetrahedra.size(); ++i)
+  {
+    const Id t = foreseen.Tetrahedra[i];
+    EXPECT_EQ(getId(t), cavity.Tetrahedra[i]);
+    EXPECT_TRUE(t >= first || std::count(visited.begin(), visited.end(), t) == 1);
+  }
+}
+
 /** Inserts, removes and moves points at random; getPosition() proposes places. */
 template <typename GetPosition>
 void Exercise(const DelaunaySurfaceRefinerOutput& refined, int steps, std::mt19937_64& generator,
@@ -208,7 +239,7 @@ void Exercise(const DelaunaySurfaceRefinerOutput& refined, int steps, std::mt199
   const TriangleMesh& surface = refined.Surface;
   DynamicTetrahedralization mesh(Tetrahedralize(surface, {}));
   BoundarySpheres spheres(surface, refined.StructuralEdges);
-  DynamicTetrahedralization::PointCavity cavity;
+  PointCavity cavity;
   std::vector<Id> inside;
   int changes[3] = { 0, 0, 0 };
   for (int step = 0; step < steps; ++step)
@@ -239,7 +270,7 @@ void Exercise(const DelaunaySurfaceRefinerOutput& refined, int steps, std::mt199
       EXPECT_EQ(mesh.GetTetrahedronAt(point), NoId);
       mesh.UndoRemove();
       ExpectUndone(before, stamps, mesh);
-      ASSERT_TRUE(mesh.Remove(point));
+      ExpectFoundWithoutThePoint(point, position, mesh);
       if (action == 3)
       {
         const bool isMoved = FindCavity(mesh, spheres, position, point, cavity);
@@ -311,7 +342,7 @@ TEST(DynamicTetrahedralization, TakesNothingOnOrBeyondABoundary)
   {
     EXPECT_FALSE(mesh.Remove(p));
   }
-  DynamicTetrahedralization::PointCavity cavity;
+  PointCavity cavity;
   for (const Vec3& position :
     { Vec3{ 0.3, 0.4, 0.0 }, Vec3{ 0.3, 0.4, -0.1 }, Vec3{ 0.5, 0.5, 0.0 }, Vec3{ 2.0, 2.0, 2.0 } })
   {

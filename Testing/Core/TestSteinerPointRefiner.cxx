@@ -710,19 +710,34 @@ TEST(SteinerPointRefiner, EdgesCloseToFacetsEnd)
   }
 }
 
+/** Also where the number of points is limited while threads look ahead. */
 TEST(SteinerPointRefiner, DoesNotDependOnThreads)
 {
-  std::mt19937_64 generator(3);
-  const Stage3 mesh = MakeMesh(MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, 1, 1.0));
-  SteinerPointRefinerInput input;
-  input.Mesh = &mesh.Output.Mesh;
-  SteinerPointRefinerOptions options;
-  options.MaximumEdgeLength = 0.1;
-  const SteinerPointRefinerOutput one = Refine(input, options);
-  const SteinerPointRefinerOutput three = Refine(input, options, ExecutionContext(3));
-  EXPECT_EQ(one.Mesh.Points, three.Mesh.Points);
-  EXPECT_TRUE(std::equal(one.Mesh.Tetrahedra.begin(), one.Mesh.Tetrahedra.end(),
-    three.Mesh.Tetrahedra.begin(), three.Mesh.Tetrahedra.end()));
+  for (unsigned int seed = 1; seed <= 2; ++seed)
+  {
+    std::mt19937_64 generator(seed);
+    const Stage3 mesh = MakeMesh(MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, 1, 1.0));
+    SteinerPointRefinerInput input;
+    input.Mesh = &mesh.Output.Mesh;
+    SteinerPointRefinerOptions options;
+    options.DihedralAngleTarget = seed % 2 == 0 ? 20.0 : 15.0;
+    options.MaximumEdgeLength = 0.12;
+    const std::size_t size = Refine(input, options).Mesh.Points.size();
+    for (const Id limit : { Id(0), static_cast<Id>(size - mesh.Output.Mesh.Points.size()) - 30 })
+    {
+      options.MaximumNewPoints = limit;
+      const SteinerPointRefinerOutput one = Refine(input, options);
+      for (const int threads : { 2, 5 })
+      {
+        SCOPED_TRACE("seed " + std::to_string(seed) + ", threads " + std::to_string(threads));
+        const SteinerPointRefinerOutput several = Refine(input, options, ExecutionContext(threads));
+        EXPECT_EQ(one.Mesh.Points, several.Mesh.Points);
+        EXPECT_TRUE(std::equal(one.Mesh.Tetrahedra.begin(), one.Mesh.Tetrahedra.end(),
+          several.Mesh.Tetrahedra.begin(), several.Mesh.Tetrahedra.end()));
+        EXPECT_EQ(one.Faults, several.Faults);
+      }
+    }
+  }
 }
 
 TEST(SteinerPointRefiner, StopsAtALimitAndOnRequest)

@@ -38,7 +38,7 @@ DynamicTetrahedralization MakeMesh(int numberOfPoints, std::mt19937_64& generato
 
 bool Insert(const Vec3& position, DynamicTetrahedralization& mesh)
 {
-  DynamicTetrahedralization::PointCavity cavity;
+  PointCavity cavity;
   Id first = 0;
   while (mesh.IsDead(first))
   {

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 
-#include "Core/Basics/SortedIds.h"
-#include "Core/Geometry/Predicates.h"
-#include "Core/Geometry/PulledSphere.h"
-
 #include <algorithm>
 #include <iterator>
 #include <utility>
@@ -13,7 +9,7 @@ namespace cdm
 {
 DynamicTetrahedralization::DynamicTetrahedralization(TetMesh mesh)
   : Mesh(std::move(mesh)), Stamps(this->Mesh.Tetrahedra.size(), 0), NextStamp(1),
-    PointTetrahedra(this->Mesh.Points.size(), NoId), Marks(this->Mesh.Tetrahedra.size(), 0)
+    PointTetrahedra(this->Mesh.Points.size(), NoId), Search(this->Mesh, this->PointTetrahedra)
 {
   for (Id t = 0; t < this->GetNumberOfTetrahedra(); ++t)
   {
@@ -22,111 +18,6 @@ DynamicTetrahedralization::DynamicTetrahedralization(TetMesh mesh)
       this->PointTetrahedra[point] = t;
     }
   }
-}
-
-bool DynamicTetrahedralization::IsBoundary(Id tetrahedron, int facet) const
-{
-  const Id neighbor = this->Mesh.Neighbors[tetrahedron][facet];
-  return neighbor == NoId || this->Mesh.Regions[neighbor / 4] != this->Mesh.Regions[tetrahedron];
-}
-
-std::uint32_t DynamicTetrahedralization::StartSearch()
-{
-  this->Search += 2;
-  if (this->Search == 0)
-  {
-    std::fill(this->Marks.begin(), this->Marks.end(), 0);
-    this->Search = 2;
-  }
-  return this->Search;
-}
-
-bool DynamicTetrahedralization::FindStar(Id point, std::vector<Id>& star)
-{
-  const std::uint32_t search = this->StartSearch();
-  bool isInside = true;
-  star.assign(1, this->PointTetrahedra[point]);
-  this->Marks[star[0]] = search;
-  for (std::size_t i = 0; i < star.size(); ++i)
-  {
-    for (int facet = 0; facet < 4; ++facet)
-    {
-      if (this->Mesh.Tetrahedra[star[i]][facet] == point)
-      {
-        continue;
-      }
-      if (this->IsBoundary(star[i], facet))
-      {
-        isInside = false;
-        continue;
-      }
-      const Id neighbor = this->Mesh.Neighbors[star[i]][facet] / 4;
-      if (this->Marks[neighbor] != search)
-      {
-        this->Marks[neighbor] = search;
-        star.push_back(neighbor);
-      }
-    }
-  }
-  return isInside;
-}
-
-Id DynamicTetrahedralization::Locate(const Vec3& position, Id first) const
-{
-  Id t = first;
-  int from = -1;
-  for (Id step = 0; step < this->GetNumberOfTetrahedra(); ++step)
-  {
-    const TetrahedronIds& ids = this->Mesh.Tetrahedra[t];
-    int next = -1;
-    for (int i = 0; i < 4 && next < 0; ++i)
-    {
-      const int* const facet = FacetVertices[i];
-      if (i != from &&
-        Orientation(this->Mesh.Points[ids[facet[0]]], this->Mesh.Points[ids[facet[1]]],
-          this->Mesh.Points[ids[facet[2]]], position) > 0)
-      {
-        next = i;
-      }
-    }
-    if (next < 0)
-    {
-      return t;
-    }
-    if (this->IsBoundary(t, next))
-    {
-      return NoId;
-    }
-    const Id neighbor = this->Mesh.Neighbors[t][next];
-    t = neighbor / 4;
-    from = neighbor % 4;
-  }
-  return NoId;
-}
-
-bool DynamicTetrahedralization::IsInConflict(Id tetrahedron, const Vec3& position, Id number) const
-{
-  const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
-  const std::array<Vec3, 4> vertices = cdm::GetCorners(this->Mesh.Points, ids);
-  const int side = InSphere(vertices[0], vertices[1], vertices[2], vertices[3], position);
-  return side != 0 ? side > 0 : GetPulledPosition(vertices, ids, position, number, Orientation) > 0;
-}
-
-bool DynamicTetrahedralization::FindCavity(
-  const Vec3& position, Id number, Id first, PointCavity& cavity)
-{
-  return this->FindCavity(position, number, first, cavity, [](const TriangleIds&) { return true; });
-}
-
-/** Whether all facets around a cavity are in front of the position. */
-bool DynamicTetrahedralization::IsVisible(const PointCavity& cavity, const Vec3& position) const
-{
-  return std::all_of(cavity.Facets.begin(), cavity.Facets.end(),
-    [&](const TriangleIds& facet)
-    {
-      return Orientation(this->Mesh.Points[facet[0]], this->Mesh.Points[facet[1]],
-               this->Mesh.Points[facet[2]], position) > 0;
-    });
 }
 
 Id DynamicTetrahedralization::Make(const TetrahedronIds& ids, Id region)
@@ -139,7 +30,6 @@ Id DynamicTetrahedralization::Make(const TetrahedronIds& ids, Id region)
     this->Mesh.Neighbors.push_back({ NoId, NoId, NoId, NoId });
     this->Mesh.Regions.push_back(region);
     this->Stamps.push_back(0);
-    this->Marks.push_back(0);
   }
   else
   {
@@ -217,40 +107,31 @@ void DynamicTetrahedralization::Restore(Id point, const Vec3& position, const Po
 
 bool DynamicTetrahedralization::Remove(Id point)
 {
-  if (!this->FindStar(point, this->Star))
+  if (!this->Search.LeaveOut(point))
   {
     return false;
   }
-  this->RemovedStar.clear();
-  this->RemovedRegion = this->Mesh.Regions[this->Star.front()];
-  this->FormerlyFree = this->Free.size();
-  Cavity cavity;
-  std::vector<Id> outer;
-  for (Id t : this->Star)
-  {
-    const TetrahedronIds& vertices = this->Mesh.Tetrahedra[t];
-    const int i =
-      static_cast<int>(std::find(vertices.begin(), vertices.end(), point) - vertices.begin());
-    const TriangleIds facet = GetFacet(vertices, i);
-    cavity.Border.push_back({ facet[0], facet[2], facet[1] });
-    outer.push_back(this->Mesh.Neighbors[t][i]);
-    cavity.Numbers.insert(cavity.Numbers.end(), facet.begin(), facet.end());
-    this->RemovedStar.push_back({ t, vertices, this->Mesh.Neighbors[t], this->Stamps[t] });
-  }
-  SortUnique(cavity.Numbers);
-  cavity.Points.reserve(cavity.Numbers.size());
-  for (Id id : cavity.Numbers)
-  {
-    cavity.Points.push_back(this->Mesh.Points[id]);
-  }
-  cavity.Regions.assign(cavity.Border.size(), this->RemovedRegion);
-  if (!this->Filling.Run(cavity))
-  {
-    return false;
-  }
-  this->Replace(this->Star, outer, this->Filling.GetCells());
-  this->PointTetrahedra[point] = NoId;
+  this->Search.TakeBack();
+  this->Remove(point, this->Search.GetStar(), this->Search.GetCells());
   return true;
+}
+
+void DynamicTetrahedralization::Remove(
+  Id point, const std::vector<Id>& star, const std::vector<CavityFilling::Cell>& cells)
+{
+  std::vector<Id> outer;
+  this->RemovedStar.clear();
+  this->FormerlyFree = this->Free.size();
+  for (const Id t : star)
+  {
+    const TetrahedronIds& ids = this->Mesh.Tetrahedra[t];
+    outer.push_back(
+      this->Mesh.Neighbors[t][std::find(ids.begin(), ids.end(), point) - ids.begin()]);
+    this->RemovedStar.push_back({ t, ids, this->Mesh.Neighbors[t], this->Stamps[t] });
+    this->RemovedRegion = this->Mesh.Regions[t];
+  }
+  this->Replace(star, outer, cells);
+  this->PointTetrahedra[point] = NoId;
 }
 
 void DynamicTetrahedralization::UndoRemove()

@@ -30,6 +30,7 @@
 #define cdmDynamicTetrahedralization_h
 
 #include "Core/Delaunay/CavityFilling.h"
+#include "Core/Delaunay/CavitySearch.h"
 #include "Core/Meshes/TetMesh.h"
 
 #include <array>
@@ -41,17 +42,9 @@ namespace cdm
 class DynamicTetrahedralization
 {
 public:
-  /** The cavity of a point: what its insertion replaces. */
-  struct PointCavity
-  {
-    std::vector<Id> Tetrahedra;
-    /** Facets around the cavity; the point lies in front of each. */
-    std::vector<TriangleIds> Facets;
-    /** Facet ids of the tetrahedra beyond, NoId at the outer boundary. */
-    std::vector<Id> Outer;
-  };
-
   explicit DynamicTetrahedralization(TetMesh mesh);
+  DynamicTetrahedralization(const DynamicTetrahedralization&) = delete;
+  DynamicTetrahedralization& operator=(const DynamicTetrahedralization&) = delete;
 
   /**
    * The mesh with unused slots: dead tetrahedra have NoId as vertex 0, and removed points have no
@@ -75,37 +68,27 @@ public:
   /** A tetrahedron at the point, or NoId. */
   Id GetTetrahedronAt(Id point) const { return this->PointTetrahedra[point]; }
   /** Whether a facet lies between two regions or at the outside: it is never removed. */
-  bool IsBoundary(Id tetrahedron, int facet) const;
+  bool IsBoundary(Id tetrahedron, int facet) const
+  {
+    return this->Search.IsBoundary(tetrahedron, facet);
+  }
 
-  /**
-   * Lists all tetrahedra at a point. False if the point lies on a boundary: then only those up to
-   * there are listed.
-   */
-  bool FindStar(Id point, std::vector<Id>& star);
-
-  /**
-   * Finds the tetrahedron that holds a position, by a straight walk that stays in the region of the
-   * first one. NoId if a boundary is in the way, or if cospherical sets lead the walk in a circle.
-   */
-  Id Locate(const Vec3& position, Id first) const;
-
-  /** Whether a point with the given number lies in the (pulled) circumsphere of a tetrahedron. */
-  bool IsInConflict(Id tetrahedron, const Vec3& position, Id number) const;
-
-  /**
-   * Finds the cavity of a point with the given number. The search starts from a tetrahedron whose
-   * circumsphere holds the point. False if the point cannot be inserted: it is not in conflict with
-   * the first tetrahedron, a boundary facet would vanish, or the point lies on or beyond one.
-   */
-  bool FindCavity(const Vec3& position, Id number, Id first, PointCavity& cavity);
-  /**
-   * The same, for a caller who has no use for most cavities.
-   * @param accepts is called with each facet of the cavity, in their order, as soon as it is found.
-   *   If it returns false, the search ends and returns false
-   */
-  template <typename Accepts>
-  bool FindCavity(
-    const Vec3& position, Id number, Id first, PointCavity& cavity, Accepts&& accepts);
+  /** As CavitySearch has them. */
+  bool FindStar(Id point, std::vector<Id>& star) { return this->Search.FindStar(point, star); }
+  Id Locate(const Vec3& position, Id first) { return this->Search.Locate(position, first); }
+  bool IsInConflict(Id tetrahedron, const Vec3& position, Id number) const
+  {
+    return this->Search.IsInConflict(tetrahedron, position, number);
+  }
+  bool FindCavity(const Vec3& position, Id number, Id first, PointCavity& cavity)
+  {
+    return this->Search.FindCavity(position, number, first, cavity);
+  }
+  /** A search for a thread of its own, while the mesh does not change. */
+  CavitySearch MakeSearch(bool isRecording) const
+  {
+    return { this->Mesh, this->PointTetrahedra, isRecording };
+  }
 
   /** Appends a point and returns its id. The cavity must be that of this point and number. */
   Id Insert(const Vec3& position, const PointCavity& cavity);
@@ -116,6 +99,11 @@ public:
    * boundary, or if cospherical neighbors are not split by the pulling rule.
    */
   bool Remove(Id point);
+  /**
+   * Removes a point that a search has left out, with the star and the cells that it had then. The
+   * tetrahedra around the point have to be the same as then.
+   */
+  void Remove(Id point, const std::vector<Id>& star, const std::vector<CavityFilling::Cell>& cells);
   /**
    * Undoes the last removal, as long as nothing else has been changed: all tetrahedra get back
    * their slots and stamps.
@@ -142,9 +130,6 @@ private:
   Id Make(const TetrahedronIds& ids, Id region);
   void Kill(Id tetrahedron);
   void Fill(Id point, const PointCavity& cavity);
-  bool IsVisible(const PointCavity& cavity, const Vec3& position) const;
-  /** Stamp of a new search; marks of older ones do not count. */
-  std::uint32_t StartSearch();
 
   TetMesh Mesh;
   std::vector<std::int64_t> Stamps;
@@ -152,11 +137,7 @@ private:
   std::vector<Id> PointTetrahedra;
   std::vector<Id> Free;
   std::vector<Id> Changed;
-  /** Marks of tetrahedra: search * 2, plus 1 if in conflict. */
-  std::vector<std::uint32_t> Marks;
-  std::uint32_t Search = 0;
-  /** Work space. */
-  std::vector<Id> Star;
+  CavitySearch Search;
   /** A tetrahedron that the last removal has removed. */
   struct Removed
   {
@@ -171,64 +152,7 @@ private:
   std::size_t FormerlyFree = 0;
   /** Facets at a new point, by their edges in the cavity: smaller id * 2^32 + larger one. */
   std::vector<std::pair<std::uint64_t, Id>> Facets;
-  CavityFilling Filling;
 };
-
-template <typename Accepts>
-bool DynamicTetrahedralization::FindCavity(
-  const Vec3& position, Id number, Id first, PointCavity& cavity, Accepts&& accepts)
-{
-  cavity.Tetrahedra.clear();
-  cavity.Facets.clear();
-  cavity.Outer.clear();
-  if (!this->IsInConflict(first, position, number))
-  {
-    return false;
-  }
-  const std::uint32_t stays = this->StartSearch();
-  const std::uint32_t removed = stays + 1;
-  cavity.Tetrahedra.push_back(first);
-  this->Marks[first] = removed;
-  for (std::size_t k = 0; k < cavity.Tetrahedra.size(); ++k)
-  {
-    const Id t = cavity.Tetrahedra[k];
-    for (int i = 0; i < 4; ++i)
-    {
-      const Id outer = this->Mesh.Neighbors[t][i];
-      bool isBorder = true;
-      if (outer != NoId)
-      {
-        std::uint32_t& mark = this->Marks[outer / 4];
-        const bool isNew = mark != stays && mark != removed;
-        if (isNew)
-        {
-          mark = this->IsInConflict(outer / 4, position, number) ? removed : stays;
-        }
-        isBorder = mark == stays;
-        if (!isBorder && this->IsBoundary(t, i))
-        {
-          return false;
-        }
-        if (isNew && !isBorder)
-        {
-          cavity.Tetrahedra.push_back(outer / 4);
-        }
-      }
-      if (isBorder)
-      {
-        const TriangleIds facet = GetFacet(this->Mesh.Tetrahedra[t], i);
-        cavity.Facets.push_back({ facet[0], facet[2], facet[1] });
-        cavity.Outer.push_back(outer);
-        if (!accepts(cavity.Facets.back()))
-        {
-          return false;
-        }
-      }
-    }
-  }
-  // Facets inside of a region are in front of the point by themselves.
-  return this->IsVisible(cavity, position);
-}
 } // namespace cdm
 
 #endif

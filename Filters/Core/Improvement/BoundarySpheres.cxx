@@ -30,6 +30,7 @@ BoundarySpheres::BoundarySpheres(
     this->SegmentEdges.push_back(e);
     this->SetEdge(e, e);
   }
+  this->Balls.Settle();
 }
 
 void BoundarySpheres::SetTriangle(Id triangle)
@@ -66,13 +67,13 @@ void BoundarySpheres::Follow(const std::vector<Id>& triangles, const std::vector
   }
 }
 
-void BoundarySpheres::Find(const Vec3& position, Encroached& encroached)
+void BoundarySpheres::Find(const Vec3& position, Encroached& encroached) const
 {
   encroached.Triangles.clear();
   encroached.Edges.clear();
-  this->Balls.Find(position, this->Near);
+  this->Balls.FindSettled(position, encroached.Near);
   const std::vector<Vec3>& points = this->Surface.Points;
-  for (Id id : this->Near)
+  for (Id id : encroached.Near)
   {
     if (id % 2 != 0)
     {

@@ -34,10 +34,13 @@ public:
   {
     std::vector<Id> Triangles;
     std::vector<Id> Edges;
+    /** Work space. */
+    std::vector<Id> Near;
 
     bool IsEmpty() const { return this->Triangles.empty() && this->Edges.empty(); }
   };
-  void Find(const Vec3& position, Encroached& encroached);
+  /** Several threads may call it at once. */
+  void Find(const Vec3& position, Encroached& encroached) const;
 
   /**
    * Follows splits and moves of the surface.
@@ -58,7 +61,6 @@ private:
   BallIndex Balls;
   /** The edge of each segment. */
   std::vector<Id> SegmentEdges;
-  std::vector<Id> Near;
 };
 } // namespace cdm
 

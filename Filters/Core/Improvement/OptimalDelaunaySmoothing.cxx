@@ -79,6 +79,8 @@ private:
   std::vector<std::int64_t> NextStamps;
   /** The tetrahedra around the point. */
   std::vector<Id> Star;
+  /** Work space. */
+  BoundarySpheres::Encroached Encroached;
 };
 
 void Smoothing::Add(double angle, TetrahedronFault fault, Quality& quality) const
@@ -154,7 +156,7 @@ bool Smoothing::FindCavity(Id point, const Vec3& position, Id near)
  */
 bool Smoothing::Fits(const Vec3& position, const std::vector<Id>& filled, Measures before) const
 {
-  const DynamicTetrahedralization::PointCavity& cavity = this->Mesh.GetCavity();
+  const PointCavity& cavity = this->Mesh.GetCavity();
   Quality after;
   Vec3 target;
   double severity = 0.0;
@@ -254,8 +256,10 @@ bool Smoothing::MoveBy(Id point, const Vec3& step)
   for (double part : Parts)
   {
     const Vec3 position = old + part * step;
-    if (this->FindCavity(point, position, filled.front()) && this->Mesh.IsClear(position) &&
-      !this->Mesh.EncroachesOnBoundary(position) && this->Fits(position, filled, before))
+    if (this->FindCavity(point, position, filled.front()) &&
+      this->Mesh.IsClear(this->Mesh.GetCavity(), position) &&
+      !this->Mesh.EncroachesOnBoundary(this->Mesh.GetCavity(), position, this->Encroached) &&
+      this->Fits(position, filled, before))
     {
       return this->Place(point, position, filled);
     }

@@ -408,22 +408,21 @@ TetrahedronIds RefinedMesh::GetNames(const TetrahedronIds& ids) const
   return names;
 }
 
-Id RefinedMesh::CountBroken(const Vec3& position) const
+Id RefinedMesh::CountBroken(const PointCavity& cavity, const Vec3& position) const
 {
   constexpr Id inside = std::numeric_limits<Id>::max();
-  return static_cast<Id>(
-    std::count_if(this->FoundCavity.Facets.begin(), this->FoundCavity.Facets.end(),
-      [&](const TriangleIds& facet)
-      {
-        return this->BreaksLimit({ facet[0], facet[1], facet[2], inside },
-          { this->Mesh.GetPoint(facet[0]), this->Mesh.GetPoint(facet[1]),
-            this->Mesh.GetPoint(facet[2]), position });
-      }));
+  return static_cast<Id>(std::count_if(cavity.Facets.begin(), cavity.Facets.end(),
+    [&](const TriangleIds& facet)
+    {
+      return this->BreaksLimit({ facet[0], facet[1], facet[2], inside },
+        { this->Mesh.GetPoint(facet[0]), this->Mesh.GetPoint(facet[1]),
+          this->Mesh.GetPoint(facet[2]), position });
+    }));
 }
 
-bool RefinedMesh::IsClear(const Vec3& position) const
+bool RefinedMesh::IsClear(const PointCavity& cavity, const Vec3& position) const
 {
-  for (const TriangleIds& facet : this->FoundCavity.Facets)
+  for (const TriangleIds& facet : cavity.Facets)
   {
     for (Id id : facet)
     {
@@ -436,18 +435,19 @@ bool RefinedMesh::IsClear(const Vec3& position) const
   return true;
 }
 
-bool RefinedMesh::EncroachesOnBoundary(const Vec3& position)
+bool RefinedMesh::EncroachesOnBoundary(
+  const PointCavity& cavity, const Vec3& position, BoundarySpheres::Encroached& scratch) const
 {
   // An encroached boundary triangle has its corners at the cavity.
-  const bool isNear = std::any_of(this->FoundCavity.Facets.begin(), this->FoundCavity.Facets.end(),
+  const bool isNear = std::any_of(cavity.Facets.begin(), cavity.Facets.end(),
     [&](const TriangleIds& facet)
     { return *std::min_element(facet.begin(), facet.end()) < this->FirstInside; });
   if (!isNear)
   {
     return false;
   }
-  this->Shape->Spheres.Find(position, this->Encroached);
-  return !this->Encroached.IsEmpty() || this->TouchesOpenFacet();
+  this->Shape->Spheres.Find(position, scratch);
+  return !scratch.IsEmpty() || this->TouchesOpenFacet(cavity);
 }
 
 /**
@@ -455,16 +455,16 @@ bool RefinedMesh::EncroachesOnBoundary(const Vec3& position)
  * of such a facet need not be empty. So a point on this side may be in conflict with points beyond,
  * which the mesh does not know.
  */
-bool RefinedMesh::TouchesOpenFacet() const
+bool RefinedMesh::TouchesOpenFacet(const PointCavity& cavity) const
 {
-  for (std::size_t i = 0; i < this->FoundCavity.Facets.size(); ++i)
+  for (std::size_t i = 0; i < cavity.Facets.size(); ++i)
   {
-    if (this->FoundCavity.Outer[i] != NoId)
+    if (cavity.Outer[i] != NoId)
     {
       continue;
     }
-    if (!IsTriangle(this->Boundary.Surface.Triangles, this->Shape->PointTriangles,
-          this->FoundCavity.Facets[i]))
+    if (!IsTriangle(
+          this->Boundary.Surface.Triangles, this->Shape->PointTriangles, cavity.Facets[i]))
     {
       return true;
     }

@@ -181,6 +181,11 @@ public:
   /** The tetrahedra themselves. Whoever changes them calls NoteChanges(), or undoes the change. */
   const DynamicTetrahedralization& GetTetrahedra() const { return this->Mesh; }
   DynamicTetrahedralization& GetTetrahedra() { return this->Mesh; }
+  /**
+   * While the mesh is frozen, it must not be changed, and several threads may call functions that
+   * are const.
+   */
+  void Freeze(bool isFrozen) const { this->Facts.Freeze(isFrozen); }
   void NoteChanges();
   /** Notes that surface points have been moved in the mesh only: the surface will follow. */
   void NoteSurfaceMove();
@@ -189,26 +194,22 @@ public:
   SliverMemory& GetMemory() { return this->Memory; }
 
   /**
-   * Finds the cavity of a point, see DynamicTetrahedralization::FindCavity(). The functions below
-   * refer to this cavity.
+   * Finds the cavity of a point, see CavitySearch::FindCavity(). Insert() and Restore() fill it.
    * @param number id of the point; NoId: that of the next new point
    */
   bool FindCavity(const Vec3& position, Id first, Id number = NoId)
   {
-    return this->FindCavity(position, first, number, [](const TriangleIds&) { return true; });
+    return this->Mesh.FindCavity(
+      position, number == NoId ? this->Mesh.GetNumberOfPoints() : number, first, this->FoundCavity);
   }
-  template <typename Accepts>
-  bool FindCavity(const Vec3& position, Id first, Id number, Accepts&& accepts)
-  {
-    return this->Mesh.FindCavity(position, number == NoId ? this->Mesh.GetNumberOfPoints() : number,
-      first, this->FoundCavity, accepts);
-  }
-  const DynamicTetrahedralization::PointCavity& GetCavity() const { return this->FoundCavity; }
+  const PointCavity& GetCavity() const { return this->FoundCavity; }
   /** Number of tetrahedra that would break a limit if the cavity were filled from the position. */
-  Id CountBroken(const Vec3& position) const;
-  /** Whether the position keeps the distances that its neighbors' sizes ask for. */
-  bool IsClear(const Vec3& position) const;
-  bool EncroachesOnBoundary(const Vec3& position);
+  Id CountBroken(const PointCavity& cavity, const Vec3& position) const;
+  /** Whether the position keeps the distances that the sizes of points at the cavity ask for. */
+  bool IsClear(const PointCavity& cavity, const Vec3& position) const;
+  /** @param scratch is overwritten */
+  bool EncroachesOnBoundary(
+    const PointCavity& cavity, const Vec3& position, BoundarySpheres::Encroached& scratch) const;
   void Insert(const Vec3& position);
   /** Inserts a free point again, which was removed, at another position. */
   void Restore(Id point, const Vec3& position);
@@ -221,7 +222,7 @@ private:
   std::vector<Id> TakeMovedSurfacePoints();
   void FollowBoundary(const std::vector<Id>& moved, const std::vector<Id>& sourceTriangles);
   void BoundSizes(const std::vector<Id>& tetrahedra);
-  bool TouchesOpenFacet() const;
+  bool TouchesOpenFacet(const PointCavity& cavity) const;
 
   DynamicTetrahedralization Mesh;
   const RefinedBoundary Boundary;
@@ -251,7 +252,7 @@ private:
   mutable double FlatterTarget = 0.0;
   mutable TetrahedronWatch Faulty;
   mutable bool IsFaultyShape = false;
-  DynamicTetrahedralization::PointCavity FoundCavity;
+  PointCavity FoundCavity;
   /** Work space. */
   BoundarySpheres::Encroached Encroached;
 };

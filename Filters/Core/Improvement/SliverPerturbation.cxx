@@ -1,323 +1,207 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/SliverPerturbation.h"
 
+#include "Core/Basics/Threads.h"
 #include "Core/Geometry/Measures.h"
+#include "Core/Improvement/SliverChanges.h"
 #include "Core/Improvement/SliverList.h"
-#include "Core/Search/PlaceSearch.h"
 
 #include <algorithm>
-#include <limits>
-#include <numeric>
+#include <atomic>
+#include <cstdint>
+#include <utility>
 
 namespace cdm
 {
 namespace
 {
 constexpr std::size_t ReportInterval = 16;
-/** First step of the search for a new point's position, in radii of the sphere that it destroys. */
-constexpr double FirstInsertion = 0.3;
 /**
- * How many steps of a search for a position may find nothing at a sharp angle. Most searches there
- * are in vain; with the other steps they take twice as long, and find little more.
+ * Slivers that threads look at before the first of them is mended: one for so many tetrahedra. Where
+ * they are closer, more of what was found is out of date when its turn comes.
  */
-constexpr int PatienceAtSharpAngles = 2;
+constexpr std::size_t TetrahedraPerSliver = 4000;
+constexpr std::size_t FewestAhead = 8;
+constexpr std::size_t MostAhead = 256;
 
-/** Which tetrahedra the changes are to improve, and by which means. */
-struct Aim
-{
-  /** Degrees; larger angles are as good. */
-  double Target;
-  /** True: only tetrahedra across sharp angles are improved; false: only the others. */
-  bool IsSharp = false;
-  SliverMeans Means = SliverMeans::Moves;
-};
-
-/** Changes points inside, one sliver after the other. */
+/**
+ * Mends slivers of a list, one after the other. Threads look ahead for the changes of the next ones.
+ * At its turn, a change is made if the tetrahedra that the search has looked at are still there, and
+ * looked for again if not. So the mesh is the same for any number of threads.
+ */
 class Perturbation
 {
 public:
-  Perturbation(const Aim& aim, RefinedMesh& mesh)
-    : Goal(aim), Mesh(mesh), Tetrahedra(mesh.GetTetrahedra())
-  {
-  }
+  Perturbation(const SliverAim& aim, int numberOfThreads, RefinedMesh& mesh);
 
+  /** Begins with a list; slivers at or above the angle are not worth an insertion. */
+  void Start(std::vector<Sliver> slivers, double insertedBelow);
+  std::size_t GetNumberOfSlivers() const { return this->Slivers.size(); }
+  const Sliver& GetSliver(std::size_t i) const { return this->Slivers[i]; }
   /** False if nothing helps, or is known not to; then nothing has changed. */
-  bool Mend(const Sliver& sliver, SliverAttempt last);
+  bool Mend(std::size_t i);
 
 private:
-  /** The smallest angles of tetrahedra that a change replaces, or makes. */
-  struct SmallestAngles
+  /** What a thread has found for a sliver. */
+  struct Foreseen
   {
-    /** The smallest angle of tetrahedra that the change is to improve. */
-    double Aimed = 180.0;
-    double Other = 180.0;
+    bool IsKnown = false;
+    SliverChange Change;
+    std::vector<Id> Visited;
   };
-  void Include(Id tetrahedron, SmallestAngles& smallest) const;
-  double GetFloor(const SmallestAngles& before) const;
-  bool IsAimed(const TriangleIds& facet, double angle) const;
-  bool FindCavity(const Vec3& position, Id first, Id number, double floor, double required);
-  double RateCavity(double floor, double required) const;
-  bool Move(Id point, int patience);
-  bool InsertBest(Id tetrahedron, int patience);
+  SliverAttempt GetLast(const Sliver& sliver) const
+  {
+    return sliver.Angle < this->InsertedBelow ? SliverAttempt::Insertion : SliverAttempt::Move;
+  }
+  bool IsHopeless(const Sliver& sliver) const;
+  void LookAhead(std::size_t first);
+  bool IsTrue(const Foreseen& foreseen) const;
+  SliverChange Find(std::size_t i);
+  void Make(const SliverChange& change, Id tetrahedron);
 
-  const Aim Goal;
   RefinedMesh& Mesh;
-  DynamicTetrahedralization& Tetrahedra;
-  /** Smallest angles of the tetrahedra that would fill the mesh's cavity, facet by facet. */
-  std::vector<double> Angles;
+  /** One for each thread. */
+  std::vector<SliverChanges> Changes;
+  std::vector<Sliver> Slivers;
+  double InsertedBelow = 0.0;
+  /** For the slivers from First on, and the stamp of the first tetrahedron made since then. */
+  std::vector<Foreseen> Ahead;
+  std::size_t First = 0;
+  std::int64_t NextStamp = 0;
 };
 
-/** Angles over the target always count. */
-void Perturbation::Include(Id tetrahedron, SmallestAngles& smallest) const
+Perturbation::Perturbation(const SliverAim& aim, int numberOfThreads, RefinedMesh& mesh)
+  : Mesh(mesh)
 {
-  const double angle = this->Mesh.GetAngle(tetrahedron);
-  const bool isAimed = angle >= this->Goal.Target ||
-    this->Mesh.IsAcrossSharp(tetrahedron, SharpAngleUse::Sliver) == this->Goal.IsSharp;
-  double& one = isAimed ? smallest.Aimed : smallest.Other;
-  one = std::min(one, angle);
+  for (int i = 0; i < numberOfThreads; ++i)
+  {
+    this->Changes.emplace_back(aim, mesh, numberOfThreads > 1);
+  }
 }
 
-/** The angle that tetrahedra which the change is not meant to improve have to keep. */
-double Perturbation::GetFloor(const SmallestAngles& before) const
+void Perturbation::Start(std::vector<Sliver> slivers, double insertedBelow)
 {
-  return this->Goal.IsSharp ? std::min(before.Other, this->Goal.Target)
-                            : std::min(before.Aimed, before.Other);
+  this->Slivers = std::move(slivers);
+  this->InsertedBelow = insertedBelow;
+  this->Ahead.clear();
+  this->First = 0;
 }
 
-/** Whether the change is to improve the tetrahedron of a facet of the cavity and the new point. */
-bool Perturbation::IsAimed(const TriangleIds& facet, double angle) const
+bool Perturbation::IsHopeless(const Sliver& sliver) const
 {
-  constexpr Id inside = std::numeric_limits<Id>::max();
-  return angle >= this->Goal.Target ||
-    this->Mesh.GetShape().Sharp.IsAcross(
-      { facet[0], facet[1], facet[2], inside }, SharpAngleUse::Sliver) == this->Goal.IsSharp;
+  const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
+  return this->Mesh.GetMemory().IsHopeless(this->Mesh.GetNames(ids), this->GetLast(sliver));
 }
 
-/**
- * Finds the mesh's cavity. False as soon as a tetrahedron that would fill it is too flat: most
- * positions fail by one of the first, and the search is what rating them takes long for.
- * @param floor the angle that tetrahedra which are not aimed at have to keep; 0: not known yet
- * @param required the angle that the others have to surpass
- */
-bool Perturbation::FindCavity(
-  const Vec3& position, Id first, Id number, double floor, double required)
+void Perturbation::LookAhead(std::size_t first)
 {
-  this->Angles.clear();
-  return this->Mesh.FindCavity(position, first, number,
-    [&](const TriangleIds& facet)
+  const std::size_t most = std::clamp(
+    this->Mesh.GetMesh().Tetrahedra.size() / TetrahedraPerSliver, FewestAhead, MostAhead);
+  this->First = first;
+  this->NextStamp = this->Mesh.GetTetrahedra().GetNextStamp();
+  this->Ahead.clear();
+  std::vector<std::size_t> open;
+  for (std::size_t i = first; i < this->Slivers.size() && open.size() < most; ++i)
+  {
+    this->Ahead.emplace_back();
+    if (!IsGone(this->Slivers[i], this->Mesh) && !this->IsHopeless(this->Slivers[i]))
     {
-      const double angle = GetSmallestDihedralAngle(this->Tetrahedra.GetPoint(facet[0]),
-        this->Tetrahedra.GetPoint(facet[1]), this->Tetrahedra.GetPoint(facet[2]), position);
-      this->Angles.push_back(angle);
-      return angle > required || (angle >= floor && !this->IsAimed(facet, angle));
+      open.push_back(i);
+    }
+  }
+  const std::size_t threads = std::min(this->Changes.size(), open.size());
+  if (threads < 2)
+  {
+    return;
+  }
+  std::atomic<std::size_t> next{ 0 };
+  this->Mesh.Freeze(true);
+  RunOnThreads(static_cast<int>(threads),
+    [&](int thread)
+    {
+      SliverChanges& changes = this->Changes[static_cast<std::size_t>(thread)];
+      for (std::size_t k = next++; k < open.size(); k = next++)
+      {
+        const Sliver& sliver = this->Slivers[open[k]];
+        const SliverChange change = changes.Find(sliver.Tetrahedron, this->GetLast(sliver));
+        this->Ahead[open[k] - first] = { true, change, changes.GetVisited() };
+      }
     });
+  this->Mesh.Freeze(false);
 }
 
-/**
- * Smallest angle among the tetrahedra aimed at if the cavity that was found were filled. 0 if
- * another tetrahedron falls below the floor, or if the angle is not larger than required.
- */
-double Perturbation::RateCavity(double floor, double required) const
+/** Whether the search would find the same now. */
+bool Perturbation::IsTrue(const Foreseen& foreseen) const
 {
-  const std::vector<TriangleIds>& facets = this->Mesh.GetCavity().Facets;
-  double smallest = 180.0;
-  for (std::size_t i = 0; i < facets.size(); ++i)
-  {
-    const double angle = this->Angles[i];
-    const bool isAimed = this->IsAimed(facets[i], angle);
-    if (isAimed ? angle <= required : angle < floor)
-    {
-      return 0.0;
-    }
-    smallest = isAimed ? std::min(smallest, angle) : smallest;
-  }
-  return smallest;
+  const DynamicTetrahedralization& mesh = this->Mesh.GetTetrahedra();
+  return foreseen.IsKnown &&
+    !(foreseen.Change.What == SliverChange::Kind::Insertion && this->Mesh.IsFull()) &&
+    std::all_of(foreseen.Visited.begin(), foreseen.Visited.end(),
+      [&](Id t) { return mesh.GetStamp(t) < this->NextStamp; });
 }
 
-bool Perturbation::Move(Id point, int patience)
+SliverChange Perturbation::Find(std::size_t i)
 {
-  std::vector<Id> star;
-  if (!this->Tetrahedra.FindStar(point, star))
+  if (this->Changes.size() > 1)
   {
-    return false;
-  }
-  const Vec3 old = this->Tetrahedra.GetPoint(point);
-  Id broken = 0;
-  SmallestAngles before;
-  double nearest = std::numeric_limits<double>::infinity();
-  Vec3 sum;
-  double count = 0.0;
-  for (Id t : star)
-  {
-    broken += this->Mesh.BreaksLimit(t);
-    this->Include(t, before);
-    for (Id id : this->Mesh.GetMesh().Tetrahedra[t])
+    if (i >= this->First + this->Ahead.size())
     {
-      if (id != point)
-      {
-        const Vec3& neighbor = this->Tetrahedra.GetPoint(id);
-        nearest = std::min(nearest, Distance(old, neighbor));
-        sum = sum + neighbor;
-        count += 1.0;
-      }
+      this->LookAhead(i);
+    }
+    const Foreseen& foreseen = this->Ahead[i - this->First];
+    if (this->IsTrue(foreseen))
+    {
+      return foreseen.Change;
     }
   }
-  if (!this->Tetrahedra.Remove(point))
-  {
-    return false;
-  }
-  const std::vector<Id> filled = this->Tetrahedra.GetChanged();
-  const double floor = this->GetFloor(before);
-  // Angles of the tetrahedra aimed at; the others are either good enough or not.
-  std::vector<double> angles;
-  std::vector<char> isBroken;
-  for (Id t : filled)
-  {
-    SmallestAngles after;
-    this->Include(t, after);
-    angles.push_back(after.Other < floor ? 0.0 : after.Aimed);
-    isBroken.push_back(this->Mesh.BreaksLimit(t));
-  }
-  // Tetrahedra that stay as they are spoil most positions, the flattest first. One test of each
-  // shows that; the search would need a walk and a cavity.
-  std::vector<std::size_t> flattest(filled.size());
-  std::iota(flattest.begin(), flattest.end(), std::size_t(0));
-  std::sort(flattest.begin(), flattest.end(),
-    [&angles](std::size_t a, std::size_t b) { return angles[a] < angles[b]; });
-  const auto leavesFlatter = [&](const Vec3& position, double required)
-  {
-    for (std::size_t i : flattest)
-    {
-      if (angles[i] > required)
-      {
-        return false;
-      }
-      if (!this->Tetrahedra.IsInConflict(filled[i], position, point))
-      {
-        return true;
-      }
-    }
-    return false;
-  };
-  const auto locate = [&](const Vec3& position)
-  { return this->Tetrahedra.Locate(position, filled.front()); };
-  const auto findCavity = [&](const Vec3& position, double required)
-  {
-    const Id first = locate(position);
-    return first != NoId && this->FindCavity(position, first, point, floor, required);
-  };
-  const auto rate = [&](const Vec3& position, double required)
-  {
-    if (leavesFlatter(position, required) || !findCavity(position, required))
-    {
-      return 0.0;
-    }
-    // Tetrahedra that fill the cavity of the removed point, and stay, count as well.
-    const std::vector<Id>& replaced = this->Mesh.GetCavity().Tetrahedra;
-    Id brokenThere = 0;
-    for (std::size_t i = 0; i < filled.size(); ++i)
-    {
-      if ((angles[i] <= required || isBroken[i]) &&
-        std::find(replaced.begin(), replaced.end(), filled[i]) == replaced.end())
-      {
-        if (angles[i] <= required)
-        {
-          return 0.0;
-        }
-        ++brokenThere;
-      }
-    }
-    const double angle = this->RateCavity(floor, required);
-    return angle > required && this->Mesh.IsClear(position) &&
-        (broken > 0 || brokenThere + this->Mesh.CountBroken(position) == 0) &&
-        !this->Mesh.EncroachesOnBoundary(position)
-      ? angle
-      : 0.0;
-  };
-  Place best{ old, before.Aimed + SmallestGain, false };
-  SearchMove(old, (1.0 / count) * sum, nearest, this->Goal.Target, rate, best, patience);
+  const Sliver& sliver = this->Slivers[i];
+  return this->Changes.front().Find(sliver.Tetrahedron, this->GetLast(sliver));
+}
 
-  if (this->Goal.Means != SliverMeans::Moves &&
-    std::count(isBroken.begin(), isBroken.end(), 1) <= broken &&
-    *std::min_element(angles.begin(), angles.end()) > best.Angle)
+void Perturbation::Make(const SliverChange& change, Id tetrahedron)
+{
+  DynamicTetrahedralization& mesh = this->Mesh.GetTetrahedra();
+  if (change.What == SliverChange::Kind::Insertion)
+  {
+    this->Mesh.FindCavity(change.Position, tetrahedron);
+    this->Mesh.Insert(change.Position);
+    return;
+  }
+  mesh.Remove(change.Point, change.Star, change.Cells);
+  if (change.What == SliverChange::Kind::Removal)
   {
     this->Mesh.NoteRemoval();
-    return true;
+    return;
   }
-  if (!best.IsFound)
-  {
-    this->Tetrahedra.UndoRemove();
-    return false;
-  }
-  this->Mesh.FindCavity(best.Position, locate(best.Position), point);
-  this->Mesh.Restore(point, best.Position);
-  return true;
+  const Id first = mesh.Locate(change.Position, mesh.GetChanged().front());
+  this->Mesh.FindCavity(change.Position, first, change.Point);
+  this->Mesh.Restore(change.Point, change.Position);
 }
 
-bool Perturbation::InsertBest(Id tetrahedron, int patience)
+bool Perturbation::Mend(std::size_t i)
 {
-  const auto [a, b, c, d] = this->Tetrahedra.GetCorners(tetrahedron);
-  const Vec3 center = GetCircumcenter(a, b, c, d);
-  if (!IsFinite(center) || this->Mesh.IsFull())
+  const Sliver& sliver = this->Slivers[i];
+  if (this->IsHopeless(sliver))
   {
     return false;
   }
-  const auto rate = [&](const Vec3& position, double required)
+  const SliverChange change = this->Find(i);
+  if (change.What == SliverChange::Kind::None)
   {
-    if (!this->FindCavity(position, tetrahedron, NoId, 0.0, required))
-    {
-      return 0.0;
-    }
-    SmallestAngles before;
-    for (Id t : this->Mesh.GetCavity().Tetrahedra)
-    {
-      this->Include(t, before);
-    }
-    const double angle = this->RateCavity(this->GetFloor(before), required);
-    return angle > required && this->Mesh.IsClear(position) &&
-        this->Mesh.CountBroken(position) == 0 && !this->Mesh.EncroachesOnBoundary(position)
-      ? angle
-      : 0.0;
-  };
-  Place best{ center, this->Mesh.GetAngle(tetrahedron) + SmallestGain, false };
-  TryPlace(center, rate, best);
-  SearchPlace(center, FirstInsertion * Distance(center, a), MakeCubeDirections(), this->Goal.Target,
-    rate, best, patience);
-  if (!best.IsFound || !this->Mesh.FindCavity(best.Position, tetrahedron))
-  {
+    const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
+    this->Mesh.GetMemory().SetHopeless(this->Mesh.GetNames(ids), this->GetLast(sliver));
     return false;
   }
-  this->Mesh.Insert(best.Position);
+  this->Make(change, sliver.Tetrahedron);
   return true;
-}
-
-bool Perturbation::Mend(const Sliver& sliver, SliverAttempt last)
-{
-  const TetrahedronIds ids = this->Mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
-  const TetrahedronIds names = this->Mesh.GetNames(ids);
-  if (this->Mesh.GetMemory().IsHopeless(names, last))
-  {
-    return false;
-  }
-  const int patience = this->Mesh.IsAcrossSharp(sliver.Tetrahedron, SharpAngleUse::Shape)
-    ? PatienceAtSharpAngles
-    : MaximumSearchSteps;
-  if (std::any_of(ids.begin(), ids.end(),
-        [&](Id id) { return this->Mesh.IsFree(id) && this->Move(id, patience); }) ||
-    (last == SliverAttempt::Insertion && this->InsertBest(sliver.Tetrahedron, patience)))
-  {
-    return true;
-  }
-  this->Mesh.GetMemory().SetHopeless(names, last);
-  return false;
 }
 } // namespace
 
 Status PerturbSlivers(
   double target, SliverMeans means, const ExecutionContext& context, RefinedMesh& mesh)
 {
-  const Aim aim{ MoveRatio * target, false, means };
-  Perturbation perturbation(aim, mesh);
+  const SliverAim aim{ MoveRatio * target, false, means != SliverMeans::Moves };
+  Perturbation perturbation(aim, context.GetNumberOfThreads(), mesh);
   const IdLists& pointTriangles = mesh.GetShape().PointTriangles;
   BoundaryRequests& requests = mesh.GetRequests();
   // First moves, then new points as well; when neither helps any more, requests.
@@ -326,25 +210,25 @@ Status PerturbSlivers(
   std::vector<TetrahedronIds> unmet;
   for (int pass = 0; pass < MaximumSliverPasses; ++pass)
   {
-    const std::vector<Sliver> slivers = FindSlivers(aim.Target, aim.IsSharp, mesh);
+    perturbation.Start(FindSlivers(aim.Target, aim.IsSharp, mesh), mayInsert ? target : 0.0);
+    const std::size_t count = perturbation.GetNumberOfSlivers();
     bool isMended = false;
-    for (std::size_t i = 0; i < slivers.size(); ++i)
+    for (std::size_t i = 0; i < count; ++i)
     {
       if (i % ReportInterval == 0 &&
-        !context.Continue((pass + static_cast<double>(i) / slivers.size()) / MaximumSliverPasses,
+        !context.Continue((pass + static_cast<double>(i) / count) / MaximumSliverPasses,
           "Moving points of slivers"))
       {
         return Status::Aborted();
       }
-      const Sliver& sliver = slivers[i];
+      const Sliver& sliver = perturbation.GetSliver(i);
       if (IsGone(sliver, mesh))
       {
         continue;
       }
       const TetrahedronIds ids = mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
       const bool isBad = sliver.Angle < target;
-      if (perturbation.Mend(
-            sliver, isBad && mayInsert ? SliverAttempt::Insertion : SliverAttempt::Move))
+      if (perturbation.Mend(i))
       {
         isMended = isMended || isBad;
         continue;
@@ -361,7 +245,7 @@ Status PerturbSlivers(
       }
     }
     const bool isMoving = means == SliverMeans::Moves;
-    if (isLast || slivers.empty() || (isMoving && !isMended))
+    if (isLast || count == 0 || (isMoving && !isMended))
     {
       break;
     }
@@ -388,19 +272,20 @@ Status PerturbSlivers(
 
 Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh& mesh)
 {
-  const Aim aim{ MoveRatio * target, true };
-  Perturbation perturbation(aim, mesh);
-  const std::vector<Sliver> slivers = FindSlivers(aim.Target, aim.IsSharp, mesh);
-  for (std::size_t i = 0; i < slivers.size(); ++i)
+  const SliverAim aim{ MoveRatio * target, true };
+  Perturbation perturbation(aim, context.GetNumberOfThreads(), mesh);
+  perturbation.Start(FindSlivers(aim.Target, aim.IsSharp, mesh), 0.0);
+  const std::size_t count = perturbation.GetNumberOfSlivers();
+  for (std::size_t i = 0; i < count; ++i)
   {
     if (i % ReportInterval == 0 &&
-      !context.Continue(static_cast<double>(i) / slivers.size(), "Moving points at sharp angles"))
+      !context.Continue(static_cast<double>(i) / count, "Moving points at sharp angles"))
     {
       return Status::Aborted();
     }
-    if (!IsGone(slivers[i], mesh))
+    if (!IsGone(perturbation.GetSliver(i), mesh))
     {
-      perturbation.Mend(slivers[i], SliverAttempt::Move);
+      perturbation.Mend(i);
     }
   }
   return Status();

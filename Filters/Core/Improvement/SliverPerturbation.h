@@ -3,17 +3,16 @@
  * @file SliverPerturbation.h
  * @brief Moves, inserts and removes points to make the smallest dihedral angles larger.
  *
- * Method: slivers are taken one by one, the worst first. A free point of the sliver is removed from
- * the mesh and inserted again at the best of some hundred positions around (PlaceSearch.h), or left
- * out if that is better. A position is rated by the smallest dihedral angle of all tetrahedra that
- * it would make, before the mesh is changed. If no move helps, a new point is tried in the same
- * way. At last a split of the boundary is requested. Each change increases the smallest angle of
- * the tetrahedra that it replaces, and breaks no limit that all of them kept. Tetrahedra across
- * input angles that are sharp for slivers (SharpAngles.h) do not count as such, but must not get
- * worse; PerturbSharp() treats them last.
+ * Method: slivers are taken one by one, the worst first. A free point of the sliver is moved, or
+ * left out if that is better; if that does not help, a new point is inserted (SliverChanges.h). At
+ * last a split of the boundary is requested. Each change increases the smallest angle of the
+ * tetrahedra that it replaces, and breaks no limit that all of them kept. Tetrahedra across input
+ * angles that are sharp for slivers (SharpAngles.h) do not count as such, but must not get worse;
+ * PerturbSharp() treats them last.
  *
- * Reference: J. Tournois, R. Srinivasan, P. Alliez, "Perturbing slivers in 3D Delaunay meshes",
- * 2009, doi:10.1007/978-3-642-04319-2_10.
+ * Threads look ahead: they search the changes of the next slivers at the same time. A change is made
+ * in its turn, if no tetrahedron that its search has seen was replaced meanwhile; otherwise it is
+ * searched again. So the mesh does not depend on the number of threads.
  */
 #ifndef cdmSliverPerturbation_h
 #define cdmSliverPerturbation_h

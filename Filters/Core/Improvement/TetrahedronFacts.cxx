@@ -5,17 +5,28 @@
 
 namespace cdm
 {
-TetrahedronFacts::Known& TetrahedronFacts::Get(Id tetrahedron)
+/** What is known so far; a copy of it, in the scratch, while the cache is frozen. */
+TetrahedronFacts::Known& TetrahedronFacts::Get(Id tetrahedron, Known& scratch)
 {
-  if (static_cast<std::size_t>(tetrahedron) >= this->Facts.size())
+  const std::int64_t stamp = this->Mesh.GetStamp(tetrahedron);
+  const bool isIn = static_cast<std::size_t>(tetrahedron) < this->Facts.size();
+  if (this->IsFrozen)
+  {
+    if (isIn && this->Facts[tetrahedron].Stamp == stamp)
+    {
+      scratch = this->Facts[tetrahedron];
+    }
+    return scratch;
+  }
+  if (!isIn)
   {
     this->Facts.resize(this->Mesh.GetMesh().Tetrahedra.size());
   }
   Known& known = this->Facts[tetrahedron];
-  if (known.Stamp != this->Mesh.GetStamp(tetrahedron))
+  if (known.Stamp != stamp)
   {
     known = {};
-    known.Stamp = this->Mesh.GetStamp(tetrahedron);
+    known.Stamp = stamp;
   }
   return known;
 }
@@ -33,7 +44,8 @@ void TetrahedronFacts::Forget(std::int64_t first)
 
 double TetrahedronFacts::GetAngle(Id tetrahedron)
 {
-  Known& known = this->Get(tetrahedron);
+  Known scratch;
+  Known& known = this->Get(tetrahedron, scratch);
   if (known.Angle < 0.0)
   {
     const auto [a, b, c, d] = this->Mesh.GetCorners(tetrahedron);
@@ -44,7 +56,8 @@ double TetrahedronFacts::GetAngle(Id tetrahedron)
 
 TetrahedronFault TetrahedronFacts::GetFault(Id tetrahedron, double& severity)
 {
-  Known& known = this->Get(tetrahedron);
+  Known scratch;
+  Known& known = this->Get(tetrahedron, scratch);
   if (!known.Fault)
   {
     Vec3 target;
@@ -57,7 +70,8 @@ TetrahedronFault TetrahedronFacts::GetFault(Id tetrahedron, double& severity)
 
 bool TetrahedronFacts::IsInLayer(Id tetrahedron, const BoundaryShape& shape)
 {
-  Known& known = this->Get(tetrahedron);
+  Known scratch;
+  Known& known = this->Get(tetrahedron, scratch);
   if (!known.IsInLayer)
   {
     const TetMesh& mesh = this->Mesh.GetMesh();
@@ -69,7 +83,8 @@ bool TetrahedronFacts::IsInLayer(Id tetrahedron, const BoundaryShape& shape)
 
 bool TetrahedronFacts::IsAcrossSharp(Id tetrahedron, const BoundaryShape& shape, SharpAngleUse use)
 {
-  Known& known = this->Get(tetrahedron);
+  Known scratch;
+  Known& known = this->Get(tetrahedron, scratch);
   std::optional<bool>& isAcross =
     use == SharpAngleUse::Sliver ? known.IsSharpSliver : known.IsAcrossSharp;
   if (!isAcross)

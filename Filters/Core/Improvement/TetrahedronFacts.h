@@ -41,6 +41,12 @@ public:
   /** Forgets facts about tetrahedra with this stamp or a later one. */
   void Forget(std::int64_t first);
 
+  /**
+   * While it is frozen, the cache keeps nothing that it does not have: several threads may ask, as
+   * long as the mesh does not change.
+   */
+  void Freeze(bool isFrozen) { this->IsFrozen = isFrozen; }
+
 private:
   struct Known
   {
@@ -53,11 +59,12 @@ private:
     std::optional<bool> IsAcrossSharp;
     std::optional<bool> IsSharpSliver;
   };
-  Known& Get(Id tetrahedron);
+  Known& Get(Id tetrahedron, Known& scratch);
 
   const DynamicTetrahedralization& Mesh;
   const TetrahedronLimits& Limits;
   std::vector<Known> Facts;
+  bool IsFrozen = false;
 };
 } // namespace cdm
 

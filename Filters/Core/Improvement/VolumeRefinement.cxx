@@ -95,7 +95,7 @@ Status RefineByLimits(bool isShapeTested, const ExecutionContext& context, Refin
     }
     const bool isSizeKept = task.Fault == TetrahedronFault::Shape;
     if (!mesh.RequestEncroached(target, isSizeKept) && mesh.FindCavity(target, task.Tetrahedron) &&
-      (!isSizeKept || mesh.IsClear(target)))
+      (!isSizeKept || mesh.IsClear(mesh.GetCavity(), target)))
     {
       mesh.Insert(target);
       for (Id t : tetrahedra.GetChanged())

@@ -227,9 +227,8 @@ void BallIndex::Find(const Cell& cell, const Vec3& point, std::vector<Id>& ids)
   }
 }
 
-void BallIndex::Find(const Vec3& point, std::vector<Id>& ids)
+void BallIndex::Settle()
 {
-  ids.clear();
   if (this->Slots.empty())
   {
     this->Resize(1024);
@@ -239,6 +238,11 @@ void BallIndex::Find(const Vec3& point, std::vector<Id>& ids)
     }
     this->Waiting = {};
   }
+}
+
+void BallIndex::FindSettled(const Vec3& point, std::vector<Id>& ids) const
+{
+  ids.clear();
   const auto visit = [this, &point, &ids](const CellPlace& place)
   {
     const Id cell = this->Slots[this->FindSlot(place)].Cell;

@@ -34,7 +34,15 @@ public:
   void Remove(Id id);
 
   /** Ids of the balls that hold the point, or almost (to 1e-4 of the radius), ascending. */
-  void Find(const Vec3& point, std::vector<Id>& ids);
+  void Find(const Vec3& point, std::vector<Id>& ids)
+  {
+    this->Settle();
+    this->FindSettled(point, ids);
+  }
+  /** Puts balls into their cells that wait for the first query. */
+  void Settle();
+  /** The same as Find(), for several threads at once: all balls have to be settled. */
+  void FindSettled(const Vec3& point, std::vector<Id>& ids) const;
 
 private:
   struct Ball

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Improvement/SliverChanges.h"
+
+#include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/Measures.h"
+#include "Core/Search/PlaceSearch.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace cdm
+{
+namespace
+{
+/** First step of the search for a new point's position, in radii of the sphere that it destroys. */
+constexpr double FirstInsertion = 0.3;
+/**
+ * How many steps of a search for a position may find nothing at a sharp angle. Most searches there
+ * are in vain; with the other steps they take twice as long, and find little more.
+ */
+constexpr int PatienceAtSharpAngles = 2;
+} // namespace
+
+/**
+ * Includes an angle in what the change is to improve, or in the rest. Angles over the target always
+ * count.
+ * @param isSharp () whether the tetrahedron is across a sharp angle
+ */
+template <typename IsSharp>
+void SliverChanges::Include(double angle, IsSharp&& isSharp, SmallestAngles& smallest) const
+{
+  double& one =
+    angle >= this->Goal.Target || isSharp() == this->Goal.IsSharp ? smallest.Aimed : smallest.Other;
+  one = std::min(one, angle);
+}
+
+void SliverChanges::IncludeTetrahedron(Id tetrahedron, SmallestAngles& smallest) const
+{
+  this->Include(
+    this->Mesh.GetAngle(tetrahedron),
+    [&] { return this->Mesh.IsAcrossSharp(tetrahedron, SharpAngleUse::Sliver); }, smallest);
+}
+
+/** The angle that tetrahedra which the change is not meant to improve have to keep. */
+double SliverChanges::GetFloor(const SmallestAngles& before) const
+{
+  return this->Goal.IsSharp ? std::min(before.Other, this->Goal.Target)
+                            : std::min(before.Aimed, before.Other);
+}
+
+/** Whether the change is to improve the tetrahedron of a facet of the cavity and the new point. */
+bool SliverChanges::IsAimed(const TriangleIds& facet, double angle) const
+{
+  constexpr Id inside = std::numeric_limits<Id>::max();
+  return angle >= this->Goal.Target ||
+    this->Mesh.GetShape().Sharp.IsAcross(
+      { facet[0], facet[1], facet[2], inside }, SharpAngleUse::Sliver) == this->Goal.IsSharp;
+}
+
+/**
+ * Finds a cavity. False as soon as a tetrahedron that would fill it is too flat: most positions
+ * fail by one of the first, and the search is what rating them takes long for.
+ * @param floor the angle that tetrahedra which are not aimed at have to keep; 0: not known yet
+ * @param required the angle that the others have to surpass
+ */
+bool SliverChanges::FindCavity(
+  const Vec3& position, Id first, Id number, double floor, double required)
+{
+  const DynamicTetrahedralization& mesh = this->Mesh.GetTetrahedra();
+  this->Angles.clear();
+  return this->Search.FindCavity(position, number, first, this->Found,
+    [&](const TriangleIds& facet)
+    {
+      const double angle = GetSmallestDihedralAngle(
+        mesh.GetPoint(facet[0]), mesh.GetPoint(facet[1]), mesh.GetPoint(facet[2]), position);
+      this->Angles.push_back(angle);
+      return angle > required || (angle >= floor && !this->IsAimed(facet, angle));
+    });
+}
+
+/**
+ * Smallest angle among the tetrahedra aimed at if the cavity that was found were filled. 0 if
+ * another tetrahedron falls below the floor, or if the angle is not larger than required.
+ */
+double SliverChanges::RateCavity(double floor, double required) const
+{
+  double smallest = 180.0;
+  for (std::size_t i = 0; i < this->Found.Facets.size(); ++i)
+  {
+    const double angle = this->Angles[i];
+    const bool isAimed = this->IsAimed(this->Found.Facets[i], angle);
+    if (isAimed ? angle <= required : angle < floor)
+    {
+      return 0.0;
+    }
+    smallest = isAimed ? std::min(smallest, angle) : smallest;
+  }
+  return smallest;
+}
+
+void SliverChanges::MeasureStar(Id point)
+{
+  const DynamicTetrahedralization& mesh = this->Mesh.GetTetrahedra();
+  const Vec3& position = mesh.GetPoint(point);
+  this->Before = {};
+  this->Before.Nearest = std::numeric_limits<double>::infinity();
+  Vec3 sum;
+  double count = 0.0;
+  for (const Id t : this->Search.GetStar())
+  {
+    this->Before.Broken += this->Mesh.BreaksLimit(t) ? 1 : 0;
+    this->IncludeTetrahedron(t, this->Before.Angles);
+    for (const Id id : mesh.GetMesh().Tetrahedra[t])
+    {
+      if (id != point)
+      {
+        const Vec3& neighbor = mesh.GetPoint(id);
+        this->Before.Nearest = std::min(this->Before.Nearest, Distance(position, neighbor));
+        sum = sum + neighbor;
+        count += 1.0;
+      }
+    }
+  }
+  this->Before.Mean = (1.0 / count) * sum;
+}
+
+void SliverChanges::MeasureCells(double floor)
+{
+  this->Cells.Angles.clear();
+  this->Cells.IsBroken.clear();
+  for (const CavityFilling::Cell& cell : this->Search.GetCells())
+  {
+    const std::array<Vec3, 4> corners = GetCorners(this->Mesh.GetMesh().Points, cell.Ids);
+    SmallestAngles after;
+    this->Include(
+      GetSmallestDihedralAngle(corners[0], corners[1], corners[2], corners[3]),
+      [&] { return this->Mesh.GetShape().Sharp.IsAcross(cell.Ids, SharpAngleUse::Sliver); }, after);
+    this->Cells.Angles.push_back(after.Other < floor ? 0.0 : after.Aimed);
+    this->Cells.IsBroken.push_back(this->Mesh.BreaksLimit(cell.Ids, corners) ? 1 : 0);
+  }
+  this->Cells.Flattest.resize(this->Cells.Angles.size());
+  std::iota(this->Cells.Flattest.begin(), this->Cells.Flattest.end(), 0);
+  std::sort(this->Cells.Flattest.begin(), this->Cells.Flattest.end(),
+    [this](Id a, Id b) { return this->Cells.Angles[a] < this->Cells.Angles[b]; });
+}
+
+/**
+ * Whether a cell that is too flat would stay. Such cells spoil most positions, the flattest first.
+ * One test of each shows that; the search would need a walk and a cavity.
+ */
+bool SliverChanges::LeavesFlatter(Id point, const Vec3& position, double required) const
+{
+  for (const Id i : this->Cells.Flattest)
+  {
+    if (this->Cells.Angles[i] > required)
+    {
+      return false;
+    }
+    if (!this->Search.IsInConflict(this->Search.GetFirstCell() + i, position, point))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+double SliverChanges::RateMove(Id point, const Vec3& position, double floor, double required)
+{
+  if (this->LeavesFlatter(point, position, required))
+  {
+    return 0.0;
+  }
+  const Id first = this->Search.Locate(position, this->Search.GetFirstCell());
+  if (first == NoId || !this->FindCavity(position, first, point, floor, required))
+  {
+    return 0.0;
+  }
+  // Cells in place of the point that is left out, which stay, count as well.
+  Id broken = 0;
+  for (std::size_t i = 0; i < this->Cells.Angles.size(); ++i)
+  {
+    if ((this->Cells.Angles[i] <= required || this->Cells.IsBroken[i] != 0) &&
+      !Contains(this->Found.Tetrahedra, this->Search.GetFirstCell() + static_cast<Id>(i)))
+    {
+      if (this->Cells.Angles[i] <= required)
+      {
+        return 0.0;
+      }
+      ++broken;
+    }
+  }
+  const double angle = this->RateCavity(floor, required);
+  return angle > required && this->Mesh.IsClear(this->Found, position) &&
+      (this->Before.Broken > 0 || broken + this->Mesh.CountBroken(this->Found, position) == 0) &&
+      !this->Mesh.EncroachesOnBoundary(this->Found, position, this->Encroached)
+    ? angle
+    : 0.0;
+}
+
+bool SliverChanges::FindMove(Id point, int patience, SliverChange& change)
+{
+  if (!this->Search.LeaveOut(point))
+  {
+    return false;
+  }
+  this->MeasureStar(point);
+  const double floor = this->GetFloor(this->Before.Angles);
+  this->MeasureCells(floor);
+  const Vec3& old = this->Mesh.GetTetrahedra().GetPoint(point);
+  Place best{ old, this->Before.Angles.Aimed + SmallestGain, false };
+  SearchMove(
+    old, this->Before.Mean, this->Before.Nearest, this->Goal.Target,
+    [&](const Vec3& position, double required)
+    { return this->RateMove(point, position, floor, required); },
+    best, patience);
+  this->Search.TakeBack();
+  const std::vector<char>& isBroken = this->Cells.IsBroken;
+  if (this->Goal.MayRemove &&
+    std::count(isBroken.begin(), isBroken.end(), 1) <= this->Before.Broken &&
+    *std::min_element(this->Cells.Angles.begin(), this->Cells.Angles.end()) > best.Angle)
+  {
+    change.What = SliverChange::Kind::Removal;
+  }
+  else if (best.IsFound)
+  {
+    change.What = SliverChange::Kind::Move;
+    change.Position = best.Position;
+  }
+  else
+  {
+    return false;
+  }
+  change.Point = point;
+  change.Star = this->Search.GetStar();
+  change.Cells = this->Search.GetCells();
+  return true;
+}
+
+double SliverChanges::RateInsertion(Id tetrahedron, const Vec3& position, double required)
+{
+  const Id number = this->Mesh.GetTetrahedra().GetNumberOfPoints();
+  if (!this->FindCavity(position, tetrahedron, number, 0.0, required))
+  {
+    return 0.0;
+  }
+  SmallestAngles before;
+  for (const Id t : this->Found.Tetrahedra)
+  {
+    this->IncludeTetrahedron(t, before);
+  }
+  const double angle = this->RateCavity(this->GetFloor(before), required);
+  return angle > required && this->Mesh.IsClear(this->Found, position) &&
+      this->Mesh.CountBroken(this->Found, position) == 0 &&
+      !this->Mesh.EncroachesOnBoundary(this->Found, position, this->Encroached)
+    ? angle
+    : 0.0;
+}
+
+void SliverChanges::FindInsertion(Id tetrahedron, int patience, SliverChange& change)
+{
+  const auto [a, b, c, d] = this->Mesh.GetTetrahedra().GetCorners(tetrahedron);
+  const Vec3 center = GetCircumcenter(a, b, c, d);
+  if (!IsFinite(center) || this->Mesh.IsFull())
+  {
+    return;
+  }
+  const auto rate = [&](const Vec3& position, double required)
+  { return this->RateInsertion(tetrahedron, position, required); };
+  Place best{ center, this->Mesh.GetAngle(tetrahedron) + SmallestGain, false };
+  TryPlace(center, rate, best);
+  SearchPlace(center, FirstInsertion * Distance(center, a), MakeCubeDirections(), this->Goal.Target,
+    rate, best, patience);
+  if (best.IsFound)
+  {
+    change.What = SliverChange::Kind::Insertion;
+    change.Position = best.Position;
+  }
+}
+
+SliverChange SliverChanges::Find(Id tetrahedron, SliverAttempt last)
+{
+  this->Search.StartRecord();
+  const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[tetrahedron];
+  const int patience = this->Mesh.IsAcrossSharp(tetrahedron, SharpAngleUse::Shape)
+    ? PatienceAtSharpAngles
+    : MaximumSearchSteps;
+  SliverChange change;
+  const bool isMoved = std::any_of(ids.begin(), ids.end(),
+    [&](Id id) { return this->Mesh.IsFree(id) && this->FindMove(id, patience, change); });
+  if (!isMoved && last == SliverAttempt::Insertion)
+  {
+    this->FindInsertion(tetrahedron, patience, change);
+  }
+  return change;
+}
+} // namespace cdm
