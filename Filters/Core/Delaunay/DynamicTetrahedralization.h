@@ -35,6 +35,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace cdm
@@ -51,6 +52,8 @@ public:
    * tetrahedron.
    */
   const TetMesh& GetMesh() const { return this->Mesh; }
+  /** Gives the mesh away; only GetTetrahedronAt() tells anything from then on. */
+  TetMesh TakeMesh() { return std::move(this->Mesh); }
   const Vec3& GetPoint(Id point) const { return this->Mesh.Points[point]; }
   std::array<Vec3, 4> GetCorners(Id tetrahedron) const
   {

@@ -93,8 +93,7 @@ void Smoothing::Add(double angle, TetrahedronFault fault, Quality& quality) cons
 
 void Smoothing::AddTetrahedron(Id tetrahedron, Quality& quality) const
 {
-  double severity = 0.0;
-  this->Add(this->Mesh.GetAngle(tetrahedron), this->Mesh.GetFault(tetrahedron, severity), quality);
+  this->Add(this->Mesh.GetAngle(tetrahedron), this->Mesh.GetFault(tetrahedron), quality);
 }
 
 bool Smoothing::IsNoWorse(const Quality& after, const Quality& before) const

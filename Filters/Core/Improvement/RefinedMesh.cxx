@@ -165,16 +165,17 @@ std::vector<InteriorPoint> RefinedMesh::GetInterior() const
   return interior;
 }
 
-TetMesh RefinedMesh::MakeMesh() const
+TetMesh RefinedMesh::TakeMesh()
 {
-  TetMesh mesh = this->GetMesh();
+  this->Facts.Forget();
+  TetMesh mesh = this->Mesh.TakeMesh();
   RemoveDeadTetrahedra(mesh);
+  const Id onSurface = static_cast<Id>(this->Boundary.Surface.Points.size());
   std::vector<Id> newIds(mesh.Points.size(), NoId);
   Id count = 0;
   for (Id p = 0; p < static_cast<Id>(newIds.size()); ++p)
   {
-    const bool isOnSurface = p < static_cast<Id>(this->Boundary.Surface.Points.size());
-    if (isOnSurface || (p >= this->FirstInside && this->Mesh.GetTetrahedronAt(p) != NoId))
+    if (p < onSurface || (p >= this->FirstInside && this->Mesh.GetTetrahedronAt(p) != NoId))
     {
       mesh.Points[count] = mesh.Points[p];
       newIds[p] = count++;
@@ -348,8 +349,7 @@ std::vector<Id> RefinedMesh::FindFlatter(double target) const
 
 bool RefinedMesh::IsFaulty(Id tetrahedron, bool isShapeTested) const
 {
-  double severity = 0.0;
-  const TetrahedronFault fault = this->GetFault(tetrahedron, severity);
+  const TetrahedronFault fault = this->GetFault(tetrahedron);
   return fault == TetrahedronFault::Size ||
     (fault == TetrahedronFault::Shape && isShapeTested &&
       !this->IsAcrossSharp(tetrahedron, SharpAngleUse::Shape) && !this->IsInLayer(tetrahedron) &&
@@ -368,8 +368,7 @@ const std::vector<Id>& RefinedMesh::FindFaulty(bool isShapeTested) const
 
 bool RefinedMesh::BreaksLimit(Id tetrahedron) const
 {
-  double severity = 0.0;
-  const TetrahedronFault fault = this->Facts.GetFault(tetrahedron, severity);
+  const TetrahedronFault fault = this->GetFault(tetrahedron);
   return fault == TetrahedronFault::Size ||
     (fault == TetrahedronFault::Shape && !this->IsAcrossSharp(tetrahedron, SharpAngleUse::Shape));
 }

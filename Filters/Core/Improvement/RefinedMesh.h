@@ -105,10 +105,10 @@ public:
   std::vector<InteriorPoint> GetInterior() const;
   const TetMesh& GetMesh() const { return this->Mesh.GetMesh(); }
   /**
-   * The mesh without dead tetrahedra and unused ids: points are those of the surface, then those of
-   * GetInterior().
+   * Gives the mesh away, without dead tetrahedra and unused ids: points are those of the surface,
+   * then those of GetInterior(). Limits and shape are what is left.
    */
-  TetMesh MakeMesh() const;
+  TetMesh TakeMesh();
   const RefinedMeshReport& GetReport() const { return this->Report; }
   /** Whether as many points have been inserted as allowed. */
   bool IsFull() const { return this->Report.InsertedPoints >= this->MaximumNewPoints; }
@@ -149,10 +149,7 @@ public:
   double GetClearance(Id point) const;
   /** The smallest dihedral angle, in degrees. */
   double GetAngle(Id tetrahedron) const { return this->Facts.GetAngle(tetrahedron); }
-  TetrahedronFault GetFault(Id tetrahedron, double& severity) const
-  {
-    return this->Facts.GetFault(tetrahedron, severity);
-  }
+  TetrahedronFault GetFault(Id tetrahedron) const { return this->Facts.GetFault(tetrahedron); }
   bool IsInLayer(Id tetrahedron) const { return this->Facts.IsInLayer(tetrahedron, *this->Shape); }
   bool IsAcrossSharp(Id tetrahedron, SharpAngleUse use) const
   {

@@ -236,13 +236,14 @@ Status SteinerPointRounds::StartNext()
 Status SteinerPointRounds::RemakeMesh()
 {
   const ExecutionContext context = this->GetContext();
+  const bool isFirst = !this->Mesh;
   DelaunaySurfaceRefinerOutput refined;
   Status status = this->RefineSurface(context.Part(0.0, 0.3), refined);
   if (!status.IsOk())
   {
     return status;
   }
-  if (this->Mesh && !refined.WeakTriangles.empty())
+  if (!isFirst && !refined.WeakTriangles.empty())
   {
     return this->RestoreState(context.Part(0.3, 1.0));
   }
@@ -259,7 +260,10 @@ Status SteinerPointRounds::RemakeMesh()
   return status;
 }
 
-/** Refines the surface for the points inside of the mesh so far, and splits what was requested. */
+/**
+ * Refines the surface for the points inside of the mesh so far, and splits what was requested. The
+ * mesh is dropped: it took half of the memory while the next one was made.
+ */
 Status SteinerPointRounds::RefineSurface(
   const ExecutionContext& context, DelaunaySurfaceRefinerOutput& refined)
 {
@@ -270,9 +274,11 @@ Status SteinerPointRounds::RefineSurface(
   options.StructuralEdges.Facets = this->GetFacets();
   if (this->Mesh)
   {
+    this->CollectReport();
     this->Interior = this->Mesh->GetInterior();
-    input.TrianglesToSplit = this->Mesh->GetRequests().Triangles;
-    input.EdgesToSplit = this->Mesh->GetRequests().Edges;
+    input.TrianglesToSplit = std::move(this->Mesh->GetRequests().Triangles);
+    input.EdgesToSplit = std::move(this->Mesh->GetRequests().Edges);
+    this->Mesh.reset();
   }
   const std::vector<Vec3> points = GetPositions(this->Interior);
   input.MeshPoints = &points;
@@ -298,9 +304,7 @@ Status SteinerPointRounds::MakeMesh(const TriangleMesh& surface,
   {
     return this->Translate(std::move(status), sourceCells);
   }
-  // A failure above leaves the mesh of the round before as the result.
   ++this->Report.Rounds;
-  this->CollectReport();
   this->Interior = Select(interior, made.MeshPointSources);
   for (Id& source : made.Boundary.SourceCells)
   {
@@ -314,7 +318,6 @@ Status SteinerPointRounds::MakeMesh(const TriangleMesh& surface,
 /** Makes a mesh and its boundary, which has all points of the surface, the current ones. */
 void SteinerPointRounds::TakeMesh(AdvancingFrontTetrahedralizerOutput made)
 {
-  this->Mesh.reset();
   this->Surface = std::move(made.Boundary);
   this->CollectSurfaceSizes();
   this->Mesh = std::make_unique<RefinedMesh>(std::move(made.Mesh),
@@ -495,7 +498,7 @@ TetMesh SteinerPointRounds::Finish()
 {
   this->CollectReport();
   this->Interior = this->Mesh->GetInterior();
-  return this->Mesh->MakeMesh();
+  return this->Mesh->TakeMesh();
 }
 
 void SteinerPointRounds::MakeOutput(SteinerPointRefinerOutput& output)

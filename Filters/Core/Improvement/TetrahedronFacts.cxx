@@ -54,17 +54,16 @@ double TetrahedronFacts::GetAngle(Id tetrahedron)
   return known.Angle;
 }
 
-TetrahedronFault TetrahedronFacts::GetFault(Id tetrahedron, double& severity)
+TetrahedronFault TetrahedronFacts::GetFault(Id tetrahedron)
 {
   Known scratch;
   Known& known = this->Get(tetrahedron, scratch);
   if (!known.Fault)
   {
     Vec3 target;
-    known.Fault =
-      this->Limits.Find(this->Mesh.GetCorners(tetrahedron), true, target, known.Severity);
+    double severity = 0.0;
+    known.Fault = this->Limits.Find(this->Mesh.GetCorners(tetrahedron), true, target, severity);
   }
-  severity = known.Severity;
   return *known.Fault;
 }
 

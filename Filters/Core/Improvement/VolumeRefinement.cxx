@@ -64,8 +64,10 @@ Status RefineByLimits(bool isShapeTested, const ExecutionContext& context, Refin
   std::priority_queue<Task> tasks;
   const auto schedule = [&](Id t)
   {
+    Vec3 target;
     double severity = 0.0;
-    const TetrahedronFault fault = mesh.GetFault(t, severity);
+    const TetrahedronFault fault =
+      mesh.GetLimits().Find(tetrahedra.GetCorners(t), true, target, severity);
     tasks.push({ fault, severity, t, tetrahedra.GetStamp(t) });
   };
   for (Id t : mesh.FindFaulty(isShapeTested))
