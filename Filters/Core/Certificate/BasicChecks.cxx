@@ -150,7 +150,9 @@ private:
   void FinishVolumes();
 
   Id FindMeshPoint(Id boundaryPoint) const;
-  bool CollectFacets(const ExecutionContext& context, RawVector<FacetRecord>& facets) const;
+  bool IsInner(const std::vector<FacetRecord>& facets) const;
+  bool CollectFacets(const ExecutionContext& context, const std::vector<FacetRecord>& triangles,
+    std::vector<FacetRecord>& facets) const;
   std::vector<FacetRecord> CollectBoundary();
   void CheckNeighbors(const FacetRecord* begin, const FacetRecord* end);
   void AddBorderFacet(const FacetRecord* begin, const FacetRecord* end);
@@ -382,24 +384,75 @@ Id Checker::FindMeshPoint(Id boundaryPoint) const
   return found != this->SortedPoints.end() && points[*found] == position ? *found : NoId;
 }
 
-/** Sorted. */
-bool Checker::CollectFacets(const ExecutionContext& context, RawVector<FacetRecord>& facets) const
+/** Whether two tetrahedra of one region meet in a facet, from two sides, and know each other. */
+bool Checker::IsInner(const std::vector<FacetRecord>& facets) const
 {
-  facets.resize(4 * this->Mesh.Tetrahedra.size());
-  const auto collect = [&](std::size_t begin, std::size_t end, std::size_t)
+  if (facets.size() != 2)
   {
-    for (std::size_t i = begin; i < end; ++i)
+    return false;
+  }
+  const Id first = facets[0].Source;
+  const Id second = facets[1].Source;
+  const auto isBehind = [&](const FacetRecord& facet)
+  { return facet.IsEven == (this->Findings.Orientations[facet.Source / 4] >= 0); };
+  return this->Mesh.Regions[first / 4] == this->Mesh.Regions[second / 4] &&
+    isBehind(facets[0]) != isBehind(facets[1]) &&
+    (this->Mesh.Neighbors.empty() ||
+      (this->Mesh.Neighbors[first / 4][first % 4] == second &&
+        this->Mesh.Neighbors[second / 4][second % 4] == first));
+}
+
+/**
+ * Sorted; without inner facets, but for those at the lowest points of boundary triangles. Most
+ * facets are such ones: a list of all took as much memory as two meshes.
+ */
+bool Checker::CollectFacets(const ExecutionContext& context,
+  const std::vector<FacetRecord>& triangles, std::vector<FacetRecord>& facets) const
+{
+  const std::size_t count = this->Mesh.Points.size();
+  std::vector<char> hasTriangle(count, 0);
+  for (const FacetRecord& triangle : triangles)
+  {
+    if (triangle.Points[0] != NoId)
     {
-      FacetRecord facet{ GetFacet(this->Mesh.Tetrahedra[i / 4], static_cast<int>(i % 4)),
-        static_cast<Id>(i), true };
-      facet.IsEven = SortPoints(facet.Points);
-      facets[i] = facet;
+      hasTriangle[triangle.Points[0]] = 1;
+    }
+  }
+  const SimplexIncidence incidence(this->Mesh, this->NumberOfThreads);
+  const ParallelLoopOptions options{ this->NumberOfThreads, ContinueInterval };
+  std::vector<std::vector<FacetRecord>> found(GetNumberOfBlocks(count, options));
+  const auto collect = [&](std::size_t begin, std::size_t end, std::size_t block)
+  {
+    std::vector<SimplexIncidence::Record> scratch;
+    std::vector<FacetRecord> group;
+    for (std::size_t point = begin; point < end; ++point)
+    {
+      incidence.ForEachFacet(static_cast<Id>(point), scratch,
+        [&](const TriangleIds&, auto first, auto last)
+        {
+          group.clear();
+          for (; first != last; ++first)
+          {
+            const Id facet = first->Simplex;
+            group.push_back({ GetFacet(this->Mesh.Tetrahedra[facet / 4], facet % 4), facet, true });
+            group.back().IsEven = SortPoints(group.back().Points);
+          }
+          if (hasTriangle[point] != 0 || !this->IsInner(group))
+          {
+            found[block].insert(found[block].end(), group.begin(), group.end());
+          }
+        });
     }
   };
-  return ParallelLoop(facets.size(), { this->NumberOfThreads, ContinueInterval },
-           context.Part(0.0, 0.2), FacetActivity, collect) &&
-    ParallelSort(
-      facets, this->NumberOfThreads, context.Part(0.2, 1.0), FacetActivity, std::less<>());
+  if (!ParallelLoop(count, options, context, FacetActivity, collect))
+  {
+    return false;
+  }
+  for (const std::vector<FacetRecord>& part : found)
+  {
+    facets.insert(facets.end(), part.begin(), part.end());
+  }
+  return true;
 }
 
 std::vector<FacetRecord> Checker::CollectBoundary()
@@ -501,12 +554,6 @@ void Checker::CheckBoundaryTriangle(const FacetRecord& triangle, const RegionPai
 
 bool Checker::CheckFacets(const ExecutionContext& context)
 {
-  RawVector<FacetRecord> facets;
-  if (!this->CollectFacets(context.Part(0.0, 0.7), facets))
-  {
-    return false;
-  }
-  const ExecutionContext rest = context.Part(0.7, 1.0);
   std::vector<FacetRecord> triangles;
   if (this->Boundary != nullptr)
   {
@@ -516,6 +563,12 @@ bool Checker::CheckFacets(const ExecutionContext& context)
       this->AddEnclosedVolume(static_cast<Id>(i), this->Boundary->Labels[i]);
     }
   }
+  std::vector<FacetRecord> facets;
+  if (!this->CollectFacets(context.Part(0.0, 0.7), triangles, facets))
+  {
+    return false;
+  }
+  const ExecutionContext rest = context.Part(0.7, 1.0);
   const auto countMissing = [&](const FacetRecord& triangle)
   {
     // Without labels a region that was not to be meshed is told by the points it has for itself.

@@ -155,6 +155,7 @@ void RefinedMesh::SetSurfaceSizes(Id first, const std::vector<double>& sizes)
 std::vector<InteriorPoint> RefinedMesh::GetInterior() const
 {
   std::vector<InteriorPoint> interior;
+  interior.reserve(this->Points.size() - this->FirstInside);
   for (Id p = this->FirstInside; p < this->Mesh.GetNumberOfPoints(); ++p)
   {
     if (this->Mesh.GetTetrahedronAt(p) != NoId)

@@ -305,23 +305,25 @@ Status SteinerPointRounds::MakeMesh(const TriangleMesh& surface,
     return this->Translate(std::move(status), sourceCells);
   }
   ++this->Report.Rounds;
-  this->Interior = Select(interior, made.MeshPointSources);
+  const std::vector<InteriorPoint> used = Select(interior, made.MeshPointSources);
+  this->Interior = {};
   for (Id& source : made.Boundary.SourceCells)
   {
     source = this->Surface.SourceCells[sourceCells[source]];
   }
   made.Boundary.Points = surface.Points;
-  this->TakeMesh(std::move(made));
+  this->TakeMesh(std::move(made), used);
   return status;
 }
 
 /** Makes a mesh and its boundary, which has all points of the surface, the current ones. */
-void SteinerPointRounds::TakeMesh(AdvancingFrontTetrahedralizerOutput made)
+void SteinerPointRounds::TakeMesh(
+  AdvancingFrontTetrahedralizerOutput made, const std::vector<InteriorPoint>& interior)
 {
   this->Surface = std::move(made.Boundary);
   this->CollectSurfaceSizes();
   this->Mesh = std::make_unique<RefinedMesh>(std::move(made.Mesh),
-    RefinedBoundary{ this->Surface, this->Edges, this->Edges }, this->Interior, this->Memory,
+    RefinedBoundary{ this->Surface, this->Edges, this->Edges }, interior, this->Memory,
     this->GetMeshOptions());
   this->IsSurfaceFree.resize(this->Surface.Points.size(), 1);
   this->IsNew.resize(this->Surface.Points.size(), 1);

@@ -101,7 +101,8 @@ private:
   Status RefineSurface(const ExecutionContext& context, DelaunaySurfaceRefinerOutput& refined);
   Status MakeMesh(const TriangleMesh& surface, const std::vector<InteriorPoint>& interior,
     const std::vector<Id>& sourceCells, const ExecutionContext& context);
-  void TakeMesh(AdvancingFrontTetrahedralizerOutput made);
+  void TakeMesh(
+    AdvancingFrontTetrahedralizerOutput made, const std::vector<InteriorPoint>& interior);
   Status RestoreState(const ExecutionContext& context);
   bool CanSplitInPlace() const;
   Status SplitInPlace();
@@ -126,7 +127,7 @@ private:
   std::vector<double> SurfaceSizes;
   /** Feature sizes of the surface at the time when SurfaceSizes were measured. */
   std::unique_ptr<FeatureSizes> Features;
-  /** Points inside of the mesh when it was made. */
+  /** Points inside, while there is no mesh that has them. */
   std::vector<InteriorPoint> Interior;
   SliverMemory Memory;
   std::unique_ptr<RefinedMesh> Mesh;

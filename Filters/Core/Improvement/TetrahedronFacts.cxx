@@ -12,7 +12,7 @@ TetrahedronFacts::Known& TetrahedronFacts::Get(Id tetrahedron, Known& scratch)
   const bool isIn = static_cast<std::size_t>(tetrahedron) < this->Facts.size();
   if (this->IsFrozen)
   {
-    if (isIn && this->Facts[tetrahedron].Stamp == stamp)
+    if (isIn && this->Facts[tetrahedron].GetStamp() == stamp)
     {
       scratch = this->Facts[tetrahedron];
     }
@@ -23,10 +23,9 @@ TetrahedronFacts::Known& TetrahedronFacts::Get(Id tetrahedron, Known& scratch)
     this->Facts.resize(this->Mesh.GetMesh().Tetrahedra.size());
   }
   Known& known = this->Facts[tetrahedron];
-  if (known.Stamp != stamp)
+  if (known.GetStamp() != stamp)
   {
-    known = {};
-    known.Stamp = stamp;
+    known = Known(stamp);
   }
   return known;
 }
@@ -35,9 +34,9 @@ void TetrahedronFacts::Forget(std::int64_t first)
 {
   for (Known& known : this->Facts)
   {
-    if (known.Stamp >= first)
+    if (known.GetStamp() >= first)
     {
-      known = {};
+      known = Known();
     }
   }
 }
@@ -58,38 +57,42 @@ TetrahedronFault TetrahedronFacts::GetFault(Id tetrahedron)
 {
   Known scratch;
   Known& known = this->Get(tetrahedron, scratch);
-  if (!known.Fault)
+  if (known.Fault == 0)
   {
     Vec3 target;
     double severity = 0.0;
-    known.Fault = this->Limits.Find(this->Mesh.GetCorners(tetrahedron), true, target, severity);
+    const TetrahedronFault fault =
+      this->Limits.Find(this->Mesh.GetCorners(tetrahedron), true, target, severity);
+    known.Fault = static_cast<unsigned>(fault) + 1;
   }
-  return *known.Fault;
+  return static_cast<TetrahedronFault>(known.Fault - 1);
 }
 
 bool TetrahedronFacts::IsInLayer(Id tetrahedron, const BoundaryShape& shape)
 {
   Known scratch;
   Known& known = this->Get(tetrahedron, scratch);
-  if (!known.IsInLayer)
+  if (known.IsInLayer == 0)
   {
     const TetMesh& mesh = this->Mesh.GetMesh();
     known.IsInLayer =
-      shape.Layers.IsAcross(mesh.Tetrahedra[tetrahedron], mesh.Regions[tetrahedron]);
+      shape.Layers.IsAcross(mesh.Tetrahedra[tetrahedron], mesh.Regions[tetrahedron]) ? 2 : 1;
   }
-  return *known.IsInLayer;
+  return known.IsInLayer == 2;
 }
 
 bool TetrahedronFacts::IsAcrossSharp(Id tetrahedron, const BoundaryShape& shape, SharpAngleUse use)
 {
   Known scratch;
   Known& known = this->Get(tetrahedron, scratch);
-  std::optional<bool>& isAcross =
-    use == SharpAngleUse::Sliver ? known.IsSharpSliver : known.IsAcrossSharp;
-  if (!isAcross)
+  const auto find = [&]
+  { return shape.Sharp.IsAcross(this->Mesh.GetMesh().Tetrahedra[tetrahedron], use) ? 2 : 1; };
+  if (use == SharpAngleUse::Sliver)
   {
-    isAcross = shape.Sharp.IsAcross(this->Mesh.GetMesh().Tetrahedra[tetrahedron], use);
+    known.IsSharpSliver = known.IsSharpSliver == 0 ? find() : known.IsSharpSliver;
+    return known.IsSharpSliver == 2;
   }
-  return *isAcross;
+  known.IsAcrossSharp = known.IsAcrossSharp == 0 ? find() : known.IsAcrossSharp;
+  return known.IsAcrossSharp == 2;
 }
 } // namespace cdm

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <queue>
 #include <vector>
 
 namespace cdm
@@ -14,12 +13,13 @@ constexpr std::size_t ReportInterval = 256;
 /** Free points closer to others than this part of the sizing are removed. */
 constexpr double CloseRatio = 0.3;
 
+/** A tetrahedron that gets a point. */
 struct Task
 {
-  TetrahedronFault Fault;
   double Severity;
-  Id Tetrahedron;
   std::int64_t Stamp;
+  Id Tetrahedron;
+  TetrahedronFault Fault;
 
   /** Large ones first, then the most severe fault, then the smallest id. */
   friend bool operator<(const Task& a, const Task& b)
@@ -28,6 +28,53 @@ struct Task
       : a.Severity != b.Severity ? a.Severity < b.Severity
                                  : a.Tetrahedron > b.Tetrahedron;
   }
+};
+
+/**
+ * The tasks that are left. Most tetrahedra are replaced before it is their turn: from time to time
+ * those are taken out, as they took as much memory as the mesh.
+ */
+class TaskQueue
+{
+public:
+  explicit TaskQueue(const DynamicTetrahedralization& mesh) : Mesh(mesh) {}
+
+  bool IsEmpty() const { return this->Tasks.empty(); }
+  std::size_t GetSize() const { return this->Tasks.size(); }
+  bool IsGone(const Task& task) const
+  {
+    return task.Stamp != this->Mesh.GetStamp(task.Tetrahedron);
+  }
+
+  void Push(const Task& task)
+  {
+    if (this->Tasks.size() >= this->Limit)
+    {
+      this->Tasks.erase(std::remove_if(this->Tasks.begin(), this->Tasks.end(),
+                          [this](const Task& old) { return this->IsGone(old); }),
+        this->Tasks.end());
+      std::make_heap(this->Tasks.begin(), this->Tasks.end());
+      this->Limit = std::max(SmallestLimit, 2 * this->Tasks.size());
+    }
+    this->Tasks.push_back(task);
+    std::push_heap(this->Tasks.begin(), this->Tasks.end());
+  }
+
+  Task Pop()
+  {
+    std::pop_heap(this->Tasks.begin(), this->Tasks.end());
+    const Task task = this->Tasks.back();
+    this->Tasks.pop_back();
+    return task;
+  }
+
+private:
+  static constexpr std::size_t SmallestLimit = 1 << 16;
+
+  const DynamicTetrahedralization& Mesh;
+  /** A heap. */
+  std::vector<Task> Tasks;
+  std::size_t Limit = SmallestLimit;
 };
 } // namespace
 
@@ -61,30 +108,29 @@ void RemoveClosePoints(double smallest, const SizingField& sizing, RefinedMesh& 
 Status RefineByLimits(bool isShapeTested, const ExecutionContext& context, RefinedMesh& mesh)
 {
   const DynamicTetrahedralization& tetrahedra = mesh.GetTetrahedra();
-  std::priority_queue<Task> tasks;
+  TaskQueue tasks(tetrahedra);
   const auto schedule = [&](Id t)
   {
     Vec3 target;
     double severity = 0.0;
     const TetrahedronFault fault =
       mesh.GetLimits().Find(tetrahedra.GetCorners(t), true, target, severity);
-    tasks.push({ fault, severity, t, tetrahedra.GetStamp(t) });
+    tasks.Push({ severity, tetrahedra.GetStamp(t), t, fault });
   };
   for (Id t : mesh.FindFaulty(isShapeTested))
   {
     schedule(t);
   }
-  for (std::size_t done = 0; !tasks.empty() && !mesh.IsFull(); ++done)
+  for (std::size_t done = 0; !tasks.IsEmpty() && !mesh.IsFull(); ++done)
   {
     if (done % ReportInterval == 0 &&
-      !context.Continue(static_cast<double>(done) / static_cast<double>(done + tasks.size()),
+      !context.Continue(static_cast<double>(done) / static_cast<double>(done + tasks.GetSize()),
         "Refining tetrahedra"))
     {
       return Status::Aborted();
     }
-    const Task task = tasks.top();
-    tasks.pop();
-    if (task.Stamp != tetrahedra.GetStamp(task.Tetrahedron))
+    const Task task = tasks.Pop();
+    if (tasks.IsGone(task))
     {
       continue;
     }
