@@ -2,7 +2,11 @@
 #include "CoreBridge/Tuples.h"
 
 #include "CoreBridge/ArrayNames.h"
+#include "CoreBridge/Execution.h"
+#include "CoreBridge/Inputs.h"
 #include "CoreBridge/Reports.h"
+
+#include "Core/Search/TetrahedronWalk.h"
 
 #include <vtkAbstractArray.h>
 #include <vtkCellData.h>
@@ -16,6 +20,87 @@
 #include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
+
+namespace
+{
+/** The cells of a mesh of tetrahedra in which points of another one lie. */
+class CellsOfPoints
+{
+public:
+  /** Points with a source are left out. */
+  CellsOfPoints(
+    vtkUnstructuredGrid* input, const std::vector<cdm::Id>& sources, vtkUnstructuredGrid* output);
+
+  /** The cell of a point, or the nearest one, and the weights of its points there. */
+  void Get(vtkIdType point, vtkGenericCell* cell, double* weights) const;
+
+private:
+  /** A copy of its own: locators build caches in the data set that they search. */
+  vtkNew<vtkUnstructuredGrid> Cells;
+  vtkNew<vtkStaticCellLocator> Locator;
+  vtkUnstructuredGrid* const Output;
+  /** For each point of the output; NoId if it has a source, or was not found. */
+  std::vector<cdm::Id> Found;
+};
+
+CellsOfPoints::CellsOfPoints(
+  vtkUnstructuredGrid* input, const std::vector<cdm::Id>& sources, vtkUnstructuredGrid* output)
+  : Output(output), Found(sources.size(), cdm::NoId)
+{
+  std::vector<cdm::Id> points;
+  std::vector<cdm::Vec3> positions;
+  for (std::size_t i = 0; i < sources.size(); ++i)
+  {
+    if (sources[i] == cdm::NoId)
+    {
+      double x[3];
+      output->GetPoint(static_cast<vtkIdType>(i), x);
+      points.push_back(static_cast<cdm::Id>(i));
+      positions.push_back({ x[0], x[1], x[2] });
+    }
+  }
+  cdm::TetMesh mesh;
+  if (vtkCoreBridge::ToTetMesh(input, mesh).IsOk())
+  {
+    const std::vector<cdm::Id> cells =
+      cdm::FindTetrahedra(mesh, positions, vtkCoreBridge::GetNumberOfThreads());
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      this->Found[points[i]] = cells[i];
+    }
+  }
+  this->Cells->ShallowCopy(input);
+  if (std::any_of(points.begin(), points.end(),
+        [this](cdm::Id point) { return this->Found[point] == cdm::NoId; }))
+  {
+    this->Locator->SetDataSet(this->Cells);
+    this->Locator->BuildLocator();
+  }
+}
+
+void CellsOfPoints::Get(vtkIdType point, vtkGenericCell* cell, double* weights) const
+{
+  double x[3];
+  double nearest[3];
+  double parametric[3];
+  double distance2 = 0.0;
+  int subId = 0;
+  this->Output->GetPoint(point, x);
+  vtkIdType found = this->Found[static_cast<std::size_t>(point)];
+  if (found >= 0)
+  {
+    this->Cells->GetCell(found, cell);
+    cell->EvaluatePosition(x, nullptr, subId, parametric, distance2, weights);
+  }
+  else if (this->Locator->FindCell(x, 0.0, cell, parametric, weights) < 0)
+  {
+    // On the boundary rounding decides whether a position is inside: the nearest cell is right. To
+    // look for it takes ten times longer than for one that holds the position.
+    this->Locator->FindClosestPoint(x, nearest, cell, found, subId, distance2);
+    cell->EvaluatePosition(nearest, nullptr, subId, parametric, distance2, weights);
+  }
+}
+} // namespace
 
 namespace vtkCoreBridge
 {
@@ -122,12 +207,7 @@ void InterpolateTuplesInCells(
   {
     return;
   }
-  // A copy of its own: locators build caches in the data set that they search.
-  vtkNew<vtkUnstructuredGrid> cells;
-  cells->ShallowCopy(input);
-  vtkNew<vtkStaticCellLocator> locator;
-  locator->SetDataSet(cells);
-  locator->BuildLocator();
+  const CellsOfPoints cells(input, sources, output);
   vtkNew<vtkGenericCell> cell;
   for (vtkIdType i = 0; i < count; ++i)
   {
@@ -136,21 +216,8 @@ void InterpolateTuplesInCells(
       to->CopyData(from, sources[i], i);
       continue;
     }
-    double x[3];
-    double parametric[3];
     double weights[4];
-    output->GetPoint(i, x);
-    if (locator->FindCell(x, 0.0, cell, parametric, weights) < 0)
-    {
-      // On the boundary rounding decides whether a position is inside: the nearest cell is right. To
-      // look for it takes ten times longer than for one that holds the position.
-      double nearest[3];
-      double distance2 = 0.0;
-      int subId = 0;
-      vtkIdType found = -1;
-      locator->FindClosestPoint(x, nearest, cell, found, subId, distance2);
-      cell->EvaluatePosition(nearest, nullptr, subId, parametric, distance2, weights);
-    }
+    cells.Get(i, cell, weights);
     to->InterpolatePoint(from, i, cell->GetPointIds(), weights);
   }
 }
