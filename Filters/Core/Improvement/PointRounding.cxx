@@ -3,10 +3,10 @@
 
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
+#include "Core/Search/PlaceSearch.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <set>
 #include <utility>
@@ -201,8 +201,12 @@ std::vector<PointRounding::Quadrangle> PointRounding::FindQuadrangles(
   return quadrangles;
 }
 
-/** Along which axes the point may move: no facet at it lies across them. */
-std::array<bool, 3> PointRounding::FindFreeAxes(Id point) const
+/**
+ * Ways to the corners, edges and facets of a cube around the point, along axes on which it may move:
+ * no facet at it lies across them. All positions within the cube, seven times as many, found no
+ * more.
+ */
+std::vector<Vec3> PointRounding::FindDirections(Id point) const
 {
   std::array<bool, 3> isFree{ true, true, true };
   for (Id t : this->Triangles[point])
@@ -211,22 +215,36 @@ std::array<bool, 3> PointRounding::FindFreeAxes(Id point) const
     const Vec3& a = this->Surface.Points[ids[0]];
     const Vec3& b = this->Surface.Points[ids[1]];
     const Vec3& c = this->Surface.Points[ids[2]];
-    isFree[0] = isFree[0] && !(a.X == b.X && a.X == c.X);
-    isFree[1] = isFree[1] && !(a.Y == b.Y && a.Y == c.Y);
-    isFree[2] = isFree[2] && !(a.Z == b.Z && a.Z == c.Z);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      isFree[axis] = isFree[axis] && !(a[axis] == b[axis] && a[axis] == c[axis]);
+    }
   }
-  return isFree;
+  std::vector<Vec3> directions = MakeCubeDirections();
+  directions.erase(std::remove_if(directions.begin(), directions.end(),
+                     [&isFree](const Vec3& direction)
+                     {
+                       return (!isFree[0] && direction.X != 0.0) ||
+                         (!isFree[1] && direction.Y != 0.0) || (!isFree[2] && direction.Z != 0.0);
+                     }),
+    directions.end());
+  return directions;
 }
 
 /**
  * Distance of the spheres' centers from the span of the two cells' centers, in lengths of that
  * span: the smallest over all quadrangles. Not positive if a flat tetrahedron fits in.
+ *
+ * Most positions do not reach what is required: then any smaller value is returned, as soon as a
+ * quadrangle shows it. That one comes first for the next position, which is near.
  */
-double PointRounding::Rate(const Vec3& position, const std::vector<Quadrangle>& quadrangles)
+double PointRounding::Rate(
+  const Vec3& position, double required, std::vector<Quadrangle>& quadrangles)
 {
   double smallest = EnoughMargin;
-  for (const Quadrangle& quadrangle : quadrangles)
+  for (std::size_t i = 0; i < quadrangles.size(); ++i)
   {
+    const Quadrangle& quadrangle = quadrangles[i];
     const WideVec3 way = WideVec3::FromDifference(position, quadrangle.Corner);
     const long double power = 0.5L * Dot(way, way) - Dot(way, quadrangle.Center);
     const long double height = Dot(way, quadrangle.Normal);
@@ -241,8 +259,9 @@ double PointRounding::Rate(const Vec3& position, const std::vector<Quadrangle>& 
       : center > quadrangle.High                  ? (center - quadrangle.High) / span
                                                   : 0.0;
     smallest = std::min(smallest, margin);
-    if (smallest <= 0.0)
+    if (smallest <= required)
     {
+      std::swap(quadrangles.front(), quadrangles[i]);
       break;
     }
   }
@@ -275,32 +294,19 @@ void PointRounding::Move(const std::vector<char>& isFree, std::vector<Vec3>& poi
       {
         continue;
       }
-      const std::vector<Quadrangle> quadrangles = this->FindQuadrangles(point, points);
-      const std::array<bool, 3> isFreeAxis = this->FindFreeAxes(point);
-      for (int shell = 1; shell <= MaximumSteps && margin < EnoughMargin; ++shell)
+      std::vector<Quadrangle> quadrangles = this->FindQuadrangles(point, points);
+      const std::vector<Vec3> directions = this->FindDirections(point);
+      for (int length = 1; length <= MaximumSteps && margin < EnoughMargin; ++length)
       {
-        const int x = isFreeAxis[0] ? shell : 0;
-        const int y = isFreeAxis[1] ? shell : 0;
-        const int z = isFreeAxis[2] ? shell : 0;
-        for (int i = -x; i <= x; ++i)
+        for (const Vec3& direction : directions)
         {
-          for (int j = -y; j <= y; ++j)
+          const Vec3 position = points[point] + (length * step) * direction;
+          const double rating = Rate(position, margin, quadrangles);
+          if (rating > margin)
           {
-            for (int k = -z; k <= z; ++k)
-            {
-              if (std::max({ std::abs(i), std::abs(j), std::abs(k) }) != shell)
-              {
-                continue;
-              }
-              const Vec3 position = points[point] + step * Vec3{ 1.0 * i, 1.0 * j, 1.0 * k };
-              const double rating = Rate(position, quadrangles);
-              if (rating > margin)
-              {
-                margin = rating;
-                best = position;
-                moved = point;
-              }
-            }
+            margin = rating;
+            best = position;
+            moved = point;
           }
         }
       }

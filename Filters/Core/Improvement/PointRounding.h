@@ -16,7 +16,8 @@
  * that axis.
  *
  * Positions are rated in floating point: the choice does not decide topology.
- * Deterministic. Cost: O(n) for n tetrahedra, and a few hundred positions for each flat one.
+ * Deterministic. Cost: O(n) for n tetrahedra, and about a hundred positions for each point of a flat
+ * one.
  */
 #ifndef cdmPointRounding_h
 #define cdmPointRounding_h
@@ -67,8 +68,8 @@ private:
   bool AddQuadrangle(const std::vector<Vec3>& points, const std::array<Id, 3>& others,
     const std::vector<Id>& cells, bool isComplete, std::vector<Quadrangle>& quadrangles) const;
   std::vector<Quadrangle> FindQuadrangles(Id point, const std::vector<Vec3>& points) const;
-  std::array<bool, 3> FindFreeAxes(Id point) const;
-  static double Rate(const Vec3& position, const std::vector<Quadrangle>& quadrangles);
+  std::vector<Vec3> FindDirections(Id point) const;
+  static double Rate(const Vec3& position, double required, std::vector<Quadrangle>& quadrangles);
 
   const TetMesh& Mesh;
   const TriangleMesh& Surface;

@@ -140,25 +140,32 @@ bool SliverSchedule::RoundFlatTetrahedraAway()
 {
   const std::vector<Id> flat = this->GetMesh().FindFlatTetrahedra();
   std::vector<TetrahedronIds> found;
+  // Those that were left before would be left again, after some thousand positions each.
+  std::vector<Id> open;
   for (Id t : flat)
   {
-    found.push_back(this->GetMesh().GetMesh().Tetrahedra[t]);
-    std::sort(found.back().begin(), found.back().end());
+    TetrahedronIds ids = this->GetMesh().GetMesh().Tetrahedra[t];
+    std::sort(ids.begin(), ids.end());
+    found.push_back(ids);
+    if (!std::binary_search(this->LeftFlat.begin(), this->LeftFlat.end(), ids))
+    {
+      open.push_back(t);
+    }
   }
-  std::sort(found.begin(), found.end());
-  if (std::includes(this->LeftFlat.begin(), this->LeftFlat.end(), found.begin(), found.end()))
+  if (open.empty())
   {
     return false;
   }
   if (this->Roundings.IsOver(flat.size()))
   {
+    std::sort(found.begin(), found.end());
     this->LeftFlat = std::move(found);
     this->Roundings.Renew();
     return false;
   }
   this->Roundings.NoteTry();
   return this->Rounds.TakeSurfacePositions(
-    RoundSurfacePoints(flat, this->Rounds.GetFreeSurfacePoints(), this->GetMesh()));
+    RoundSurfacePoints(open, this->Rounds.GetFreeSurfacePoints(), this->GetMesh()));
 }
 
 /**
