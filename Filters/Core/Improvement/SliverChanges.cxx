@@ -3,7 +3,7 @@
 
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
-#include "Core/Search/PlaceSearch.h"
+#include "Core/Improvement/SliverList.h"
 
 #include <algorithm>
 #include <limits>
@@ -15,11 +15,6 @@ namespace
 {
 /** First step of the search for a new point's position, in radii of the sphere that it destroys. */
 constexpr double FirstInsertion = 0.3;
-/**
- * How many steps of a search for a position may find nothing at a sharp angle. Most searches there
- * are in vain; with the other steps they take twice as long, and find little more.
- */
-constexpr int PatienceAtSharpAngles = 2;
 } // namespace
 
 /**
@@ -198,7 +193,7 @@ double SliverChanges::RateMove(Id point, const Vec3& position, double floor, dou
     : 0.0;
 }
 
-bool SliverChanges::FindMove(Id point, int patience, SliverChange& change)
+bool SliverChanges::FindMove(Id point, SliverChange& change)
 {
   if (!this->Search.LeaveOut(point))
   {
@@ -213,7 +208,7 @@ bool SliverChanges::FindMove(Id point, int patience, SliverChange& change)
     old, this->Before.Mean, this->Before.Nearest, this->Goal.Target,
     [&](const Vec3& position, double required)
     { return this->RateMove(point, position, floor, required); },
-    best, patience);
+    best, SliverEffort);
   this->Search.TakeBack();
   const std::vector<char>& isBroken = this->Cells.IsBroken;
   if (this->Goal.MayRemove &&
@@ -257,7 +252,7 @@ double SliverChanges::RateInsertion(Id tetrahedron, const Vec3& position, double
     : 0.0;
 }
 
-void SliverChanges::FindInsertion(Id tetrahedron, int patience, SliverChange& change)
+void SliverChanges::FindInsertion(Id tetrahedron, SliverChange& change)
 {
   const auto [a, b, c, d] = this->Mesh.GetTetrahedra().GetCorners(tetrahedron);
   const Vec3 center = GetCircumcenter(a, b, c, d);
@@ -270,7 +265,7 @@ void SliverChanges::FindInsertion(Id tetrahedron, int patience, SliverChange& ch
   Place best{ center, this->Mesh.GetAngle(tetrahedron) + SmallestGain, false };
   TryPlace(center, rate, best);
   SearchPlace(center, FirstInsertion * Distance(center, a), MakeCubeDirections(), this->Goal.Target,
-    rate, best, patience);
+    rate, best, SliverEffort);
   if (best.IsFound)
   {
     change.What = SliverChange::Kind::Insertion;
@@ -282,15 +277,12 @@ SliverChange SliverChanges::Find(Id tetrahedron, SliverAttempt last)
 {
   this->Search.StartRecord();
   const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[tetrahedron];
-  const int patience = this->Mesh.IsAcrossSharp(tetrahedron, SharpAngleUse::Shape)
-    ? PatienceAtSharpAngles
-    : MaximumSearchSteps;
   SliverChange change;
   const bool isMoved = std::any_of(ids.begin(), ids.end(),
-    [&](Id id) { return this->Mesh.IsFree(id) && this->FindMove(id, patience, change); });
+    [&](Id id) { return this->Mesh.IsFree(id) && this->FindMove(id, change); });
   if (!isMoved && last == SliverAttempt::Insertion)
   {
-    this->FindInsertion(tetrahedron, patience, change);
+    this->FindInsertion(tetrahedron, change);
   }
   return change;
 }

@@ -114,8 +114,8 @@ private:
   bool LeavesFlatter(Id point, const Vec3& position, double required) const;
   double RateMove(Id point, const Vec3& position, double floor, double required);
   double RateInsertion(Id tetrahedron, const Vec3& position, double required);
-  bool FindMove(Id point, int patience, SliverChange& change);
-  void FindInsertion(Id tetrahedron, int patience, SliverChange& change);
+  bool FindMove(Id point, SliverChange& change);
+  void FindInsertion(Id tetrahedron, SliverChange& change);
 
   const SliverAim Goal;
   const RefinedMesh& Mesh;

@@ -455,7 +455,7 @@ bool SurfacePointMoves::Move(Id point, const TetrahedronIds& sliver, double targ
   // A point of many slivers would be searched in vain, at the same positions, for each of them.
   if (best.IsFound || this->SearchedAt[point] != this->NumberOfMoves)
   {
-    SearchPlace(old, FirstMove * nearest, support.Directions, target, rate, best);
+    SearchPlace(old, FirstMove * nearest, support.Directions, target, rate, best, SliverEffort);
   }
   if (!best.IsFound)
   {

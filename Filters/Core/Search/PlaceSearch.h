@@ -7,13 +7,14 @@
  * the point may go anywhere), in steps that become shorter when none helps. A moved point first
  * tries the mean of its neighbors (Laplacian smoothing, thesis 3.4.6), and half the way there.
  *
- * Deterministic. Cost: about a hundred ratings, fewer if the caller has less patience.
+ * Deterministic. Cost: about a hundred ratings, fewer with less effort.
  */
 #ifndef cdmPlaceSearch_h
 #define cdmPlaceSearch_h
 
 #include "Core/Basics/Vec3.h"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -63,20 +64,25 @@ inline std::vector<Vec3> MakeCubeDirections()
   return directions;
 }
 
-/** Largest number of steps, taken or halved. */
-constexpr int MaximumSearchSteps = 5;
+/** How long a search goes on. */
+struct SearchEffort
+{
+  /** Largest number of steps, taken or halved. */
+  int Steps = 5;
+  /** After how many steps a search ends that has found nothing. */
+  int Patience = 5;
+};
 
 /**
  * Searches until the angle reaches the target, or the steps are too short.
  * @param directions of any length but 0
- * @param patience after how many steps a search ends that has found nothing
  */
 template <typename Rate>
 void SearchPlace(const Vec3& start, double step, const std::vector<Vec3>& directions, double target,
-  Rate&& rate, Place& best, int patience = MaximumSearchSteps)
+  Rate&& rate, Place& best, const SearchEffort& effort = {})
 {
-  for (int i = 0; i < MaximumSearchSteps && best.Angle < target && (best.IsFound || i < patience);
-       ++i)
+  const int patience = std::min(effort.Patience, effort.Steps);
+  for (int i = 0; i < (best.IsFound ? effort.Steps : patience) && best.Angle < target; ++i)
   {
     const Vec3 base = best.IsFound ? best.Position : start;
     const double angle = best.Angle;
@@ -94,11 +100,11 @@ void SearchPlace(const Vec3& start, double step, const std::vector<Vec3>& direct
  */
 template <typename Rate>
 void SearchMove(const Vec3& old, const Vec3& mean, double nearest, double target, Rate&& rate,
-  Place& best, int patience = MaximumSearchSteps)
+  Place& best, const SearchEffort& effort = {})
 {
   TryPlace(mean, rate, best);
   TryPlace(0.5 * (old + mean), rate, best);
-  SearchPlace(old, FirstMove * nearest, MakeCubeDirections(), target, rate, best, patience);
+  SearchPlace(old, FirstMove * nearest, MakeCubeDirections(), target, rate, best, effort);
 }
 } // namespace cdm
 
