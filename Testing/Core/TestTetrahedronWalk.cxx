@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/Predicates.h"
-#include "Core/Search/TetrahedronWalk.h"
+#include "Core/Meshes/TetrahedronWalk.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include "CoreBridge/Inputs.h"
 #include "CoreBridge/Reports.h"
 
-#include "Core/Search/TetrahedronWalk.h"
+#include "Core/Meshes/TetrahedronWalk.h"
 
 #include <vtkAbstractArray.h>
 #include <vtkCellData.h>

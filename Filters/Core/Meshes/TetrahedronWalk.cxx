@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Search/TetrahedronWalk.h"
+#include "Core/Meshes/TetrahedronWalk.h"
 
 #include "Core/Basics/ParallelLoop.h"
 #include "Core/Geometry/Predicates.h"
