@@ -91,16 +91,35 @@ TEST(TetrahedronWatch, AsksForWhatIsNewOnly)
   for (int round = 0; round < 100; ++round)
   {
     const std::int64_t before = watch.GetNumberOfTests();
+    const std::int64_t visits = watch.GetNumberOfVisits();
     // Unchanged: nothing is asked.
     EXPECT_EQ(Update(mesh, watch), FindAll(mesh));
     EXPECT_EQ(watch.GetNumberOfTests(), before);
+    EXPECT_EQ(watch.GetNumberOfVisits(), visits);
     if (!Insert(DrawPoint(generator), mesh))
     {
       continue;
     }
     EXPECT_EQ(Update(mesh, watch), FindAll(mesh));
-    EXPECT_EQ(
-      watch.GetNumberOfTests() - before, static_cast<std::int64_t>(mesh.GetChanged().size()));
+    const auto changed = static_cast<std::int64_t>(mesh.GetChanged().size());
+    EXPECT_EQ(watch.GetNumberOfTests() - before, changed);
+    EXPECT_EQ(watch.GetNumberOfVisits() - visits, changed);
+  }
+}
+
+/** More changes than the mesh remembers, and more than it has tetrahedra. */
+TEST(TetrahedronWatch, VisitsAllAfterManyChanges)
+{
+  std::mt19937_64 generator(4);
+  DynamicTetrahedralization mesh = MakeMesh(300, generator);
+  TetrahedronWatch watch;
+  for (const int changes : { 10, 2000, 10, 100 })
+  {
+    for (int i = 0; i < changes; ++i)
+    {
+      Insert(DrawPoint(generator), mesh);
+    }
+    EXPECT_EQ(Update(mesh, watch), FindAll(mesh));
   }
 }
 

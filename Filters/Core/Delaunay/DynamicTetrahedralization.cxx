@@ -44,7 +44,30 @@ Id DynamicTetrahedralization::Make(const TetrahedronIds& ids, Id region)
     this->PointTetrahedra[point] = t;
   }
   this->Changed.push_back(t);
+  this->Note(t);
   return t;
+}
+
+void DynamicTetrahedralization::Note(Id tetrahedron)
+{
+  constexpr std::size_t fewestNotes = 1 << 14;
+  if (this->Noted.size() > std::max(fewestNotes, this->Mesh.Tetrahedra.size() / 2))
+  {
+    const auto dropped = static_cast<std::ptrdiff_t>(this->Noted.size() / 2);
+    this->Noted.erase(this->Noted.begin(), this->Noted.begin() + dropped);
+    this->FirstNoted += dropped;
+  }
+  this->Noted.push_back(tetrahedron);
+}
+
+bool DynamicTetrahedralization::ListMadeSince(std::int64_t count, std::vector<Id>& slots) const
+{
+  if (count < this->FirstNoted)
+  {
+    return false;
+  }
+  slots.assign(this->Noted.begin() + (count - this->FirstNoted), this->Noted.end());
+  return true;
 }
 
 void DynamicTetrahedralization::Kill(Id tetrahedron)

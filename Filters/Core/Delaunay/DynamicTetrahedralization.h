@@ -128,10 +128,21 @@ public:
 
   /** The tetrahedra made by the last change. */
   const std::vector<Id>& GetChanged() const { return this->Changed; }
+  /** How many tetrahedra have been made so far, those that are gone included. */
+  std::int64_t CountMade() const
+  {
+    return this->FirstNoted + static_cast<std::int64_t>(this->Noted.size());
+  }
+  /**
+   * Lists the slots of all tetrahedra that have been made since there were so many; a slot that has
+   * been used again is there again. False if that is too long ago to be known.
+   */
+  bool ListMadeSince(std::int64_t count, std::vector<Id>& slots) const;
 
 private:
   Id Make(const TetrahedronIds& ids, Id region);
   void Kill(Id tetrahedron);
+  void Note(Id tetrahedron);
   void Fill(Id point, const PointCavity& cavity);
 
   TetMesh Mesh;
@@ -140,6 +151,9 @@ private:
   std::vector<Id> PointTetrahedra;
   std::vector<Id> Free;
   std::vector<Id> Changed;
+  /** Slots of the last tetrahedra that were made, and how many were made before these. */
+  std::vector<Id> Noted;
+  std::int64_t FirstNoted = 0;
   CavitySearch Search;
   /** A tetrahedron that the last removal has removed. */
   struct Removed

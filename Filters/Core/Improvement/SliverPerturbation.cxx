@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/SliverPerturbation.h"
 
-#include "Core/Basics/Threads.h"
 #include "Core/Geometry/Measures.h"
+#include "Core/Improvement/LookAhead.h"
 #include "Core/Improvement/SliverChanges.h"
 #include "Core/Improvement/SliverList.h"
 
 #include <algorithm>
-#include <atomic>
-#include <cstdint>
 #include <utility>
 
 namespace cdm
@@ -16,19 +14,8 @@ namespace cdm
 namespace
 {
 constexpr std::size_t ReportInterval = 16;
-/**
- * Slivers that threads look at before the first of them is mended: one for so many tetrahedra. Where
- * they are closer, more of what was found is out of date when its turn comes.
- */
-constexpr std::size_t TetrahedraPerSliver = 4000;
-constexpr std::size_t FewestAhead = 8;
-constexpr std::size_t MostAhead = 256;
 
-/**
- * Mends slivers of a list, one after the other. Threads look ahead for the changes of the next ones.
- * At its turn, a change is made if the tetrahedra that the search has looked at are still there, and
- * looked for again if not. So the mesh is the same for any number of threads.
- */
+/** Mends slivers of a list, one after the other; threads look ahead. */
 class Perturbation
 {
 public:
@@ -42,20 +29,11 @@ public:
   bool Mend(std::size_t i);
 
 private:
-  /** What a thread has found for a sliver. */
-  struct Foreseen
-  {
-    bool IsKnown = false;
-    SliverChange Change;
-    std::vector<Id> Visited;
-  };
   SliverAttempt GetLast(const Sliver& sliver) const
   {
     return sliver.Angle < this->InsertedBelow ? SliverAttempt::Insertion : SliverAttempt::Move;
   }
   bool IsHopeless(const Sliver& sliver) const;
-  void LookAhead(std::size_t first);
-  bool IsTrue(const Foreseen& foreseen) const;
   SliverChange Find(std::size_t i);
   void Make(const SliverChange& change, Id tetrahedron);
 
@@ -64,14 +42,11 @@ private:
   std::vector<SliverChanges> Changes;
   std::vector<Sliver> Slivers;
   double InsertedBelow = 0.0;
-  /** For the slivers from First on, and the stamp of the first tetrahedron made since then. */
-  std::vector<Foreseen> Ahead;
-  std::size_t First = 0;
-  std::int64_t NextStamp = 0;
+  LookAhead<SliverChange> Ahead;
 };
 
 Perturbation::Perturbation(const SliverAim& aim, int numberOfThreads, RefinedMesh& mesh)
-  : Mesh(mesh)
+  : Mesh(mesh), Ahead(mesh)
 {
   for (int i = 0; i < numberOfThreads; ++i)
   {
@@ -83,8 +58,7 @@ void Perturbation::Start(std::vector<Sliver> slivers, double insertedBelow)
 {
   this->Slivers = std::move(slivers);
   this->InsertedBelow = insertedBelow;
-  this->Ahead.clear();
-  this->First = 0;
+  this->Ahead.Clear();
 }
 
 bool Perturbation::IsHopeless(const Sliver& sliver) const
@@ -93,69 +67,24 @@ bool Perturbation::IsHopeless(const Sliver& sliver) const
   return this->Mesh.GetMemory().IsHopeless(this->Mesh.GetNames(ids), this->GetLast(sliver));
 }
 
-void Perturbation::LookAhead(std::size_t first)
-{
-  const std::size_t most = std::clamp(
-    this->Mesh.GetMesh().Tetrahedra.size() / TetrahedraPerSliver, FewestAhead, MostAhead);
-  this->First = first;
-  this->NextStamp = this->Mesh.GetTetrahedra().GetNextStamp();
-  this->Ahead.clear();
-  std::vector<std::size_t> open;
-  for (std::size_t i = first; i < this->Slivers.size() && open.size() < most; ++i)
-  {
-    this->Ahead.emplace_back();
-    if (!IsGone(this->Slivers[i], this->Mesh) && !this->IsHopeless(this->Slivers[i]))
-    {
-      open.push_back(i);
-    }
-  }
-  const std::size_t threads = std::min(this->Changes.size(), open.size());
-  if (threads < 2)
-  {
-    return;
-  }
-  std::atomic<std::size_t> next{ 0 };
-  this->Mesh.Freeze(true);
-  RunOnThreads(static_cast<int>(threads),
-    [&](int thread)
-    {
-      SliverChanges& changes = this->Changes[static_cast<std::size_t>(thread)];
-      for (std::size_t k = next++; k < open.size(); k = next++)
-      {
-        const Sliver& sliver = this->Slivers[open[k]];
-        const SliverChange change = changes.Find(sliver.Tetrahedron, this->GetLast(sliver));
-        this->Ahead[open[k] - first] = { true, change, changes.GetVisited() };
-      }
-    });
-  this->Mesh.Freeze(false);
-}
-
-/** Whether the search would find the same now. */
-bool Perturbation::IsTrue(const Foreseen& foreseen) const
-{
-  const DynamicTetrahedralization& mesh = this->Mesh.GetTetrahedra();
-  return foreseen.IsKnown &&
-    !(foreseen.Change.What == SliverChange::Kind::Insertion && this->Mesh.IsFull()) &&
-    std::all_of(foreseen.Visited.begin(), foreseen.Visited.end(),
-      [&](Id t) { return mesh.GetStamp(t) < this->NextStamp; });
-}
-
 SliverChange Perturbation::Find(std::size_t i)
 {
-  if (this->Changes.size() > 1)
+  const auto find = [this](int thread, std::size_t k)
   {
-    if (i >= this->First + this->Ahead.size())
-    {
-      this->LookAhead(i);
-    }
-    const Foreseen& foreseen = this->Ahead[i - this->First];
-    if (this->IsTrue(foreseen))
-    {
-      return foreseen.Change;
-    }
-  }
-  const Sliver& sliver = this->Slivers[i];
-  return this->Changes.front().Find(sliver.Tetrahedron, this->GetLast(sliver));
+    SliverChanges& changes = this->Changes[static_cast<std::size_t>(thread)];
+    const Sliver& sliver = this->Slivers[k];
+    SliverChange change = changes.Find(sliver.Tetrahedron, this->GetLast(sliver));
+    return LookAhead<SliverChange>::Found{ std::move(change), changes.GetVisited() };
+  };
+  const SliverChange* const found = this->Ahead.Get(
+    i, this->Slivers.size(), static_cast<int>(this->Changes.size()),
+    [this](std::size_t k)
+    { return !IsGone(this->Slivers[k], this->Mesh) && !this->IsHopeless(this->Slivers[k]); },
+    find);
+  // A mesh that was not full then may be full now.
+  const bool isAllowed =
+    found != nullptr && !(found->What == SliverChange::Kind::Insertion && this->Mesh.IsFull());
+  return isAllowed ? *found : find(0, i).What;
 }
 
 void Perturbation::Make(const SliverChange& change, Id tetrahedron)

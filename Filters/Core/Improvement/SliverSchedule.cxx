@@ -140,32 +140,25 @@ bool SliverSchedule::RoundFlatTetrahedraAway()
 {
   const std::vector<Id> flat = this->GetMesh().FindFlatTetrahedra();
   std::vector<TetrahedronIds> found;
-  // Those that were left before would be left again, after some thousand positions each.
-  std::vector<Id> open;
   for (Id t : flat)
   {
-    TetrahedronIds ids = this->GetMesh().GetMesh().Tetrahedra[t];
-    std::sort(ids.begin(), ids.end());
-    found.push_back(ids);
-    if (!std::binary_search(this->LeftFlat.begin(), this->LeftFlat.end(), ids))
-    {
-      open.push_back(t);
-    }
+    found.push_back(this->GetMesh().GetMesh().Tetrahedra[t]);
+    std::sort(found.back().begin(), found.back().end());
   }
-  if (open.empty())
+  std::sort(found.begin(), found.end());
+  if (std::includes(this->LeftFlat.begin(), this->LeftFlat.end(), found.begin(), found.end()))
   {
     return false;
   }
   if (this->Roundings.IsOver(flat.size()))
   {
-    std::sort(found.begin(), found.end());
     this->LeftFlat = std::move(found);
     this->Roundings.Renew();
     return false;
   }
   this->Roundings.NoteTry();
   return this->Rounds.TakeSurfacePositions(
-    RoundSurfacePoints(open, this->Rounds.GetFreeSurfacePoints(), this->GetMesh()));
+    RoundSurfacePoints(flat, this->Rounds.GetFreeSurfacePoints(), this->GetMesh()));
 }
 
 /**
@@ -184,7 +177,8 @@ bool SliverSchedule::MoveSurfacePoints()
   this->SurfaceMoves.NoteTry();
   return this->Rounds.TakeSurfacePositions(
     cdm::MoveSurfacePoints(target, this->Rounds.GetFreeSurfacePoints(),
-      this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges, this->GetMesh()));
+      this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges,
+      this->Rounds.GetContext().GetNumberOfThreads(), this->GetMesh()));
 }
 
 Status SliverSchedule::RefineShapes()
@@ -206,16 +200,16 @@ Status SliverSchedule::PerturbLast()
 {
   Status status;
   Id inserted = NoId;
-  for (int pass = 1; status.IsOk() && inserted != this->GetMesh().GetReport().InsertedPoints;
+  for (int pass = 1; status.IsOk() && pass <= MaximumLastPasses &&
+       inserted != this->GetMesh().GetReport().InsertedPoints;
        ++pass)
   {
     inserted = this->GetMesh().GetReport().InsertedPoints;
-    if (pass == MaximumLastPasses)
+    status = this->Perturb(SliverMeans::Points);
+    if (status.IsOk() && pass < MaximumLastPasses)
     {
-      status = this->Perturb(SliverMeans::Moves);
-      break;
+      status = this->RefineShapes();
     }
-    status = this->Perturb(SliverMeans::Points).Then([this] { return this->RefineShapes(); });
   }
   if (status.IsOk() && !this->IsSharpPerturbed)
   {

@@ -5,6 +5,7 @@
 #include "Core/Geometry/Box.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
+#include "Core/Improvement/LookAhead.h"
 #include "Core/Improvement/PointRounding.h"
 #include "Core/Improvement/SliverList.h"
 #include "Core/Search/PlaceSearch.h"
@@ -77,12 +78,12 @@ Vec3 Project(const Vec3& position, const Vec3& origin, const Vec3& axis, bool is
 }
 } // namespace
 
-SurfacePointMoves::SurfacePointMoves(DynamicTetrahedralization& mesh, const TriangleMesh& surface,
-  const IdLists& pointTriangles, const std::vector<StructuralEdge>& edges,
-  const std::vector<StructuralEdge>& keptEdges, Rules rules)
-  : Mesh(mesh), Surface(surface), Points(surface.Points), PointTriangles(pointTriangles),
-    Edges(edges), KeptEdges(keptEdges), Given(std::move(rules)),
-    SearchedAt(surface.Points.size(), NoId)
+SurfacePointMoves::SurfacePointMoves(const DynamicTetrahedralization& mesh,
+  const TriangleMesh& surface, const std::vector<Vec3>& points, const IdLists& pointTriangles,
+  const std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges,
+  Rules rules)
+  : Mesh(mesh), Surface(surface), Points(points), PointTriangles(pointTriangles), Edges(edges),
+    KeptEdges(keptEdges), Given(std::move(rules)), SearchedAt(surface.Points.size(), NoId)
 {
   Box box;
   for (const Vec3& point : surface.Points)
@@ -199,7 +200,14 @@ bool SurfacePointMoves::CollectStar(Id point)
       }
     }
   }
+  this->Visited.insert(this->Visited.end(), this->Star.begin(), this->Star.end());
   return this->Star.size() <= LargestCavity;
+}
+
+std::vector<Id> SurfacePointMoves::TakeVisited()
+{
+  SortUnique(this->Visited);
+  return std::exchange(this->Visited, {});
 }
 
 /** The smallest angle that counts, and how far away the nearest other point is. */
@@ -276,6 +284,7 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
       {
         continue;
       }
+      this->Visited.push_back(t);
       const auto [a, b, c, d] = GetCorners(mesh.Points, mesh.Tetrahedra[t]);
       (InSphere(a, b, c, d, position) >= 0 ? this->Tetrahedra : outer).push_back(t);
     }
@@ -433,7 +442,8 @@ double SurfacePointMoves::Rate(Id point, const Vec3& position, double required)
   return broken > 0 ? 0.0 : smallest;
 }
 
-bool SurfacePointMoves::Move(Id point, const TetrahedronIds& sliver, double target)
+bool SurfacePointMoves::Find(
+  Id point, const TetrahedronIds& sliver, double target, Id numberOfMoves, Vec3& position)
 {
   Support support;
   if (!this->FindSupport(point, support) || !this->CollectStar(point))
@@ -443,8 +453,8 @@ bool SurfacePointMoves::Move(Id point, const TetrahedronIds& sliver, double targ
   double nearest = 0.0;
   const Vec3& old = this->Points[point];
   Place best{ old, this->MeasureStar(point, nearest) + SmallestGain, false };
-  const auto rate = [&](const Vec3& position, double required)
-  { return this->Rate(point, position, required); };
+  const auto rate = [&](const Vec3& place, double required)
+  { return this->Rate(point, place, required); };
   for (Id other : sliver)
   {
     if (other != point)
@@ -453,27 +463,69 @@ bool SurfacePointMoves::Move(Id point, const TetrahedronIds& sliver, double targ
     }
   }
   // A point of many slivers would be searched in vain, at the same positions, for each of them.
-  if (best.IsFound || this->SearchedAt[point] != this->NumberOfMoves)
+  if (best.IsFound || this->SearchedAt[point] != numberOfMoves)
   {
     SearchPlace(old, FirstMove * nearest, support.Directions, target, rate, best, SliverEffort);
   }
   if (!best.IsFound)
   {
-    this->SearchedAt[point] = this->NumberOfMoves;
+    this->SearchedAt[point] = numberOfMoves;
     return false;
   }
-  ++this->NumberOfMoves;
-  // The position that was tried last need not be the best one.
-  this->CollectCavity(point, best.Position);
-  this->Filling.Run(this->Around);
-  this->Mesh.SetPoint(point, best.Position);
-  this->Mesh.Replace(this->Tetrahedra, this->Outer, this->Filling.GetCells());
-  this->Points[point] = best.Position;
+  position = best.Position;
   return true;
 }
 
-std::vector<Vec3> MoveSurfacePoints(
-  double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh)
+void SurfacePointMoves::Make(Id point, const Vec3& position, DynamicTetrahedralization& mesh)
+{
+  this->CollectStar(point);
+  this->CollectCavity(point, position);
+  this->Filling.Run(this->Around);
+  mesh.SetPoint(point, position);
+  mesh.Replace(this->Tetrahedra, this->Outer, this->Filling.GetCells());
+}
+
+namespace
+{
+/** A point of the surface and its new position; no point: nothing is moved. */
+struct SurfaceMove
+{
+  Id Point = NoId;
+  Vec3 Position;
+};
+
+/** Moves points of slivers, one sliver after the other; threads look ahead. */
+class SliverSurfaceMoves
+{
+public:
+  SliverSurfaceMoves(double target, const std::vector<char>& isFree, bool areEdgesKept,
+    int numberOfThreads, RefinedMesh& mesh);
+
+  /** Passes over all slivers until nothing is moved any more. */
+  void Run();
+  std::vector<Vec3>& GetPoints() { return this->Points; }
+
+private:
+  bool IsHopeless(const Sliver& sliver) const;
+  SurfaceMove Find(std::size_t i);
+  bool Mend(std::size_t i);
+
+  const double Target;
+  const std::vector<char>& IsFree;
+  RefinedMesh& Mesh;
+  const std::vector<StructuralEdge> NoEdges;
+  std::vector<Vec3> Points;
+  /** One for each thread. */
+  std::vector<SurfacePointMoves> Searches;
+  std::vector<Sliver> Slivers;
+  LookAhead<SurfaceMove> Ahead;
+  Id NumberOfMoves = 0;
+};
+
+SliverSurfaceMoves::SliverSurfaceMoves(double target, const std::vector<char>& isFree,
+  bool areEdgesKept, int numberOfThreads, RefinedMesh& mesh)
+  : Target(target), IsFree(isFree), Mesh(mesh), Points(mesh.GetBoundary().Surface.Points),
+    Ahead(mesh)
 {
   const BoundaryShape& shape = mesh.GetShape();
   SurfacePointMoves::Rules rules;
@@ -484,43 +536,91 @@ std::vector<Vec3> MoveSurfacePoints(
   rules.BreaksLimit = [&mesh](const TetrahedronIds& ids, const std::array<Vec3, 4>& corners)
   { return mesh.BreaksLimit(ids, corners); };
   rules.GetClearance = [&mesh](Id point) { return mesh.GetClearance(point); };
-  const std::vector<StructuralEdge> none;
   const RefinedBoundary& boundary = mesh.GetBoundary();
-  SurfacePointMoves moves(mesh.GetTetrahedra(), boundary.Surface, shape.PointTriangles,
-    boundary.Edges, areEdgesKept ? boundary.KeptEdges : none, rules);
+  for (int i = 0; i < numberOfThreads; ++i)
+  {
+    this->Searches.emplace_back(mesh.GetTetrahedra(), boundary.Surface, this->Points,
+      shape.PointTriangles, boundary.Edges, areEdgesKept ? boundary.KeptEdges : this->NoEdges,
+      rules);
+  }
+}
 
+bool SliverSurfaceMoves::IsHopeless(const Sliver& sliver) const
+{
+  const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
+  return this->Mesh.GetMemory().IsHopeless(this->Mesh.GetNames(ids), SliverAttempt::SurfaceMove);
+}
+
+SurfaceMove SliverSurfaceMoves::Find(std::size_t i)
+{
+  const auto find = [this](int thread, std::size_t k)
+  {
+    SurfacePointMoves& search = this->Searches[static_cast<std::size_t>(thread)];
+    const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[this->Slivers[k].Tetrahedron];
+    SurfaceMove move;
+    search.StartRecord();
+    for (const Id id : ids)
+    {
+      if (!this->Mesh.IsInside(id) && this->IsFree[id] != 0 &&
+        search.Find(id, ids, MoveRatio * this->Target, this->NumberOfMoves, move.Position))
+      {
+        move.Point = id;
+        break;
+      }
+    }
+    return LookAhead<SurfaceMove>::Found{ move, search.TakeVisited() };
+  };
+  const SurfaceMove* const found = this->Ahead.Get(
+    i, this->Slivers.size(), static_cast<int>(this->Searches.size()),
+    [this](std::size_t k)
+    { return !IsGone(this->Slivers[k], this->Mesh) && !this->IsHopeless(this->Slivers[k]); },
+    find);
+  return found != nullptr ? *found : find(0, i).What;
+}
+
+bool SliverSurfaceMoves::Mend(std::size_t i)
+{
+  const Sliver& sliver = this->Slivers[i];
+  if (IsGone(sliver, this->Mesh) || this->IsHopeless(sliver))
+  {
+    return false;
+  }
+  const SurfaceMove move = this->Find(i);
+  if (move.Point == NoId)
+  {
+    const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
+    this->Mesh.GetMemory().SetHopeless(this->Mesh.GetNames(ids), SliverAttempt::SurfaceMove);
+    return false;
+  }
+  this->Searches.front().Make(move.Point, move.Position, this->Mesh.GetTetrahedra());
+  this->Points[move.Point] = move.Position;
+  ++this->NumberOfMoves;
+  this->Mesh.NoteSurfaceMove();
+  return true;
+}
+
+void SliverSurfaceMoves::Run()
+{
   bool isMended = true;
   for (int pass = 0; pass < MaximumSliverPasses && isMended; ++pass)
   {
     isMended = false;
-    for (const Sliver& sliver : FindSlivers(target, false, mesh))
+    this->Slivers = FindSlivers(this->Target, false, this->Mesh);
+    this->Ahead.Clear();
+    for (std::size_t i = 0; i < this->Slivers.size(); ++i)
     {
-      if (IsGone(sliver, mesh))
-      {
-        continue;
-      }
-      const TetrahedronIds ids = mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
-      const TetrahedronIds names = mesh.GetNames(ids);
-      if (mesh.GetMemory().IsHopeless(names, SliverAttempt::SurfaceMove))
-      {
-        continue;
-      }
-      const bool isMoved = std::any_of(ids.begin(), ids.end(),
-        [&](Id id) {
-          return !mesh.IsInside(id) && isFree[id] != 0 && moves.Move(id, ids, MoveRatio * target);
-        });
-      if (isMoved)
-      {
-        mesh.NoteSurfaceMove();
-        isMended = true;
-      }
-      else
-      {
-        mesh.GetMemory().SetHopeless(names, SliverAttempt::SurfaceMove);
-      }
+      isMended = this->Mend(i) || isMended;
     }
   }
-  return moves.GetPoints();
+}
+} // namespace
+
+std::vector<Vec3> MoveSurfacePoints(double target, const std::vector<char>& isFree,
+  bool areEdgesKept, int numberOfThreads, RefinedMesh& mesh)
+{
+  SliverSurfaceMoves moves(target, isFree, areEdgesKept, numberOfThreads, mesh);
+  moves.Run();
+  return std::move(moves.GetPoints());
 }
 
 std::vector<Vec3> RoundSurfacePoints(

@@ -40,6 +40,7 @@
 
 namespace cdm
 {
+/** Searches positions for points of a surface, in a mesh that follows them. */
 class SurfacePointMoves
 {
 public:
@@ -56,20 +57,29 @@ public:
    * The mesh has the surface's points first. The surface's triangles are those of outer facets and
    * interfaces whose smallest spheres are empty and stay so; a point with other outer facets cannot
    * be moved. All have to outlive the object.
+   * @param points the current positions of the surface's points, which may have been moved
    * @param edges structural edges, sorted
    * @param keptEdges structural edges whose smallest spheres stay empty, sorted
    */
-  SurfacePointMoves(DynamicTetrahedralization& mesh, const TriangleMesh& surface,
-    const IdLists& pointTriangles, const std::vector<StructuralEdge>& edges,
-    const std::vector<StructuralEdge>& keptEdges, Rules rules);
+  SurfacePointMoves(const DynamicTetrahedralization& mesh, const TriangleMesh& surface,
+    const std::vector<Vec3>& points, const IdLists& pointTriangles,
+    const std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges,
+    Rules rules);
 
   /**
-   * Moves a point of a sliver to the best position; false if none increases the smallest angle.
+   * Finds the best position for a point of a sliver; false if none increases the smallest angle.
    * @param target an angle that is large enough, in degrees
+   * @param numberOfMoves moves that were made: as long as there are no more, what was searched in
+   *   vain is not searched again
    */
-  bool Move(Id point, const TetrahedronIds& sliver, double target);
-  /** The current positions of the surface's points; the surface itself stays as it is. */
-  const std::vector<Vec3>& GetPoints() const { return this->Points; }
+  bool Find(
+    Id point, const TetrahedronIds& sliver, double target, Id numberOfMoves, Vec3& position);
+  /** Moves a point in the mesh, which is the one of this object, to a position that was found. */
+  void Make(Id point, const Vec3& position, DynamicTetrahedralization& mesh);
+
+  /** Forgets the visits so far; the tetrahedra that were looked at since then, in no order. */
+  void StartRecord() { this->Visited.clear(); }
+  std::vector<Id> TakeVisited();
 
 private:
   /** Where a point may move: in a plane, in several directions, or along a line. */
@@ -90,17 +100,15 @@ private:
   bool IsOnSurface(const TriangleIds& ids) const;
   bool AreSpheresEmpty(Id point, const Vec3& position) const;
 
-  DynamicTetrahedralization& Mesh;
+  const DynamicTetrahedralization& Mesh;
   const TriangleMesh& Surface;
-  std::vector<Vec3> Points;
+  const std::vector<Vec3>& Points;
   const IdLists& PointTriangles;
   const std::vector<StructuralEdge>& Edges;
   const std::vector<StructuralEdge>& KeptEdges;
   const Rules Given;
   /** Triangles count as coplanar if they deviate by less than this. Model units. */
   double Flatness = 0.0;
-  /** Moves that were done. */
-  Id NumberOfMoves = 0;
   /** For each point how many moves there were when a search for it was in vain; NoId: none was. */
   std::vector<Id> SearchedAt;
   /** Tetrahedra at the point that is moved. */
@@ -110,17 +118,19 @@ private:
   Cavity Around;
   std::vector<Id> Outer;
   CavityFilling Filling;
+  std::vector<Id> Visited;
 };
 
 /**
  * Moves points of the surface that are corners of slivers, also in the mesh.
  * @param target slivers have a dihedral angle below this. Degrees
+ * @param numberOfThreads look ahead (LookAhead.h); the result does not depend on them
  * @param isFree one for each point of the surface, whether it may be moved
  * @param areEdgesKept whether smallest spheres of the kept edges stay empty, too
  * @return the new positions of the surface's points
  */
-std::vector<Vec3> MoveSurfacePoints(
-  double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh);
+std::vector<Vec3> MoveSurfacePoints(double target, const std::vector<char>& isFree,
+  bool areEdgesKept, int numberOfThreads, RefinedMesh& mesh);
 
 /**
  * Perturbs the last bits of surface points, for tetrahedra that are flat but for rounding

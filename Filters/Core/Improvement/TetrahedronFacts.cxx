@@ -32,6 +32,10 @@ TetrahedronFacts::Known& TetrahedronFacts::Get(Id tetrahedron, Known& scratch)
 
 void TetrahedronFacts::Forget(std::int64_t first)
 {
+  if (first >= this->Mesh.GetNextStamp())
+  {
+    return;
+  }
   for (Known& known : this->Facts)
   {
     if (known.GetStamp() >= first)

@@ -6,12 +6,14 @@
  * Rounds of Steiner points change a small part of the mesh each. To look for what is badly shaped
  * in all of it took a third of the time of late rounds.
  *
- * Cost: a number is compared for each tetrahedron of the mesh; the property is asked for where
- * tetrahedra are new. 16 bytes for each tetrahedron that has it.
+ * Cost: the property is asked for where tetrahedra are new. The mesh lists these if they are at
+ * most half as many as the mesh has; otherwise, and where something has to be forgotten, all
+ * tetrahedra are visited. 16 bytes for each tetrahedron that has the property.
  */
 #ifndef cdmTetrahedronWatch_h
 #define cdmTetrahedronWatch_h
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 
 #include <algorithm>
@@ -31,8 +33,9 @@ public:
   const std::vector<Id>& Update(const DynamicTetrahedralization& mesh, Property&& hasProperty)
   {
     this->Keep([&mesh](Id t, std::int64_t stamp) { return mesh.GetStamp(t) == stamp; });
-    for (Id t = 0; t < mesh.GetNumberOfTetrahedra(); ++t)
+    const auto visit = [&](Id t)
     {
+      ++this->NumberOfVisits;
       const std::int64_t stamp = mesh.GetStamp(t);
       if (stamp >= this->NextStamp && !mesh.IsDead(t))
       {
@@ -43,7 +46,20 @@ public:
           this->Stamps.push_back(stamp);
         }
       }
+    };
+    if (this->NumberMade >= 0 && mesh.ListMadeSince(this->NumberMade, this->New))
+    {
+      SortUnique(this->New);
+      std::for_each(this->New.begin(), this->New.end(), visit);
     }
+    else
+    {
+      for (Id t = 0; t < mesh.GetNumberOfTetrahedra(); ++t)
+      {
+        visit(t);
+      }
+    }
+    this->NumberMade = mesh.CountMade();
     this->NextStamp = mesh.GetNextStamp();
     return this->Found;
   }
@@ -51,12 +67,18 @@ public:
   /** Asks again for tetrahedra with this stamp or a later one. */
   void Forget(std::int64_t first)
   {
-    this->Keep([first](Id, std::int64_t stamp) { return stamp < first; });
-    this->NextStamp = std::min(this->NextStamp, first);
+    if (first < this->NextStamp)
+    {
+      this->Keep([first](Id, std::int64_t stamp) { return stamp < first; });
+      this->NextStamp = first;
+      this->NumberMade = -1;
+    }
   }
 
   /** How many times a property has been asked for. */
   std::int64_t GetNumberOfTests() const { return this->NumberOfTests; }
+  /** How many tetrahedra have been visited to find those that are new. */
+  std::int64_t GetNumberOfVisits() const { return this->NumberOfVisits; }
 
 private:
   /** Drops all others of those that were found. */
@@ -81,6 +103,11 @@ private:
   /** Tetrahedra with this stamp or a later one are new. */
   std::int64_t NextStamp = 0;
   std::int64_t NumberOfTests = 0;
+  std::int64_t NumberOfVisits = 0;
+  /** How many tetrahedra the mesh had made at the last update; negative: all have to be visited. */
+  std::int64_t NumberMade = -1;
+  /** Work space. */
+  std::vector<Id> New;
 };
 } // namespace cdm
 
