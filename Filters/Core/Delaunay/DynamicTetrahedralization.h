@@ -20,7 +20,7 @@
  * no point beyond the facet, which the mesh does not know, is in conflict with a point on this
  * side. Guarantees: these invariants. Only points inside of a region are inserted, removed or
  * moved; the exception is Replace(), whose caller has to know that the cells fit.
- * Cost: microseconds for an insertion, a few hundred for a removal; 44 bytes per tetrahedron and 32
+ * Cost: microseconds for an insertion, a few hundred for a removal; 14 bytes per tetrahedron and 4
  * per point beside the mesh.
  *
  * Reference: O. Devillers, M. Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D

@@ -11,6 +11,9 @@ namespace cdm
 {
 namespace
 {
+/** Six volumes of a tetrahedron whose measures doubles are good enough for, in longest edges. */
+constexpr double WellShapedRatio = 1e-4;
+
 DoubleDouble3 operator+(const DoubleDouble3& a, const DoubleDouble3& b)
 {
   return { { a.X[0] + b.X[0], a.X[1] + b.X[1], a.X[2] + b.X[2] } };
@@ -31,37 +34,65 @@ DoubleDouble Scale(double s, const DoubleDouble& a)
   return DoubleDouble{ s, 0.0 } * a;
 }
 
-/** A tetrahedron with its first vertex as the origin. */
+double Scale(double s, double a)
+{
+  return s * a;
+}
+
+DoubleDouble3 Subtract(const Vec3& a, const Vec3& b, const DoubleDouble3&)
+{
+  return DoubleDouble3::FromDifference(a, b);
+}
+
+Vec3 Subtract(const Vec3& a, const Vec3& b, const Vec3&)
+{
+  return a - b;
+}
+
+DoubleDouble3 Negate(const DoubleDouble3& a)
+{
+  return { { -a.X[0], -a.X[1], -a.X[2] } };
+}
+
+Vec3 Negate(const Vec3& a)
+{
+  return -1.0 * a;
+}
+
+/**
+ * A tetrahedron with its first vertex as the origin.
+ * @tparam Real3 Vec3 or DoubleDouble3; and Real its coordinates
+ */
+template <typename Real, typename Real3>
 struct Frame
 {
   Frame(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
-    : U(DoubleDouble3::FromDifference(b, a)), V(DoubleDouble3::FromDifference(c, a)),
-      W(DoubleDouble3::FromDifference(d, a)), NormalC(Cross(W, U)), NormalB(Cross(V, W)),
-      NormalD(Cross(U, V)), SixVolumes(Dot(NormalD, W))
+    : U(Subtract(b, a, Real3())), V(Subtract(c, a, Real3())), W(Subtract(d, a, Real3())),
+      NormalC(Cross(W, U)), NormalB(Cross(V, W)), NormalD(Cross(U, V)), SixVolumes(Dot(NormalD, W))
   {
     // The normals of the four facets, each oriented inwards and as long as twice the area, vanish
     // in sum.
-    const DoubleDouble3 sum = this->NormalB + this->NormalC + this->NormalD;
-    this->NormalA = DoubleDouble3{ { -sum.X[0], -sum.X[1], -sum.X[2] } };
+    this->NormalA = Negate(this->NormalB + this->NormalC + this->NormalD);
   }
 
   /** Circumcenter times twelve volumes. */
-  DoubleDouble3 GetScaledCircumcenter() const
+  Real3 GetScaledCircumcenter() const
   {
     return Dot(this->W, this->W) * this->NormalD + Dot(this->V, this->V) * this->NormalC +
       Dot(this->U, this->U) * this->NormalB;
   }
 
-  DoubleDouble3 U;
-  DoubleDouble3 V;
-  DoubleDouble3 W;
+  Real3 U;
+  Real3 V;
+  Real3 W;
   /** Normals of the facets opposite to the vertices. */
-  DoubleDouble3 NormalC;
-  DoubleDouble3 NormalB;
-  DoubleDouble3 NormalD;
-  DoubleDouble3 NormalA;
-  DoubleDouble SixVolumes;
+  Real3 NormalC;
+  Real3 NormalB;
+  Real3 NormalD;
+  Real3 NormalA;
+  Real SixVolumes;
 };
+using DoubleDoubleFrame = Frame<DoubleDouble, DoubleDouble3>;
 
 bool IsPositive(const std::array<Vec3, 4>& corners)
 {
@@ -104,27 +135,26 @@ double GetRounding(const std::array<Vec3, 4>& corners, int edge)
 }
 
 /** The two parts of the coupling of each edge, one on the side of each of its facets. */
-std::array<std::array<DoubleDouble, 2>, 6> GetCouplingParts(
-  const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+template <typename Real, typename Real3>
+std::array<std::array<Real, 2>, 6> GetCouplingParts(const Frame<Real, Real3>& frame)
 {
-  const Frame frame(a, b, c, d);
-  const DoubleDouble3 center = frame.GetScaledCircumcenter();
-  const DoubleDouble twelveVolumes = Scale(2.0, frame.SixVolumes);
-  const DoubleDouble denominator = Scale(4.0, twelveVolumes);
+  const Real3 center = frame.GetScaledCircumcenter();
+  const Real twelveVolumes = Scale(2.0, frame.SixVolumes);
+  const Real denominator = Scale(4.0, twelveVolumes);
   // For a facet: distance of the circumcenter, over four lengths of the normal.
-  const auto facet = [&](const DoubleDouble3& normal, const DoubleDouble3& fromVertex)
+  const auto facet = [&](const Real3& normal, const Real3& fromVertex)
   { return Dot(fromVertex, normal) / (denominator * Dot(normal, normal)); };
-  const DoubleDouble facetB = facet(frame.NormalB, center);
-  const DoubleDouble facetC = facet(frame.NormalC, center);
-  const DoubleDouble facetD = facet(frame.NormalD, center);
-  const DoubleDouble facetA = facet(frame.NormalA, center - twelveVolumes * frame.U);
+  const Real facetB = facet(frame.NormalB, center);
+  const Real facetC = facet(frame.NormalC, center);
+  const Real facetD = facet(frame.NormalD, center);
+  const Real facetA = facet(frame.NormalA, center - twelveVolumes * frame.U);
 
-  const DoubleDouble3& u = frame.U;
-  const DoubleDouble3& v = frame.V;
-  const DoubleDouble3& w = frame.W;
-  const DoubleDouble3 vu = v - u;
-  const DoubleDouble3 wu = w - u;
-  const DoubleDouble3 wv = w - v;
+  const Real3& u = frame.U;
+  const Real3& v = frame.V;
+  const Real3& w = frame.W;
+  const Real3 vu = v - u;
+  const Real3 wu = w - u;
+  const Real3 wv = w - v;
   // Each edge has two facets, and sees in each the third vertex with the angle whose cosine is
   // this product.
   return { { { Dot(v, vu) * facetD, Dot(w, wu) * facetC }, // ab: abc, abd
@@ -138,7 +168,7 @@ std::array<std::array<DoubleDouble, 2>, 6> GetCouplingParts(
 
 std::array<DoubleDouble, 6> GetCouplings(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
-  const auto parts = GetCouplingParts(a, b, c, d);
+  const auto parts = GetCouplingParts(DoubleDoubleFrame(a, b, c, d));
   std::array<DoubleDouble, 6> couplings;
   for (int edge = 0; edge < 6; ++edge)
   {
@@ -149,20 +179,32 @@ std::array<DoubleDouble, 6> GetCouplings(const Vec3& a, const Vec3& b, const Vec
 
 double GetUnsignedBoxVolume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
-  const auto parts = GetCouplingParts(a, b, c, d);
   const std::array<double, 6> squares{ SquaredNorm(b - a), SquaredNorm(c - a), SquaredNorm(d - a),
     SquaredNorm(c - b), SquaredNorm(d - b), SquaredNorm(d - c) };
-  double volume = 0.0;
-  for (int edge = 0; edge < 6; ++edge)
+  const auto add = [&squares](const auto& getPart)
   {
-    volume += squares[edge] * (std::abs(parts[edge][0].High) + std::abs(parts[edge][1].High)) / 3.0;
+    double volume = 0.0;
+    for (int edge = 0; edge < 6; ++edge)
+    {
+      volume += squares[edge] * (std::abs(getPart(edge, 0)) + std::abs(getPart(edge, 1))) / 3.0;
+    }
+    return volume;
+  };
+  // All but the flattest tetrahedra lose four digits at most: one needs no more than these.
+  const double longest = std::sqrt(*std::max_element(squares.begin(), squares.end()));
+  const Frame<double, Vec3> frame(a, b, c, d);
+  if (std::abs(frame.SixVolumes) > WellShapedRatio * longest * longest * longest)
+  {
+    const auto parts = GetCouplingParts(frame);
+    return add([&parts](int edge, int side) { return parts[edge][side]; });
   }
-  return volume;
+  const auto parts = GetCouplingParts(DoubleDoubleFrame(a, b, c, d));
+  return add([&parts](int edge, int side) { return parts[edge][side].High; });
 }
 
 Vec3 GetAccurateCircumcenter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
-  const Frame frame(a, b, c, d);
+  const DoubleDoubleFrame frame(a, b, c, d);
   const DoubleDouble3 center = frame.GetScaledCircumcenter();
   const DoubleDouble twelveVolumes = Scale(2.0, frame.SixVolumes);
   Vec3 result;
@@ -226,7 +268,7 @@ std::array<DoubleDouble, 3> GetVertexAreas(const Vec3& a, const Vec3& b, const V
 std::array<DoubleDouble, 6> GetOppositeCotangents(
   const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
-  const Frame frame(a, b, c, d);
+  const DoubleDoubleFrame frame(a, b, c, d);
   const auto get = [&frame](const DoubleDouble3& first, const DoubleDouble3& second)
   { return -(Dot(first, second)) / frame.SixVolumes; };
   return { get(frame.NormalA, frame.NormalB), get(frame.NormalA, frame.NormalC),

