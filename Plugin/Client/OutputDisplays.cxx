@@ -99,9 +99,9 @@ bool IsColorMapShared(pqDataRepresentation* display)
   for (pqRepresentation* representation : display->getView()->getRepresentations())
   {
     auto* other = qobject_cast<pqDataRepresentation*>(representation);
-    if (other && other != display && other->isVisible() &&
-      vtkSMPVRepresentationProxy::GetUsingScalarColoring(other->getProxy()) &&
-      GetColorMap(other->getProxy()) == colors && HasCells(other->getOutputPortFromInput()))
+    auto* proxy = other ? vtkSMPVRepresentationProxy::SafeDownCast(other->getProxy()) : nullptr;
+    if (proxy && other != display && other->isVisible() && proxy->GetUsingScalarColoring() &&
+      GetColorMap(proxy) == colors && HasCells(other->getOutputPortFromInput()))
     {
       return true;
     }
