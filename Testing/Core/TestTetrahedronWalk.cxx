@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/Predicates.h"
 #include "Core/Meshes/TetrahedronWalk.h"
-#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
+#include "RandomMeshes.h"
 
 #include <gtest/gtest.h>
 
@@ -15,19 +15,7 @@ namespace
 /** The Delaunay mesh of random points, without some of its tetrahedra: walks may not go through. */
 TetMesh MakeMesh(int numberOfPoints, int every, std::mt19937_64& generator)
 {
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  std::vector<Vec3> points(static_cast<std::size_t>(numberOfPoints));
-  for (Vec3& point : points)
-  {
-    point = { uniform(generator), uniform(generator), uniform(generator) };
-  }
-  AdvancingFrontTetrahedralizerInput input;
-  input.MeshPoints = &points;
-  AdvancingFrontTetrahedralizerOptions options;
-  options.CloseOpenBoundary = true;
-  AdvancingFrontTetrahedralizerOutput output;
-  EXPECT_TRUE(TetrahedralizeByAdvancingFront(input, options, {}, output).IsOk());
-  TetMesh mesh = std::move(output.Mesh);
+  TetMesh mesh = MakeRandomMesh(numberOfPoints, generator);
   for (Id t = 0; t < static_cast<Id>(mesh.Tetrahedra.size()) && every > 0; t += every)
   {
     for (const Id neighbor : mesh.Neighbors[t])
@@ -86,7 +74,7 @@ TEST(TetrahedronWalk, FindsWhatHoldsAPosition)
       missed += found[i] == NoId ? 1 : 0;
       EXPECT_TRUE(found[i] == NoId || IsHeld(mesh, found[i], positions[i])) << i;
     }
-    // Without holes only what rounding puts outside.
+    // In a mesh without holes, walks miss only what rounding puts outside.
     EXPECT_LT(missed, every == 0 ? positions.size() / 400 : positions.size() / 3);
     EXPECT_EQ(FindTetrahedra(mesh, positions, 3), found);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/TetrahedronWatch.h"
-#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
+#include "RandomMeshes.h"
 
 #include <gtest/gtest.h>
 
@@ -11,31 +11,6 @@ using namespace cdm;
 
 namespace
 {
-Vec3 DrawPoint(std::mt19937_64& generator)
-{
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  const double x = uniform(generator);
-  const double y = uniform(generator);
-  return { x, y, uniform(generator) };
-}
-
-/** The Delaunay mesh of random points. */
-DynamicTetrahedralization MakeMesh(int numberOfPoints, std::mt19937_64& generator)
-{
-  std::vector<Vec3> points;
-  for (int i = 0; i < numberOfPoints; ++i)
-  {
-    points.push_back(DrawPoint(generator));
-  }
-  AdvancingFrontTetrahedralizerInput input;
-  input.MeshPoints = &points;
-  AdvancingFrontTetrahedralizerOptions options;
-  options.CloseOpenBoundary = true;
-  AdvancingFrontTetrahedralizerOutput output;
-  EXPECT_TRUE(TetrahedralizeByAdvancingFront(input, options, {}, output).IsOk());
-  return DynamicTetrahedralization(std::move(output.Mesh));
-}
-
 bool Insert(const Vec3& position, DynamicTetrahedralization& mesh)
 {
   PointCavity cavity;
@@ -84,7 +59,7 @@ std::vector<Id> Update(const DynamicTetrahedralization& mesh, TetrahedronWatch& 
 TEST(TetrahedronWatch, AsksForWhatIsNewOnly)
 {
   std::mt19937_64 generator(1);
-  DynamicTetrahedralization mesh = MakeMesh(2000, generator);
+  DynamicTetrahedralization mesh(MakeRandomMesh(2000, generator));
   TetrahedronWatch watch;
   EXPECT_EQ(Update(mesh, watch), FindAll(mesh));
   EXPECT_EQ(watch.GetNumberOfTests(), mesh.GetNumberOfTetrahedra());
@@ -111,7 +86,7 @@ TEST(TetrahedronWatch, AsksForWhatIsNewOnly)
 TEST(TetrahedronWatch, VisitsAllAfterManyChanges)
 {
   std::mt19937_64 generator(4);
-  DynamicTetrahedralization mesh = MakeMesh(300, generator);
+  DynamicTetrahedralization mesh(MakeRandomMesh(300, generator));
   TetrahedronWatch watch;
   for (const int changes : { 10, 2000, 10, 100 })
   {
@@ -126,7 +101,7 @@ TEST(TetrahedronWatch, VisitsAllAfterManyChanges)
 TEST(TetrahedronWatch, FollowsRemovalsThatAreUndone)
 {
   std::mt19937_64 generator(2);
-  DynamicTetrahedralization mesh = MakeMesh(500, generator);
+  DynamicTetrahedralization mesh(MakeRandomMesh(500, generator));
   TetrahedronWatch watch;
   Update(mesh, watch);
   int removals = 0;
@@ -148,7 +123,7 @@ TEST(TetrahedronWatch, FollowsRemovalsThatAreUndone)
 TEST(TetrahedronWatch, AsksAgainForWhatItHasToForget)
 {
   std::mt19937_64 generator(3);
-  DynamicTetrahedralization mesh = MakeMesh(500, generator);
+  DynamicTetrahedralization mesh(MakeRandomMesh(500, generator));
   TetrahedronWatch watch;
   Update(mesh, watch);
   const std::int64_t stamp = mesh.GetNextStamp();

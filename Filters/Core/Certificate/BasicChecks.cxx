@@ -16,7 +16,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -150,6 +149,11 @@ private:
   void FinishVolumes();
 
   Id FindMeshPoint(Id boundaryPoint) const;
+  /** Whether the tetrahedron of a facet lies where the normal of the sorted points comes from. */
+  bool IsBehind(const FacetRecord& facet) const
+  {
+    return facet.IsEven == (this->Findings.Orientations[facet.Source / 4] >= 0);
+  }
   bool IsInner(const std::vector<FacetRecord>& facets) const;
   bool CollectFacets(const ExecutionContext& context, const std::vector<FacetRecord>& triangles,
     std::vector<FacetRecord>& facets) const;
@@ -393,10 +397,8 @@ bool Checker::IsInner(const std::vector<FacetRecord>& facets) const
   }
   const Id first = facets[0].Source;
   const Id second = facets[1].Source;
-  const auto isBehind = [&](const FacetRecord& facet)
-  { return facet.IsEven == (this->Findings.Orientations[facet.Source / 4] >= 0); };
   return this->Mesh.Regions[first / 4] == this->Mesh.Regions[second / 4] &&
-    isBehind(facets[0]) != isBehind(facets[1]) &&
+    this->IsBehind(facets[0]) != this->IsBehind(facets[1]) &&
     (this->Mesh.Neighbors.empty() ||
       (this->Mesh.Neighbors[first / 4][first % 4] == second &&
         this->Mesh.Neighbors[second / 4][second % 4] == first));
@@ -611,7 +613,7 @@ bool Checker::CheckFacets(const ExecutionContext& context)
     for (auto facet = begin; facet != end; ++facet)
     {
       const Id tetrahedron = facet->Source / 4;
-      const bool isBehind = facet->IsEven == (this->Findings.Orientations[tetrahedron] >= 0);
+      const bool isBehind = this->IsBehind(*facet);
       ++(isBehind ? behind : inFront);
       (isBehind ? regions.Back : regions.Front) = this->Mesh.Regions[tetrahedron];
     }

@@ -137,7 +137,7 @@ private:
   /** Marks of tetrahedra: search * 2, plus 1 if in conflict. */
   std::vector<std::uint32_t> Marks;
   std::uint32_t Search = 0;
-  /** Of the point that is left out. */
+  /** The tetrahedra around the point that is left out, and their region. */
   std::vector<Id> Star;
   Id HiddenRegion = NoId;
   CavityFilling Filling;

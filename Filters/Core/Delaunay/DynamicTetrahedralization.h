@@ -76,7 +76,7 @@ public:
     return this->Search.IsBoundary(tetrahedron, facet);
   }
 
-  /** As CavitySearch has them. */
+  /** These four do what CavitySearch says, in this mesh. */
   bool FindStar(Id point, std::vector<Id>& star) { return this->Search.FindStar(point, star); }
   Id Locate(const Vec3& position, Id first) { return this->Search.Locate(position, first); }
   bool IsInConflict(Id tetrahedron, const Vec3& position, Id number) const

@@ -43,4 +43,16 @@ bool IsGone(const Sliver& sliver, const RefinedMesh& mesh)
 {
   return mesh.GetTetrahedra().GetStamp(sliver.Tetrahedron) != sliver.Stamp;
 }
+
+bool IsHopeless(const Sliver& sliver, SliverAttempt last, RefinedMesh& mesh)
+{
+  const TetrahedronIds& ids = mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
+  return mesh.GetMemory().IsHopeless(mesh.GetNames(ids), last);
+}
+
+void SetHopeless(const Sliver& sliver, SliverAttempt last, RefinedMesh& mesh)
+{
+  const TetrahedronIds& ids = mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
+  mesh.GetMemory().SetHopeless(mesh.GetNames(ids), last);
+}
 } // namespace cdm

@@ -48,6 +48,10 @@ std::size_t CountSlivers(double target, const RefinedMesh& mesh);
 
 /** Whether the tetrahedron has been replaced since it was found. */
 bool IsGone(const Sliver& sliver, const RefinedMesh& mesh);
+
+/** Whether all attempts up to this one have failed, and nothing nearby has changed since. */
+bool IsHopeless(const Sliver& sliver, SliverAttempt last, RefinedMesh& mesh);
+void SetHopeless(const Sliver& sliver, SliverAttempt last, RefinedMesh& mesh);
 } // namespace cdm
 
 #endif

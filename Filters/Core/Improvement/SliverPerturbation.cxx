@@ -63,8 +63,7 @@ void Perturbation::Start(std::vector<Sliver> slivers, double insertedBelow)
 
 bool Perturbation::IsHopeless(const Sliver& sliver) const
 {
-  const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
-  return this->Mesh.GetMemory().IsHopeless(this->Mesh.GetNames(ids), this->GetLast(sliver));
+  return cdm::IsHopeless(sliver, this->GetLast(sliver), this->Mesh);
 }
 
 SliverChange Perturbation::Find(std::size_t i)
@@ -117,8 +116,7 @@ bool Perturbation::Mend(std::size_t i)
   const SliverChange change = this->Find(i);
   if (change.What == SliverChange::Kind::None)
   {
-    const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
-    this->Mesh.GetMemory().SetHopeless(this->Mesh.GetNames(ids), this->GetLast(sliver));
+    SetHopeless(sliver, this->GetLast(sliver), this->Mesh);
     return false;
   }
   this->Make(change, sliver.Tetrahedron);

@@ -81,9 +81,10 @@ Vec3 Project(const Vec3& position, const Vec3& origin, const Vec3& axis, bool is
 SurfacePointMoves::SurfacePointMoves(const DynamicTetrahedralization& mesh,
   const TriangleMesh& surface, const std::vector<Vec3>& points, const IdLists& pointTriangles,
   const std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges,
-  Rules rules)
+  Rules rules, bool isRecording)
   : Mesh(mesh), Surface(surface), Points(points), PointTriangles(pointTriangles), Edges(edges),
-    KeptEdges(keptEdges), Given(std::move(rules)), SearchedAt(surface.Points.size(), NoId)
+    KeptEdges(keptEdges), Given(std::move(rules)), SearchedAt(surface.Points.size(), NoId),
+    IsRecording(isRecording)
 {
   Box box;
   for (const Vec3& point : surface.Points)
@@ -200,7 +201,10 @@ bool SurfacePointMoves::CollectStar(Id point)
       }
     }
   }
-  this->Visited.insert(this->Visited.end(), this->Star.begin(), this->Star.end());
+  if (this->IsRecording)
+  {
+    this->Visited.insert(this->Visited.end(), this->Star.begin(), this->Star.end());
+  }
   return this->Star.size() <= LargestCavity;
 }
 
@@ -284,7 +288,10 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
       {
         continue;
       }
-      this->Visited.push_back(t);
+      if (this->IsRecording)
+      {
+        this->Visited.push_back(t);
+      }
       const auto [a, b, c, d] = GetCorners(mesh.Points, mesh.Tetrahedra[t]);
       (InSphere(a, b, c, d, position) >= 0 ? this->Tetrahedra : outer).push_back(t);
     }
@@ -506,7 +513,12 @@ public:
   std::vector<Vec3>& GetPoints() { return this->Points; }
 
 private:
-  bool IsHopeless(const Sliver& sliver) const;
+  /** Whether a sliver is still there, and not known to be hopeless. */
+  bool IsOpen(const Sliver& sliver) const
+  {
+    return !IsGone(sliver, this->Mesh) &&
+      !IsHopeless(sliver, SliverAttempt::SurfaceMove, this->Mesh);
+  }
   SurfaceMove Find(std::size_t i);
   bool Mend(std::size_t i);
 
@@ -541,14 +553,8 @@ SliverSurfaceMoves::SliverSurfaceMoves(double target, const std::vector<char>& i
   {
     this->Searches.emplace_back(mesh.GetTetrahedra(), boundary.Surface, this->Points,
       shape.PointTriangles, boundary.Edges, areEdgesKept ? boundary.KeptEdges : this->NoEdges,
-      rules);
+      rules, numberOfThreads > 1);
   }
-}
-
-bool SliverSurfaceMoves::IsHopeless(const Sliver& sliver) const
-{
-  const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
-  return this->Mesh.GetMemory().IsHopeless(this->Mesh.GetNames(ids), SliverAttempt::SurfaceMove);
 }
 
 SurfaceMove SliverSurfaceMoves::Find(std::size_t i)
@@ -572,24 +578,21 @@ SurfaceMove SliverSurfaceMoves::Find(std::size_t i)
   };
   const SurfaceMove* const found = this->Ahead.Get(
     i, this->Slivers.size(), static_cast<int>(this->Searches.size()),
-    [this](std::size_t k)
-    { return !IsGone(this->Slivers[k], this->Mesh) && !this->IsHopeless(this->Slivers[k]); },
-    find);
+    [this](std::size_t k) { return this->IsOpen(this->Slivers[k]); }, find);
   return found != nullptr ? *found : find(0, i).What;
 }
 
 bool SliverSurfaceMoves::Mend(std::size_t i)
 {
   const Sliver& sliver = this->Slivers[i];
-  if (IsGone(sliver, this->Mesh) || this->IsHopeless(sliver))
+  if (!this->IsOpen(sliver))
   {
     return false;
   }
   const SurfaceMove move = this->Find(i);
   if (move.Point == NoId)
   {
-    const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
-    this->Mesh.GetMemory().SetHopeless(this->Mesh.GetNames(ids), SliverAttempt::SurfaceMove);
+    SetHopeless(sliver, SliverAttempt::SurfaceMove, this->Mesh);
     return false;
   }
   this->Searches.front().Make(move.Point, move.Position, this->Mesh.GetTetrahedra());

@@ -60,11 +60,12 @@ public:
    * @param points the current positions of the surface's points, which may have been moved
    * @param edges structural edges, sorted
    * @param keptEdges structural edges whose smallest spheres stay empty, sorted
+   * @param isRecording whether TakeVisited() is needed
    */
   SurfacePointMoves(const DynamicTetrahedralization& mesh, const TriangleMesh& surface,
     const std::vector<Vec3>& points, const IdLists& pointTriangles,
     const std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges,
-    Rules rules);
+    Rules rules, bool isRecording);
 
   /**
    * Finds the best position for a point of a sliver; false if none increases the smallest angle.
@@ -118,6 +119,7 @@ private:
   Cavity Around;
   std::vector<Id> Outer;
   CavityFilling Filling;
+  const bool IsRecording;
   std::vector<Id> Visited;
 };
 

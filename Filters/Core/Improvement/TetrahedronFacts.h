@@ -54,7 +54,7 @@ private:
   {
     /** Negative if not known. */
     double Angle = -1.0;
-    /** Of the tetrahedron; those of the mesh begin with 0. */
+    /** The stamp that the tetrahedron had, and 1 more: 0 if nothing is known. */
     std::uint64_t NextStamp : 48;
     std::uint64_t Fault : 2;
     std::uint64_t IsInLayer : 2;
