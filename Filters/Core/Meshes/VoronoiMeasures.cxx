@@ -13,6 +13,12 @@ namespace
 {
 /** Six volumes of a tetrahedron whose measures doubles are good enough for, in longest edges. */
 constexpr double WellShapedRatio = 1e-4;
+/**
+ * A sum of couplings in doubles that is larger than this part of the longest edges is positive. The
+ * circumcenter of a well shaped tetrahedron is off by 1e-12 longest edges at most, and its couplings
+ * by 1e-8: a distance, times a square of an edge, over a facet's area of 1e-4 such squares.
+ */
+constexpr double SurelyPositiveRatio = 1e-6;
 
 DoubleDouble3 operator+(const DoubleDouble3& a, const DoubleDouble3& b)
 {
@@ -164,6 +170,56 @@ std::array<std::array<Real, 2>, 6> GetCouplingParts(const Frame<Real, Real3>& fr
     { Dot(u, w) * facetC, -(Dot(vu, wv) * facetA) },       // bd: abd, bcd
     { Dot(v, w) * facetB, Dot(vu, wu) * facetA } } };      // cd: acd, bcd
 }
+
+using DoubleParts = std::array<std::array<double, 2>, 6>;
+
+/** Parts of couplings in doubles; false if the tetrahedron is too flat, or inverted. */
+bool FindDoubleParts(const std::array<Vec3, 4>& corners, double longest, DoubleParts& parts)
+{
+  const Frame<double, Vec3> frame(corners[0], corners[1], corners[2], corners[3]);
+  if (!(frame.SixVolumes > WellShapedRatio * longest * longest * longest))
+  {
+    return false;
+  }
+  parts = GetCouplingParts(frame);
+  return true;
+}
+
+/**
+ * Whether doubles suffice to see that the coupling of an edge is positive. That spared the check of
+ * a mesh a quarter of its time, as nearly all couplings are.
+ */
+bool IsSurelyPositive(const TetMesh& mesh,
+  std::vector<SimplexIncidence::Record>::const_iterator begin,
+  std::vector<SimplexIncidence::Record>::const_iterator end, Id region)
+{
+  double sum = 0.0;
+  double lengths = 0.0;
+  DoubleParts parts;
+  for (auto record = begin; record != end; ++record)
+  {
+    const Id tetrahedron = record->Simplex / 6;
+    if (mesh.Regions[tetrahedron] != region)
+    {
+      continue;
+    }
+    const std::array<Vec3, 4> corners = GetCorners(mesh.Points, mesh.Tetrahedra[tetrahedron]);
+    double longest = 0.0;
+    for (const int* ends : TetrahedronEdges)
+    {
+      longest = std::max(longest, SquaredNorm(corners[ends[1]] - corners[ends[0]]));
+    }
+    longest = std::sqrt(longest);
+    if (!FindDoubleParts(corners, longest, parts))
+    {
+      return false;
+    }
+    const std::array<double, 2>& own = parts[record->Simplex % 6];
+    sum += own[0] + own[1];
+    lengths += longest;
+  }
+  return sum > SurelyPositiveRatio * lengths;
+}
 } // namespace
 
 std::array<DoubleDouble, 6> GetCouplings(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
@@ -192,11 +248,10 @@ double GetUnsignedBoxVolume(const Vec3& a, const Vec3& b, const Vec3& c, const V
   };
   // All but the flattest tetrahedra lose four digits at most: one needs no more than these.
   const double longest = std::sqrt(*std::max_element(squares.begin(), squares.end()));
-  const Frame<double, Vec3> frame(a, b, c, d);
-  if (std::abs(frame.SixVolumes) > WellShapedRatio * longest * longest * longest)
+  DoubleParts doubles;
+  if (FindDoubleParts({ a, b, c, d }, longest, doubles))
   {
-    const auto parts = GetCouplingParts(frame);
-    return add([&parts](int edge, int side) { return parts[edge][side]; });
+    return add([&doubles](int edge, int side) { return doubles[edge][side]; });
   }
   const auto parts = GetCouplingParts(DoubleDoubleFrame(a, b, c, d));
   return add([&parts](int edge, int side) { return parts[edge][side].High; });
@@ -236,6 +291,10 @@ bool HasNegativeCoupling(const TetMesh& mesh, const EdgeIds& edge,
   std::vector<SimplexIncidence::Record>::const_iterator begin,
   std::vector<SimplexIncidence::Record>::const_iterator end, Id region)
 {
+  if (IsSurelyPositive(mesh, begin, end, region))
+  {
+    return false;
+  }
   CouplingSum sum;
   for (auto record = begin; record != end; ++record)
   {
