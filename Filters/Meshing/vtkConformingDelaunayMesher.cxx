@@ -395,6 +395,8 @@ cdm::Status vtkConformingDelaunayMesher::MakeOptions(
   options.RegionSizes.Growth = this->Growth;
   options.CloseOpenBoundary = this->CloseOpenBoundary;
   options.MaximumVolume = this->MaximumVolume;
+  options.LayerAspectRatio = this->LayerAspectRatio;
+  options.TetrahedraAcrossLayers = this->TetrahedraAcrossLayers;
   options.SmoothingRounds = this->SmoothingRounds;
   return this->MakeChoices(options.Choices)
     .Then(
@@ -529,5 +531,7 @@ void vtkConformingDelaunayMesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "RadiusEdgeRatio: " << this->RadiusEdgeRatio << "\n";
   os << indent << "MaximumVolume: " << this->MaximumVolume << "\n";
   os << indent << "DihedralAngleTarget: " << this->DihedralAngleTarget << "\n";
+  os << indent << "LayerAspectRatio: " << this->LayerAspectRatio << "\n";
+  os << indent << "TetrahedraAcrossLayers: " << this->TetrahedraAcrossLayers << "\n";
   os << indent << "SmoothingRounds: " << this->SmoothingRounds << "\n";
 }

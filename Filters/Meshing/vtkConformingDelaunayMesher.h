@@ -374,6 +374,27 @@ public:
 
   ///@{
   /**
+   * With Steiner points. Layers that are at least so many times as wide as thick are thin: tetrahedra across
+   * them may be flat, as well shaped ones would have to be as small as the layer is thick. All other
+   * layers are filled with well shaped ones. Ratio; default 0: 20 where another region is beside the
+   * layer, and 100 for plates, with the outside on both sides; otherwise at least 1.
+   */
+  vtkSetInRangeMacro(LayerAspectRatio, double, 0.0, VTK_DOUBLE_MAX, "ratio of width to thickness");
+  vtkGetMacro(LayerAspectRatio, double);
+  ///@}
+
+  ///@{
+  /**
+   * With Steiner points. At least so many tetrahedra lie one after another from side to side of each layer, and
+   * of each other part whose sides face each other, but for thin layers (LayerAspectRatio) and layers
+   * that end in a sharp edge. Default 1: no more than their shapes need; range 1 to 100.
+   */
+  vtkSetInRangeMacro(TetrahedraAcrossLayers, int, 1, 100, "tetrahedra");
+  vtkGetMacro(TetrahedraAcrossLayers, int);
+  ///@}
+
+  ///@{
+  /**
    * With Steiner points: how many times each free point inside may go to where fewer circumcenters
    * lie outside of their tetrahedra. Solvers that take absolute values of couplings then have
    * smaller errors; the others need no smoothing. The mesh stays Delaunay, with the same boundary;
@@ -419,6 +440,8 @@ protected:
   int AddSteinerPoints = AUTOMATIC;
   double RadiusEdgeRatio = AUTOMATIC;
   double MaximumVolume = 0.0;
+  double LayerAspectRatio = 0.0;
+  int TetrahedraAcrossLayers = 1;
   int SmoothingRounds = 0;
 
 private:

@@ -117,6 +117,8 @@ int vtkSteinerPointRefiner::RequestData(
   cdm::SteinerPointRefinerOptions options;
   options.RadiusEdgeRatio = this->RadiusEdgeRatio;
   options.DihedralAngleTarget = this->DihedralAngleTarget;
+  options.LayerAspectRatio = this->LayerAspectRatio;
+  options.TetrahedraAcrossLayers = this->TetrahedraAcrossLayers;
   options.MaximumVolume = this->MaximumVolume;
   options.MaximumEdgeLength = this->MaximumEdgeLength;
   options.MinimumEdgeLength = this->MinimumEdgeLength;
@@ -187,6 +189,8 @@ void vtkSteinerPointRefiner::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Criterion: " << this->Criterion << "\n";
   os << indent << "RadiusEdgeRatio: " << this->RadiusEdgeRatio << "\n";
   os << indent << "DihedralAngleTarget: " << this->DihedralAngleTarget << "\n";
+  os << indent << "LayerAspectRatio: " << this->LayerAspectRatio << "\n";
+  os << indent << "TetrahedraAcrossLayers: " << this->TetrahedraAcrossLayers << "\n";
   os << indent << "MaximumVolume: " << this->MaximumVolume << "\n";
   os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
   os << indent << "MinimumEdgeLength: " << this->MinimumEdgeLength << "\n";

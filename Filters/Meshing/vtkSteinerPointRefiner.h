@@ -103,6 +103,27 @@ public:
   ///@}
 
   ///@{
+  /**
+   * Layers that are at least so many times as wide as thick are thin: tetrahedra across
+   * them may be flat, as well shaped ones would have to be as small as the layer is thick. All other
+   * layers are filled with well shaped ones. Ratio; default 0: 20 where another region is beside the
+   * layer, and 100 for plates, with the outside on both sides; otherwise at least 1.
+   */
+  vtkSetInRangeMacro(LayerAspectRatio, double, 0.0, VTK_DOUBLE_MAX, "ratio of width to thickness");
+  vtkGetMacro(LayerAspectRatio, double);
+  ///@}
+
+  ///@{
+  /**
+   * At least so many tetrahedra lie one after another from side to side of each layer, and
+   * of each other part whose sides face each other, but for thin layers (LayerAspectRatio) and layers
+   * that end in a sharp edge. Default 1: no more than their shapes need; range 1 to 100.
+   */
+  vtkSetInRangeMacro(TetrahedraAcrossLayers, int, 1, 100, "tetrahedra");
+  vtkGetMacro(TetrahedraAcrossLayers, int);
+  ///@}
+
+  ///@{
   /** Largest volume of a tetrahedron. Cubic model units; default 0: off; range >= 0. */
   vtkSetInRangeMacro(MaximumVolume, double, 0.0, VTK_DOUBLE_MAX, "cubic model units");
   vtkGetMacro(MaximumVolume, double);
@@ -182,6 +203,8 @@ protected:
   int Criterion = SmallestSphere;
   double RadiusEdgeRatio = 1.4;
   double DihedralAngleTarget = 15.0;
+  double LayerAspectRatio = 0.0;
+  int TetrahedraAcrossLayers = 1;
   double MaximumVolume = 0.0;
   double MaximumEdgeLength = 0.0;
   double MinimumEdgeLength = 0.0;

@@ -251,7 +251,7 @@ private:
   std::unique_ptr<BoundaryShape> MakeShape() const
   {
     return std::make_unique<BoundaryShape>(
-      this->Surface, this->Edges, this->Edges, SharpPlaneAngleOfEmptySpheres);
+      this->Surface, this->Edges, this->Edges, SharpPlaneAngleOfEmptySpheres, 0.0);
   }
 
   Id Draw(Id count) { return std::uniform_int_distribution<Id>(0, count - 1)(this->Generator); }

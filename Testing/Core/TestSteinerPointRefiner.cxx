@@ -215,6 +215,43 @@ void ExpectNoFaults(const SteinerPointRefinerReport& report)
   EXPECT_EQ(report.Inevitable, 0);
   EXPECT_EQ(report.NegativeCouplings, 0);
 }
+
+/** The least number of tetrahedra on a way from one side of a facet to the other along z. */
+Id CountAcross(const TetMesh& mesh, const std::vector<double>& heights)
+{
+  const double top = *std::max_element(heights.begin(), heights.end());
+  std::vector<char> isReached;
+  for (double height : heights)
+  {
+    isReached.push_back(height < 1e-9 * top ? 1 : 0);
+  }
+  for (Id count = 0;; ++count)
+  {
+    std::vector<char> next = isReached;
+    for (const TetrahedronIds& ids : mesh.Tetrahedra)
+    {
+      if (std::any_of(ids.begin(), ids.end(), [&](Id id) { return isReached[id] != 0; }))
+      {
+        for (Id id : ids)
+        {
+          next[id] = 1;
+        }
+      }
+    }
+    for (std::size_t p = 0; p < next.size(); ++p)
+    {
+      if (next[p] != 0 && heights[p] > (1.0 - 1e-9) * top)
+      {
+        return count + 1;
+      }
+    }
+    if (next == isReached)
+    {
+      return NoId;
+    }
+    isReached = std::move(next);
+  }
+}
 } // namespace
 
 TEST(SteinerPointRefiner, BoxesGetNoSliversAtAll)
@@ -352,6 +389,82 @@ TEST(SteinerPointRefiner, ThinLayersStayThinAndSharpWedgesEnd)
     EXPECT_EQ(output.Report.Slivers, 0);
     EXPECT_LT(output.Mesh.Points.size(), 3000u);
   }
+}
+
+TEST(SteinerPointRefiner, AsManyTetrahedraAcrossLayersAsAskedFor)
+{
+  for (const Vec3& size : { Vec3{ 1.0, 1.0, 1.0 }, Vec3{ 1.0, 0.8, 0.1 }, Vec3{ 3.0, 2.0, 0.5 } })
+  {
+    for (int across : { 2, 3, 4 })
+    {
+      SCOPED_TRACE(std::to_string(size.Z) + ", " + std::to_string(across) + " across");
+      const Vec3 axis = (1.0 / std::sqrt(14.0)) * Vec3{ 1.0, 2.0, 3.0 };
+      PolygonSoup soup = MakeBox(size);
+      Rotate(soup.Points, axis, 0.3);
+      const Stage3 mesh = MakeMesh(soup);
+      SteinerPointRefinerInput input;
+      input.Mesh = &mesh.Output.Mesh;
+      SteinerPointRefinerOptions options;
+      options.TetrahedraAcrossLayers = across;
+      const SteinerPointRefinerOutput output = Refine(input, options);
+      ExpectNoFaults(output.Report);
+      std::vector<Vec3> straight = output.Mesh.Points;
+      Rotate(straight, axis, -0.3);
+      std::vector<double> heights;
+      double low = straight[0].Z;
+      for (const Vec3& point : straight)
+      {
+        low = std::min(low, point.Z);
+      }
+      for (const Vec3& point : straight)
+      {
+        heights.push_back(point.Z - low);
+      }
+      const Id found = CountAcross(output.Mesh, heights);
+      EXPECT_GE(found, across);
+      EXPECT_LE(found, 2 * across);
+    }
+  }
+}
+
+TEST(SteinerPointRefiner, NoMoreTetrahedraAcrossThinLayersAndWedges)
+{
+  for (const PolygonSoup& soup : { MakeLayers(0.01), MakeWedge(20.0), MakeWedge(5.0) })
+  {
+    const Stage3 mesh = MakeMesh(soup);
+    SteinerPointRefinerInput input;
+    input.Mesh = &mesh.Output.Mesh;
+    SteinerPointRefinerOptions options;
+    options.TetrahedraAcrossLayers = 3;
+    const SteinerPointRefinerOutput output = Refine(input, options);
+    EXPECT_EQ(output.Report.TooLarge, 0);
+    EXPECT_LT(output.Mesh.Tetrahedra.size(), 20000u);
+  }
+}
+
+TEST(SteinerPointRefiner, PlatesAndLayersAreFilledUpToTheirAspectRatios)
+{
+  SteinerPointRefinerOptions options;
+  const auto refine = [&](const PolygonSoup& soup)
+  {
+    const Stage3 mesh = MakeMesh(soup);
+    SteinerPointRefinerInput input;
+    input.Mesh = &mesh.Output.Mesh;
+    const SteinerPointRefinerOutput output = Refine(input, options);
+    EXPECT_EQ(output.Report.Slivers, 0);
+    return output.Report;
+  };
+  // A plate by itself, and a layer between regions, each 30 times as wide as thick.
+  const PolygonSoup plate = MakeBox({ 1.0, 1.0, 1.0 / 30.0 });
+  const PolygonSoup layer = MakeLayers(1.0 / 30.0);
+  ExpectNoFaults(refine(plate));
+  EXPECT_GT(refine(layer).Inevitable, 0);
+  options.LayerAspectRatio = 25.0;
+  EXPECT_GT(refine(plate).Inevitable, 0);
+  EXPECT_GT(refine(layer).Inevitable, 0);
+  options.LayerAspectRatio = 35.0;
+  ExpectNoFaults(refine(plate));
+  ExpectNoFaults(refine(layer));
 }
 
 TEST(SteinerPointRefiner, PlaneAnglesExcuseNoSlivers)

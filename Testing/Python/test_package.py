@@ -273,7 +273,8 @@ class NumPyAlone(unittest.TestCase):
             minimum_angle=31, maximum_area=-1, accuracy_angle=181, merge_tolerance=-1,
             maximum_gap_edges=-1, mesh_for="best", criterion=3, placement=4, threads=-1,
             add_steiner_points=2, remove_slivers="yes", spacing=-1.0, growth=0.0,
-            maximum_deviation=-1, smoothing_rounds=101,
+            maximum_deviation=-1, smoothing_rounds=101, layer_aspect_ratio=0.5,
+            tetrahedra_across_layers=0,
         )
         for name, value in wrong.items():
             others = {"generate_mesh_points": True} if name in ("spacing", "placement") else {}
@@ -299,6 +300,18 @@ class NumPyAlone(unittest.TestCase):
             cd.mesh((CUBE_POINTS, CUBE_QUADS), mesh_points=[[np.nan, 0.5, 0.5]])
         with self.assertRaisesRegex(ValueError, "save the boundary"):
             cd.mesh((CUBE_POINTS, CUBE_QUADS), edge_length=0.5).save("part.stl")
+
+    def test_layers_are_filled(self):
+        plate = np.array(CUBE_POINTS) * (1.0, 1.0, 0.05)
+        options = dict(mesh_for="fewest points", add_steiner_points=True)
+        flat, filled, twice = (
+            cd.mesh((plate, CUBE_QUADS), **options, **more)
+            for more in (dict(layer_aspect_ratio=15), {}, dict(tetrahedra_across_layers=2))
+        )
+        self.assertLess(flat.certificate.smallest_dihedral_angle, 15.0)
+        self.assertGreaterEqual(filled.certificate.smallest_dihedral_angle, 15.0)
+        heights = np.ptp(twice.points[twice.tetrahedra][:, :, 2], axis=1)
+        self.assertLessEqual(heights.max(), 0.025 * (1.0 + 1e-12))
 
     def test_smoothing(self):
         rough, smooth = (

@@ -88,6 +88,8 @@ void ReadOptions(InputReader& reader, SteinerPointRefinerOptions& options)
 {
   reader.Read("radius_edge_ratio", options.RadiusEdgeRatio, 0.0, Infinity);
   reader.Read("dihedral_angle_target", options.DihedralAngleTarget, 0.0, 40.0);
+  reader.Read("layer_aspect_ratio", options.LayerAspectRatio, 0.0, Infinity);
+  reader.Read("tetrahedra_across_layers", options.TetrahedraAcrossLayers, 1, 100);
   reader.Read("maximum_volume", options.MaximumVolume, 0.0, Infinity);
   reader.Read("maximum_edge_length", options.MaximumEdgeLength, 0.0, Infinity);
   reader.Read("minimum_edge_length", options.MinimumEdgeLength, 0.0, Infinity);
@@ -136,6 +138,8 @@ void ReadOptions(InputReader& reader, ConformingMesherOptions& options)
   reader.Read("growth", options.RegionSizes.Growth, 0.0, Infinity);
   reader.Read("close_open_boundary", options.CloseOpenBoundary);
   reader.Read("maximum_volume", options.MaximumVolume, 0.0, Infinity);
+  reader.Read("layer_aspect_ratio", options.LayerAspectRatio, 0.0, Infinity);
+  reader.Read("tetrahedra_across_layers", options.TetrahedraAcrossLayers, 1, 100);
   reader.Read("smoothing_rounds", options.SmoothingRounds, 0, 100);
 }
 

@@ -4,11 +4,11 @@
 namespace cdm
 {
 BoundaryShape::BoundaryShape(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
-  const std::vector<StructuralEdge>& keptEdges, double sharpPlaneAngle)
+  const std::vector<StructuralEdge>& keptEdges, double sharpPlaneAngle, double layerAspectRatio)
   : Spheres(surface, keptEdges),
     PointTriangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size())),
     Sharp(surface, edges, this->PointTriangles, sharpPlaneAngle),
-    Layers(surface, this->PointTriangles), Surface(surface), Edges(edges)
+    Layers(surface, this->PointTriangles, layerAspectRatio), Surface(surface), Edges(edges)
 {
 }
 

@@ -39,9 +39,10 @@ struct BoundaryShape
    * @param edges structural edges, sorted
    * @param keptEdges structural edges whose smallest spheres stay empty
    * @param sharpPlaneAngle degrees, see SharpAngles
+   * @param layerAspectRatio see ThinLayers
    */
   BoundaryShape(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
-    const std::vector<StructuralEdge>& keptEdges, double sharpPlaneAngle);
+    const std::vector<StructuralEdge>& keptEdges, double sharpPlaneAngle, double layerAspectRatio);
   /**
    * Follows splits and moves of the boundary, whose kept edges are its structural edges.
    * Tetrahedra that stay are in the same sharp angles and thin layers as before.

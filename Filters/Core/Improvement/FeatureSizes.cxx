@@ -46,9 +46,8 @@ FeatureSizes::FeatureSizes(const std::vector<Vec3>& points,
   const std::vector<TriangleIds>& triangles, const std::vector<Id>& facets,
   const std::vector<StructuralEdge>& edges)
   : Points(points), Edges(ListPoints(edges)), Triangles(triangles), Facets(facets),
-    Tree(this->MakeBoxes())
+    Contacts(static_cast<Id>(points.size()), triangles, facets), Tree(this->MakeBoxes())
 {
-  this->ListFacetPoints();
 }
 
 std::vector<Box> FeatureSizes::MakeBoxes() const
@@ -65,31 +64,6 @@ std::vector<Box> FeatureSizes::MakeBoxes() const
   std::for_each(this->Edges.begin(), this->Edges.end(), add);
   std::for_each(this->Triangles.begin(), this->Triangles.end(), add);
   return boxes;
-}
-
-void FeatureSizes::ListFacetPoints()
-{
-  std::vector<std::pair<Id, Id>> pairs;
-  for (std::size_t t = 0; t < this->Triangles.size(); ++t)
-  {
-    for (Id id : this->Triangles[t])
-    {
-      pairs.emplace_back(id, this->Facets[t]);
-    }
-  }
-  SortUnique(pairs);
-  this->PointFacets.Build(static_cast<Id>(this->Points.size()), pairs);
-  Id numberOfFacets = 0;
-  std::vector<std::pair<Id, Id>> shared;
-  for (const auto& [point, facet] : pairs)
-  {
-    numberOfFacets = std::max(numberOfFacets, facet + 1);
-    if (this->PointFacets[point].size() > 1)
-    {
-      shared.emplace_back(facet, point);
-    }
-  }
-  this->SharedPoints.Build(numberOfFacets, shared);
 }
 
 Id FeatureSizes::GetFeature(Id part) const
@@ -118,20 +92,13 @@ bool FeatureSizes::AreDisjoint(Id a, Id b) const
   const auto [low, high] = std::minmax(a, b);
   if (low >= first)
   {
-    IdLists::Range few = this->SharedPoints[low - first];
-    IdLists::Range many = this->SharedPoints[high - first];
-    if (few.size() > many.size())
-    {
-      std::swap(few, many);
-    }
-    return std::none_of(few.begin(), few.end(),
-      [&many](Id id) { return std::binary_search(many.begin(), many.end(), id); });
+    return this->Contacts.AreDisjoint(low - first, high - first);
   }
   const EdgeIds& ids = this->Edges[low];
   return std::none_of(ids.begin(), ids.end(),
     [&, last = high](Id id)
     {
-      const IdLists::Range facets = this->PointFacets[id];
+      const IdLists::Range facets = this->Contacts.PointFacets[id];
       return last < first ? Contains(this->Edges[last], id)
                           : std::binary_search(facets.begin(), facets.end(), last - first);
     });

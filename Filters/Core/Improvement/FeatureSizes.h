@@ -18,8 +18,8 @@
 #ifndef cdmFeatureSizes_h
 #define cdmFeatureSizes_h
 
-#include "Core/Basics/IdLists.h"
 #include "Core/Search/BoxTree.h"
+#include "Core/Surface/FacetPoints.h"
 #include "Core/Surface/StructuralEdges.h"
 
 #include <vector>
@@ -41,7 +41,6 @@ public:
 
 private:
   std::vector<Box> MakeBoxes() const;
-  void ListFacetPoints();
   Id GetFeature(Id part) const;
   double GetDistanceTo(Id part, const Vec3& position) const;
   bool AreDisjoint(Id a, Id b) const;
@@ -51,9 +50,7 @@ private:
   const std::vector<EdgeIds> Edges;
   const std::vector<TriangleIds> Triangles;
   const std::vector<Id> Facets;
-  /** Facets at each point; points of each facet that it shares with others. */
-  IdLists PointFacets;
-  IdLists SharedPoints;
+  const FacetPoints Contacts;
   const BoxTree Tree;
 };
 } // namespace cdm

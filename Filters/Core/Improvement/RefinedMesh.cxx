@@ -59,8 +59,8 @@ RefinedMesh::RefinedMesh(TetMesh mesh, const RefinedBoundary& boundary,
     Boundary(boundary), Limits(options.Limits),
     FirstInside(static_cast<Id>(boundary.Surface.Points.size()) + options.Reserve),
     MaximumNewPoints(options.MaximumNewPoints), Memory(memory),
-    Shape(std::make_unique<BoundaryShape>(
-      boundary.Surface, boundary.Edges, boundary.KeptEdges, options.SharpPlaneAngle)),
+    Shape(std::make_unique<BoundaryShape>(boundary.Surface, boundary.Edges, boundary.KeptEdges,
+      options.SharpPlaneAngle, options.LayerAspectRatio)),
     Requests(boundary.Surface, boundary.KeptEdges,
       [this](Id point, double distance) { return distance >= this->GetClearance(point); }),
     Facts(this->Mesh, this->Limits)

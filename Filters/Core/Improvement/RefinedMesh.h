@@ -73,6 +73,8 @@ struct RefinedMeshOptions
   Id Reserve = 0;
   /** Plane angles between structural edges below this are sharp. Degrees; see SharpAngles. */
   double SharpPlaneAngle = UsualSharpPlaneAngle;
+  /** How many times as wide as thick thin layers are at least; 0: see ThinLayers. */
+  double LayerAspectRatio = 0.0;
   /** Sizes as in InteriorPoint::Size, one for each point of the surface, or empty. */
   std::vector<double> SurfaceSizes;
 };

@@ -295,6 +295,16 @@ Status RefineBySteinerPoints(const SteinerPointRefinerInput& input,
     return Status::Failure(StatusCode::InvalidOption,
       "RadiusEdgeRatio has to be 0 (off) or at least 1: no mesh has smaller ones everywhere.");
   }
+  if (options.LayerAspectRatio != 0.0 && !(options.LayerAspectRatio >= 1.0))
+  {
+    return Status::Failure(
+      StatusCode::InvalidOption, "LayerAspectRatio has to be 0 (automatic) or at least 1.");
+  }
+  if (options.TetrahedraAcrossLayers < 1)
+  {
+    return Status::Failure(
+      StatusCode::InvalidOption, "TetrahedraAcrossLayers has to be at least 1.");
+  }
   return RunGuarded([&] { return RunRefineBySteinerPoints(input, options, context, output); });
 }
 } // namespace cdm

@@ -73,6 +73,17 @@ struct SteinerPointRefinerOptions
    * is. Up to 20 are reached nearly everywhere; the filters allow up to 40.
    */
   double DihedralAngleTarget = 15.0;
+  /**
+   * Layers that are at least so many times as wide as thick are not filled with well shaped
+   * tetrahedra, see ThinLayers.h. 0: 20 beside another region, 100 where there is none; or at least
+   * 1.
+   */
+  double LayerAspectRatio = 0.0;
+  /**
+   * At least so many tetrahedra lie one after another across each layer that is not thin, see
+   * LayerThickness.h. At least 1.
+   */
+  int TetrahedraAcrossLayers = 1;
   /** Cubic model units; 0: off. */
   double MaximumVolume = 0.0;
   /** Model units; 0: off. */

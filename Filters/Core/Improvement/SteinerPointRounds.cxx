@@ -37,8 +37,8 @@ Id GetMaximumNewPoints(
     return options.MaximumNewPoints;
   }
   constexpr Id largest = std::numeric_limits<Id>::max() / 8;
-  const bool hasSizes =
-    options.MaximumVolume > 0.0 || options.MaximumEdgeLength > 0.0 || input.Sizing;
+  const bool hasSizes = options.MaximumVolume > 0.0 || options.MaximumEdgeLength > 0.0 ||
+    input.Sizing || options.TetrahedraAcrossLayers > 1;
   return hasSizes
     ? largest
     : static_cast<Id>(std::min<std::size_t>(largest, 50000 + 200 * input.Mesh->Points.size()));
@@ -127,8 +127,8 @@ void SteinerPointRounds::ExtractInterior()
 }
 
 /**
- * Numbers the facets of the surface as it was given: on smaller triangles, as later surfaces have
- * them, structural edges could be missed.
+ * Numbers the facets of the surface as it was given, and measures its layers: on smaller triangles,
+ * as later surfaces have them, structural edges could be missed.
  */
 Status SteinerPointRounds::FindFacets()
 {
@@ -139,6 +139,11 @@ Status SteinerPointRounds::FindFacets()
   {
     this->Facets =
       NumberFacets(SortEdgeUses(this->Surface.Triangles, this->Surface.Points.size()), edges.Edges);
+    if (this->Options.TetrahedraAcrossLayers > 1)
+    {
+      this->Layers = std::make_unique<LayerThickness>(
+        this->Surface, this->Facets, this->Options.LayerAspectRatio);
+    }
   }
   return this->Translate(status, {});
 }
@@ -184,7 +189,12 @@ RefinedMeshOptions SteinerPointRounds::GetMeshOptions() const
 {
   RefinedMeshOptions options;
   options.Limits = { this->Options.RadiusEdgeRatio, this->Options.MaximumVolume,
-    this->Options.MaximumEdgeLength, this->Input.Sizing };
+    this->Options.MaximumEdgeLength, this->Input.Sizing, {} };
+  if (this->Layers)
+  {
+    options.Limits.IsTooLarge = [this](const std::array<Vec3, 4>& vertices, double longest)
+    { return this->Layers->IsTooThick(vertices, longest, this->Options.TetrahedraAcrossLayers); };
+  }
   options.MaximumNewPoints = GetMaximumNewPoints(this->Input, this->Options) -
     this->Report.BoundaryPoints - this->Report.InteriorPoints;
   options.Reserve = FewestReservedPoints + static_cast<Id>(this->Surface.Points.size()) / 4;
@@ -192,6 +202,7 @@ RefinedMeshOptions SteinerPointRounds::GetMeshOptions() const
   {
     options.SharpPlaneAngle = SharpPlaneAngleOfEmptySpheres;
   }
+  options.LayerAspectRatio = this->Options.LayerAspectRatio;
   options.SurfaceSizes = this->SurfaceSizes;
   return options;
 }

@@ -19,6 +19,7 @@
 #include "Core/Basics/ExecutionContext.h"
 #include "Core/Basics/Status.h"
 #include "Core/Improvement/FeatureSizes.h"
+#include "Core/Improvement/LayerThickness.h"
 #include "Core/Improvement/RefinedMesh.h"
 #include "Core/Improvement/SliverMemory.h"
 #include "Core/Improvement/SteinerPointRefiner.h"
@@ -127,6 +128,8 @@ private:
   std::vector<double> SurfaceSizes;
   /** Feature sizes of the surface at the time when SurfaceSizes were measured. */
   std::unique_ptr<FeatureSizes> Features;
+  /** Null if one tetrahedron across is enough. */
+  std::unique_ptr<LayerThickness> Layers;
   /** Points inside, while there is no mesh that has them. */
   std::vector<InteriorPoint> Interior;
   SliverMemory Memory;

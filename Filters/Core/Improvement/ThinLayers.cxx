@@ -15,8 +15,10 @@ namespace cdm
 {
 namespace
 {
-/** A side is at least so many times as wide as a thin layer is thick. */
-constexpr double AspectRatio = 20.0;
+/** How many times as wide as thick a layer is at least by default, with a region beside it ... */
+constexpr double UsualAspectRatio = 20.0;
+/** ... and with the outside on both sides. */
+constexpr double PlateAspectRatio = 100.0;
 /** Cosine of 45 degrees, the largest angle between normals of neighboring triangles of one side. */
 constexpr double SmoothCosine = 0.7071067811865476;
 /**
@@ -39,16 +41,16 @@ Id GetRegion(const TriangleMesh& surface, Id face)
 }
 } // namespace
 
-ThinLayers::ThinLayers(const TriangleMesh& surface, const IdLists& pointTriangles)
-  : Surface(surface), PointTriangles(pointTriangles)
+ThinLayers::ThinLayers(
+  const TriangleMesh& surface, const IdLists& pointTriangles, double aspectRatio)
+  : Surface(surface), PointTriangles(pointTriangles), AspectRatio(aspectRatio)
 {
   for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()); ++t)
   {
     const Vec3 normal = GetAreaVector(surface, surface.Triangles[t]);
-    for (double sign : { 1.0, -1.0 })
-    {
-      this->Faces.push_back({ sign / Norm(normal) * normal });
-    }
+    const RegionPair& labels = surface.Labels[t];
+    this->Faces.push_back({ 1.0 / Norm(normal) * normal, 0.0, labels.Front == OutsideRegion });
+    this->Faces.push_back({ -1.0 / Norm(normal) * normal, 0.0, labels.Back == OutsideRegion });
   }
   this->MeasureWidths();
 }
@@ -138,6 +140,19 @@ const ThinLayers::Face* ThinLayers::GetFace(Id triangle, Id region) const
                                : nullptr;
 }
 
+bool ThinLayers::AreOpposite(Id first, Id second) const
+{
+  return Dot(this->Faces[first].Normal, this->Faces[second].Normal) <= -AcrossCosine;
+}
+
+bool ThinLayers::IsThin(const Face& first, const Face& second, double thickness) const
+{
+  const double ratio = this->AspectRatio > 0.0 ? this->AspectRatio
+    : first.IsOuter && second.IsOuter          ? PlateAspectRatio
+                                               : UsualAspectRatio;
+  return ratio * thickness <= std::min(first.Width, second.Width);
+}
+
 bool ThinLayers::IsAcross(const TetrahedronIds& ids, Id region) const
 {
   const std::vector<Vec3>& points = this->Surface.Points;
@@ -161,7 +176,7 @@ bool ThinLayers::IsAcross(const TetrahedronIds& ids, Id region) const
         // How far it is to the other side.
         const double height = first != nullptr ? -Dot(first->Normal, direction) : 0.0;
         const bool isUpright = height >= AcrossCosine * length && length <= ThinRatio * longest;
-        if (height <= FlatRatio * length || AspectRatio * height > first->Width ||
+        if (height <= FlatRatio * length || height > first->Width ||
           (!isUpright && height > VeryThinRatio * longest))
         {
           continue;
@@ -170,7 +185,7 @@ bool ThinLayers::IsAcross(const TetrahedronIds& ids, Id region) const
         {
           const Face* const second = this->GetFace(u, region);
           if (second != nullptr && Dot(first->Normal, second->Normal) <= -AcrossCosine &&
-            AspectRatio * height <= second->Width)
+            this->IsThin(*first, *second, height))
           {
             return true;
           }

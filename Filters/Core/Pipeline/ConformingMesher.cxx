@@ -549,6 +549,8 @@ Status ConformingMesher::AddSteinerPoints()
     ? std::min(this->Settings.DihedralAngleTarget, LargestSteinerAngle)
     : 0.0;
   options.MaximumVolume = this->Options.MaximumVolume;
+  options.LayerAspectRatio = this->Options.LayerAspectRatio;
+  options.TetrahedraAcrossLayers = this->Options.TetrahedraAcrossLayers;
   options.SmoothingRounds = this->Options.SmoothingRounds;
   options.MaximumEdgeLength = this->Settings.MaximumEdgeLength;
   SteinerPointRefinerOutput refined;

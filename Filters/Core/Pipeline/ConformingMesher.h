@@ -66,6 +66,10 @@ struct ConformingMesherOptions
   bool CloseOpenBoundary = false;
   /** With Steiner points. Cubic model units; 0: off. */
   double MaximumVolume = 0.0;
+  /** With Steiner points, see SteinerPointRefinerOptions. 0 (automatic) or at least 1. */
+  double LayerAspectRatio = 0.0;
+  /** With Steiner points, see SteinerPointRefinerOptions. At least 1. */
+  int TetrahedraAcrossLayers = 1;
   /**
    * With Steiner points: rounds in which free points inside go to where fewer circumcenters lie
    * outside of their tetrahedra, see OptimalDelaunaySmoothing.h. 0 (none) to 100.

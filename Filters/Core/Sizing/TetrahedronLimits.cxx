@@ -43,6 +43,10 @@ TetrahedronFault TetrahedronLimits::Find(
           { return SquaredNorm(spacing.ToUnits(vertices[e[1]] - vertices[e[0]])) > 1.0; });
       });
   }
+  if (!isLarge && this->IsTooLarge)
+  {
+    isLarge = this->IsTooLarge(vertices, longest);
+  }
   if (isLarge)
   {
     target = center;

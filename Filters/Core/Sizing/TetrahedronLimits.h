@@ -3,8 +3,8 @@
  * @file TetrahedronLimits.h
  * @brief Limits of the size and shape of tetrahedra, and the Steiner point that would improve one.
  *
- * A tetrahedron is too large by its volume, or by an edge that is longer than allowed or than the
- * sizing asks for anywhere in it; it is badly shaped if the ratio of its circumradius to its
+ * A tetrahedron is too large by its volume, by an edge that is longer than allowed or than the
+ * sizing asks for anywhere in it, or by a rule of the caller; it is badly shaped if the ratio of its circumradius to its
  * shortest edge is too large. A point at the circumcenter destroys it. For a badly shaped one the
  * off-center serves better: on the way from the middle of the shortest edge to the circumcenter,
  * where the triangle that it makes with this edge is just well shaped. That leaves larger
@@ -20,6 +20,7 @@
 #include "Core/Sizing/SizingField.h"
 
 #include <array>
+#include <functional>
 
 namespace cdm
 {
@@ -40,11 +41,8 @@ struct TetrahedronLimits
   double MaximumEdgeLength = 0.0;
   /** May be empty. */
   SizingField Sizing;
-
-  bool HasSizeLimit() const
-  {
-    return this->MaximumVolume > 0.0 || this->MaximumEdgeLength > 0.0 || this->Sizing;
-  }
+  /** Whether a tetrahedron whose longest edge is given is too large. May be empty. */
+  std::function<bool(const std::array<Vec3, 4>& vertices, double longest)> IsTooLarge;
 
   /**
    * @param isShapeTested whether the shape counts

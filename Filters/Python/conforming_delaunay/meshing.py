@@ -53,6 +53,7 @@ WHOLE_NUMBERS = (
     "seed",
     "smoothing_iterations",
     "smoothing_rounds",
+    "tetrahedra_across_layers",
 )
 FLAGS = (
     "add_steiner_points",
@@ -227,6 +228,8 @@ def mesh(
     radius_edge_ratio: Optional[float] = None,
     dihedral_angle_target: Optional[float] = None,
     maximum_volume: float = 0.0,
+    layer_aspect_ratio: float = 0.0,
+    tetrahedra_across_layers: int = 1,
     smoothing_rounds: int = 0,
     remove_slivers: Optional[bool] = None,
     mesh_points: Any = None,
@@ -295,6 +298,14 @@ def mesh(
         count as 40; None: 20 for finite elements, else 15.
     maximum_volume : float, default: 0
         Of a tetrahedron, with Steiner points. Cubic model units; 0: no limit.
+    layer_aspect_ratio : float, default: 0
+        Layers that are at least so many times as wide as thick may have flat tetrahedra from side to
+        side; all others are filled with well shaped ones, with Steiner points. At least 1; 0: 20 where
+        another region is beside the layer, and 100 for plates, with the outside on both sides.
+    tetrahedra_across_layers : int, default: 1
+        At least so many lie one after another from side to side of each layer, and of each other part
+        whose sides face each other, with Steiner points. Thin layers, by layer_aspect_ratio, are left
+        out, and those that end in a sharp edge. 1 to 100.
     smoothing_rounds : int, default: 0
         How many times each point inside may go to where fewer circumcenters lie outside of their
         tetrahedra, with Steiner points: for solvers that take absolute values of couplings. 0 to 100.
@@ -373,6 +384,8 @@ def mesh(
                 radius_edge_ratio=radius_edge_ratio,
                 dihedral_angle_target=dihedral_angle_target,
                 maximum_volume=maximum_volume,
+                layer_aspect_ratio=layer_aspect_ratio,
+                tetrahedra_across_layers=tetrahedra_across_layers,
                 smoothing_rounds=smoothing_rounds,
                 remove_slivers=remove_slivers,
                 generate_mesh_points=generate_mesh_points,
@@ -747,6 +760,8 @@ def refine_mesh(
     radius_edge_ratio: float = 1.4,
     dihedral_angle_target: float = 15.0,
     maximum_volume: float = 0.0,
+    layer_aspect_ratio: float = 0.0,
+    tetrahedra_across_layers: int = 1,
     minimum_edge_length: float = 0.0,
     sizing: SizingLike = None,
     new_points: Any = None,
@@ -764,7 +779,8 @@ def refine_mesh(
     mesh : Mesh
         Its boundary is kept; without one the outer and interface facets are.
     edge_length, criterion, radius_edge_ratio, dihedral_angle_target, maximum_volume
-        As for mesh(), as are sizing, accuracy_angle, progress and threads.
+        As for mesh(), as are layer_aspect_ratio, tetrahedra_across_layers, sizing, accuracy_angle,
+        progress and threads.
     minimum_edge_length : float, default: 0
         Free points closer to another one are taken out. Model units.
     new_points : array_like, optional
@@ -795,6 +811,8 @@ def refine_mesh(
                 radius_edge_ratio=radius_edge_ratio,
                 dihedral_angle_target=dihedral_angle_target,
                 maximum_volume=maximum_volume,
+                layer_aspect_ratio=layer_aspect_ratio,
+                tetrahedra_across_layers=tetrahedra_across_layers,
                 minimum_edge_length=minimum_edge_length,
                 free_interior_points=free_interior_points,
                 accuracy_angle=accuracy_angle,
