@@ -135,6 +135,15 @@ void RefinedMesh::SetSizes(const std::vector<double>& sizes)
   }
 }
 
+void RefinedMesh::HalveSizes(const std::vector<Id>& points, const std::vector<Id>& tetrahedra)
+{
+  for (Id p : points)
+  {
+    this->Points[p].Size *= 0.5;
+  }
+  this->BoundSizes(tetrahedra);
+}
+
 void RefinedMesh::SetSurfaceSizes(Id first, const std::vector<double>& sizes)
 {
   for (std::size_t p = first; p < sizes.size(); ++p)

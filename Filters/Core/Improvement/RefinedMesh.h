@@ -100,6 +100,8 @@ public:
   void NoteNewPoints(const std::vector<char>& isNew);
   /** Sizes as in InteriorPoint::Size, one for each point of the mesh. */
   void SetSizes(const std::vector<double>& sizes);
+  /** Halves the sizes of points, and bounds those of others by them. */
+  void HalveSizes(const std::vector<Id>& points, const std::vector<Id>& tetrahedra);
   /** Sizes as in InteriorPoint::Size for new points of the surface, from the first one on. */
   void SetSurfaceSizes(Id first, const std::vector<double>& sizes);
 

@@ -3,7 +3,6 @@
 
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
-#include "Core/Improvement/SliverList.h"
 
 #include <algorithm>
 #include <limits>
@@ -208,7 +207,7 @@ bool SliverChanges::FindMove(Id point, SliverChange& change)
     old, this->Before.Mean, this->Before.Nearest, this->Goal.Target,
     [&](const Vec3& position, double required)
     { return this->RateMove(point, position, floor, required); },
-    best, SliverEffort);
+    best, this->Goal.Effort);
   this->Search.TakeBack();
   const std::vector<char>& isBroken = this->Cells.IsBroken;
   if (this->Goal.MayRemove &&
@@ -265,7 +264,7 @@ void SliverChanges::FindInsertion(Id tetrahedron, SliverChange& change)
   Place best{ center, this->Mesh.GetAngle(tetrahedron) + SmallestGain, false };
   TryPlace(center, rate, best);
   SearchPlace(center, FirstInsertion * Distance(center, a), MakeCubeDirections(), this->Goal.Target,
-    rate, best, SliverEffort);
+    rate, best, this->Goal.Effort);
   if (best.IsFound)
   {
     change.What = SliverChange::Kind::Insertion;

@@ -19,6 +19,7 @@
 
 #include "Core/Delaunay/CavitySearch.h"
 #include "Core/Improvement/RefinedMesh.h"
+#include "Core/Improvement/SliverList.h"
 #include "Core/Improvement/SliverMemory.h"
 
 #include <vector>
@@ -34,6 +35,8 @@ struct SliverAim
   bool IsSharp = false;
   /** Whether points may be left out for good. */
   bool MayRemove = false;
+  /** For the search of each position. */
+  SearchEffort Effort = SliverEffort;
 };
 
 /** What is to be done about a sliver. */

@@ -124,10 +124,10 @@ bool Perturbation::Mend(std::size_t i)
 }
 } // namespace
 
-Status PerturbSlivers(
-  double target, SliverMeans means, const ExecutionContext& context, RefinedMesh& mesh)
+Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effort,
+  const ExecutionContext& context, RefinedMesh& mesh)
 {
-  const SliverAim aim{ MoveRatio * target, false, means != SliverMeans::Moves };
+  const SliverAim aim{ MoveRatio * target, false, means != SliverMeans::Moves, effort };
   Perturbation perturbation(aim, context.GetNumberOfThreads(), mesh);
   const IdLists& pointTriangles = mesh.GetShape().PointTriangles;
   BoundaryRequests& requests = mesh.GetRequests();

@@ -20,6 +20,7 @@
 #include "Core/Basics/ExecutionContext.h"
 #include "Core/Basics/Status.h"
 #include "Core/Improvement/RefinedMesh.h"
+#include "Core/Search/PlaceSearch.h"
 
 namespace cdm
 {
@@ -34,9 +35,12 @@ enum class SliverMeans
   Requests
 };
 
-/** Perturbs slivers until none of the allowed means increases an angle below the target. */
-Status PerturbSlivers(
-  double target, SliverMeans means, const ExecutionContext& context, RefinedMesh& mesh);
+/**
+ * Perturbs slivers until none of the allowed means increases an angle below the target.
+ * @param effort for the search of each position
+ */
+Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effort,
+  const ExecutionContext& context, RefinedMesh& mesh);
 
 /** Moves points of tetrahedra across sharp angles, if no other tetrahedron gets worse. */
 Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh& mesh);

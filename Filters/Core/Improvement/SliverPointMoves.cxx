@@ -5,6 +5,7 @@
 #include "Core/Certificate/SphereCriteria.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Improvement/RefinedMesh.h"
+#include "Core/Improvement/SliverList.h"
 #include "Core/Improvement/SliverPerturbation.h"
 #include "Core/Improvement/SurfacePointMoves.h"
 #include "Core/Meshes/MeshBoundary.h"
@@ -170,7 +171,8 @@ Status SliverPointMoves::MoveInside(const ExecutionContext& context)
     return status;
   }
   RefinedMesh mesh = this->MakeMesh(parts);
-  status = PerturbSlivers(this->Target, SliverMeans::Moves, context.Part(0.1, 0.9), mesh);
+  status =
+    PerturbSlivers(this->Target, SliverMeans::Moves, SliverEffort, context.Part(0.1, 0.9), mesh);
   status = status.IsOk() ? PerturbSharp(this->Target, context.Part(0.9, 1.0), mesh) : status;
   this->PutTogether(parts, mesh.GetMesh());
   this->MovedPoints += mesh.GetReport().MovedPoints;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/SliverSchedule.h"
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Improvement/SliverList.h"
 #include "Core/Improvement/SurfacePointMoves.h"
 #include "Core/Improvement/VolumeRefinement.h"
@@ -21,6 +22,8 @@ constexpr int MaximumCouplingRounds = 4;
 /** Roundings of points in a row that do not do away with a quarter of the flat tetrahedra. */
 constexpr int MaximumRoundings = 3;
 constexpr double RoundingGain = 0.75;
+/** How many times sizes are halved for what is left. */
+constexpr int MaximumHalvings = 3;
 /** Passes over slivers and shapes, alternating, when the boundary stays as it is. */
 constexpr int MaximumLastPasses = 5;
 } // namespace
@@ -91,7 +94,7 @@ RoundResult SliverSchedule::PerturbMoveOrRequest(bool isFull)
     this->Rounds.CountRequests() > requests ? RoundEnd::Requested : RoundEnd::Open };
 }
 
-/** Means 6 to 8. */
+/** Means 6 to 9. */
 RoundResult SliverSchedule::MendCouplings()
 {
   if (this->RequestCouplings())
@@ -103,6 +106,50 @@ RoundResult SliverSchedule::MendCouplings()
     return { {}, RoundEnd::Done };
   }
   Status status = this->PerturbLast();
+  if (status.IsOk() && this->RequestCouplings())
+  {
+    return { {}, RoundEnd::Requested };
+  }
+  return status.IsOk() ? this->MendWhatIsLeft() : RoundResult{ std::move(status), RoundEnd::Done };
+}
+
+/** Tetrahedra that are slivers or badly shaped, and are to be neither. */
+std::vector<Id> SliverSchedule::FindWhatIsLeft() const
+{
+  std::vector<Id> left = this->GetMesh().FindFaulty(true);
+  for (const Sliver& sliver :
+    FindSlivers(this->Options.DihedralAngleTarget, false, this->GetMesh()))
+  {
+    left.push_back(sliver.Tetrahedron);
+  }
+  SortUnique(left);
+  return left;
+}
+
+/** Means 9. */
+RoundResult SliverSchedule::MendWhatIsLeft()
+{
+  Status status;
+  while (status.IsOk() && this->Halvings < MaximumHalvings && !this->GetMesh().IsFull())
+  {
+    const std::vector<Id> left = this->FindWhatIsLeft();
+    if (left.empty())
+    {
+      break;
+    }
+    ++this->Halvings;
+    // What is made now may make other couplings negative.
+    this->Couplings.Renew();
+    this->Rounds.HalveSizes(left);
+    status = this->RefineShapes()
+               .Then([this] { return this->Perturb(SliverMeans::Points); })
+               .Then([this] { return this->Perturb(SliverMeans::Requests); });
+    if (this->Rounds.CountRequests() > 0)
+    {
+      this->SliverRounds.Renew();
+      return { std::move(status), RoundEnd::Requested };
+    }
+  }
   const bool isRequested = status.IsOk() && this->RequestCouplings();
   return { std::move(status), isRequested ? RoundEnd::Requested : RoundEnd::Done };
 }
@@ -188,8 +235,9 @@ Status SliverSchedule::RefineShapes()
 
 Status SliverSchedule::Perturb(SliverMeans means)
 {
-  return PerturbSlivers(
-    this->Options.DihedralAngleTarget, means, this->Rounds.GetContext(), this->GetMesh());
+  // A few are left when sizes are halved: these are worth a longer search.
+  return PerturbSlivers(this->Options.DihedralAngleTarget, means,
+    this->Halvings > 0 ? SearchEffort() : SliverEffort, this->Rounds.GetContext(), this->GetMesh());
 }
 
 /**

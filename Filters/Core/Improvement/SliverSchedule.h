@@ -15,7 +15,8 @@
  * | 5 | refine shapes inside again                       | Requested after 4; Open  |
  * | 6 | request splits for negative couplings            | Requested                |
  * | 7 | last passes: 2 and 5 in turns, then sharp angles | -                        |
- * | 8 | 6 again, for what the last passes have made      | Requested, or else Done  |
+ * | 8 | 6 again, for what the last passes have made      | Requested                |
+ * | 9 | come closer to the points of what is left        | Requested, or else Done  |
  *
  *  - 1 (PointRounding.h) is tried unless all flat tetrahedra are among those given up on: three
  *    tries in a row left more than three quarters of them;
@@ -27,6 +28,8 @@
  *  - 6 (NegativeCouplings.h) is given up after four tries in a row that left as many couplings.
  *    Each try lets 1 to 5 begin anew, as splits make new slivers. It comes before 7, which takes
  *    long;
+ *  - 9 halves the sizes there, which only keep the refinement from going on without end, and searches
+ *    longer, up to three times in all: it is needed for one to three tetrahedra of a million;
  *  - 1 to 5 are left out after forty rounds in a row that moved or split the boundary for slivers
  *    in vain. They and 7 are left out if no dihedral angle is asked for.
  */
@@ -89,6 +92,8 @@ private:
   RoundResult MendSlivers(bool isFull);
   RoundResult PerturbMoveOrRequest(bool isFull);
   RoundResult MendCouplings();
+  RoundResult MendWhatIsLeft();
+  std::vector<Id> FindWhatIsLeft() const;
   bool RoundFlatTetrahedraAway();
   bool MoveSurfacePoints();
   Status RefineShapes();
@@ -111,6 +116,8 @@ private:
   std::vector<TetrahedronIds> LeftFlat;
   /** Whether points at sharp angles have been moved. */
   bool IsSharpPerturbed = false;
+  /** How many times sizes have been halved. */
+  int Halvings = 0;
 };
 } // namespace cdm
 

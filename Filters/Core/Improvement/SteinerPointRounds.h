@@ -5,7 +5,7 @@
  *
  * Method: a round starts with a refined surface and a mesh that fits it. Whoever refines the mesh
  * may request splits of the surface, or give its points other positions; then the next round is
- * started. Where less than a twentieth of a surface with plane facets is to be split, that is done
+ * started. Where few splits of a surface with plane facets are requested for its size, these are done
  * in the mesh itself (BoundarySplits.h). Otherwise the surface is refined
  * (DelaunaySurfaceRefiner.h) and tetrahedralized anew with the points inside of the mesh so far
  * (AdvancingFrontTetrahedralizer.h).
@@ -67,6 +67,8 @@ public:
    * Until then only sizes are refined. What may be requested after it is something else.
    */
   void MeasureSizes();
+  /** Lets new points come twice as close to the points of these tetrahedra. */
+  void HalveSizes(const std::vector<Id>& tetrahedra);
 
   /** One for each point of the surface: whether it may be moved in its facet or along its edge. */
   const std::vector<char>& GetFreeSurfacePoints() const { return this->IsSurfaceFree; }
@@ -99,6 +101,7 @@ private:
   DelaunaySurfaceRefinerOptions GetSurfaceOptions() const;
   RefinedMeshOptions GetMeshOptions() const;
   Status RemakeMesh();
+  bool TakeGivenMesh(const DelaunaySurfaceRefinerOutput& refined);
   Status RefineSurface(const ExecutionContext& context, DelaunaySurfaceRefinerOutput& refined);
   Status MakeMesh(const TriangleMesh& surface, const std::vector<InteriorPoint>& interior,
     const std::vector<Id>& sourceCells, const ExecutionContext& context);
