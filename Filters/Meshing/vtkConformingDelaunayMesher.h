@@ -374,7 +374,7 @@ public:
 
   ///@{
   /**
-   * With Steiner points. Layers that are at least so many times as wide as thick are thin: tetrahedra across
+   * Steiner points do not fill all layers. Layers that are at least so many times as wide as thick are thin: tetrahedra across
    * them may be flat, as well shaped ones would have to be as small as the layer is thick. All other
    * layers are filled with well shaped ones. Ratio; default 0: 20 where another region is beside the
    * layer, and 100 for plates, with the outside on both sides; otherwise at least 1.
@@ -385,7 +385,7 @@ public:
 
   ///@{
   /**
-   * With Steiner points. At least so many tetrahedra lie one after another from side to side of each layer, and
+   * Steiner points divide layers. At least so many tetrahedra lie one after another from side to side of each layer, and
    * of each other part whose sides face each other, but for thin layers (LayerAspectRatio) and layers
    * that end in a sharp edge. Default 1: no more than their shapes need; range 1 to 100.
    */

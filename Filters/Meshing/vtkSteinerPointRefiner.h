@@ -170,8 +170,8 @@ public:
 
   ///@{
   /**
-   * The refinement stops when it has made about so many points. Default 0: no limit where sizes are
-   * asked for, otherwise 200 for each point of the mesh and 50000; range >= 0.
+   * The refinement stops when it has made about so many points. Default 0: no limit where sizes,
+   * or more than one tetrahedron across layers, are asked for, otherwise 200 for each point of the mesh and 50000; range >= 0.
    */
   vtkSetInRangeMacro(MaximumNewPoints, int, 0, VTK_INT_MAX, "points");
   vtkGetMacro(MaximumNewPoints, int);

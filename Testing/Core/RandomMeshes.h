@@ -6,12 +6,9 @@
 #ifndef cdmRandomMeshes_h
 #define cdmRandomMeshes_h
 
-#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
-
-#include <gtest/gtest.h>
+#include "HullMeshes.h"
 
 #include <random>
-#include <utility>
 #include <vector>
 
 namespace cdm
@@ -32,13 +29,7 @@ inline TetMesh MakeRandomMesh(int numberOfPoints, std::mt19937_64& generator)
   {
     points.push_back(DrawPoint(generator));
   }
-  AdvancingFrontTetrahedralizerInput input;
-  input.MeshPoints = &points;
-  AdvancingFrontTetrahedralizerOptions options;
-  options.CloseOpenBoundary = true;
-  AdvancingFrontTetrahedralizerOutput output;
-  EXPECT_TRUE(TetrahedralizeByAdvancingFront(input, options, {}, output).IsOk());
-  return std::move(output.Mesh);
+  return testing_core::MakeHullMesh(points);
 }
 } // namespace cdm
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Delaunay/LocalDelaunay.h"
 #include "Core/Geometry/Predicates.h"
+#include "HullMeshes.h"
 #include "RandomMeshes.h"
 
 #include <gtest/gtest.h>
@@ -71,15 +72,10 @@ TEST(LocalDelaunay, OfACubeOneSubdivision)
   {
     points.push_back({ i % 2 * 1.0, i / 2 % 2 * 1.0, i / 4 * 1.0 });
   }
-  AdvancingFrontTetrahedralizerInput input;
-  input.MeshPoints = &points;
-  AdvancingFrontTetrahedralizerOptions options;
-  options.CloseOpenBoundary = true;
-  AdvancingFrontTetrahedralizerOutput output;
-  ASSERT_TRUE(TetrahedralizeByAdvancingFront(input, options, {}, output).IsOk());
-  EXPECT_TRUE(IsLocallyDelaunay(output.Mesh, 1));
+  const TetMesh mesh = testing_core::MakeHullMesh(points);
+  EXPECT_TRUE(IsLocallyDelaunay(mesh, 1));
   // The same tetrahedra with other numbers of their points are another subdivision.
-  TetMesh renumbered = output.Mesh;
+  TetMesh renumbered = mesh;
   std::swap(renumbered.Points[0], renumbered.Points[1]);
   for (TetrahedronIds& ids : renumbered.Tetrahedra)
   {

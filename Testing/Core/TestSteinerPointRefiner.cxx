@@ -207,6 +207,15 @@ SteinerPointRefinerOutput Refine(const SteinerPointRefinerInput& input,
   return output;
 }
 
+/** Refines the mesh of stages 0 to 3. */
+SteinerPointRefinerOutput Refine(const PolygonSoup& soup, const SteinerPointRefinerOptions& options)
+{
+  const Stage3 mesh = MakeMesh(soup);
+  SteinerPointRefinerInput input;
+  input.Mesh = &mesh.Output.Mesh;
+  return Refine(input, options);
+}
+
 void ExpectNoFaults(const SteinerPointRefinerReport& report)
 {
   EXPECT_EQ(report.TooLarge, 0);
@@ -368,12 +377,9 @@ TEST(SteinerPointRefiner, ThinLayersStayThinAndSharpWedgesEnd)
   for (double thickness : { 0.02, 0.005, 0.001 })
   {
     SCOPED_TRACE("thickness " + std::to_string(thickness));
-    const Stage3 mesh = MakeMesh(MakeLayers(thickness));
-    SteinerPointRefinerInput input;
-    input.Mesh = &mesh.Output.Mesh;
     SteinerPointRefinerOptions options;
     options.MaximumEdgeLength = 0.2;
-    const SteinerPointRefinerOutput output = Refine(input, options);
+    const SteinerPointRefinerOutput output = Refine(MakeLayers(thickness), options);
     EXPECT_EQ(output.Report.TooLarge, 0);
     EXPECT_EQ(output.Report.BadlyShaped, 0);
     EXPECT_EQ(output.Report.Slivers, 0);
@@ -382,10 +388,7 @@ TEST(SteinerPointRefiner, ThinLayersStayThinAndSharpWedgesEnd)
   for (double angle : { 30.0, 5.0, 1.0 })
   {
     SCOPED_TRACE("angle " + std::to_string(angle));
-    const Stage3 mesh = MakeMesh(MakeWedge(angle));
-    SteinerPointRefinerInput input;
-    input.Mesh = &mesh.Output.Mesh;
-    const SteinerPointRefinerOutput output = Refine(input, SteinerPointRefinerOptions());
+    const SteinerPointRefinerOutput output = Refine(MakeWedge(angle), SteinerPointRefinerOptions());
     EXPECT_EQ(output.Report.Slivers, 0);
     EXPECT_LT(output.Mesh.Points.size(), 3000u);
   }
@@ -401,12 +404,9 @@ TEST(SteinerPointRefiner, AsManyTetrahedraAcrossLayersAsAskedFor)
       const Vec3 axis = (1.0 / std::sqrt(14.0)) * Vec3{ 1.0, 2.0, 3.0 };
       PolygonSoup soup = MakeBox(size);
       Rotate(soup.Points, axis, 0.3);
-      const Stage3 mesh = MakeMesh(soup);
-      SteinerPointRefinerInput input;
-      input.Mesh = &mesh.Output.Mesh;
       SteinerPointRefinerOptions options;
       options.TetrahedraAcrossLayers = across;
-      const SteinerPointRefinerOutput output = Refine(input, options);
+      const SteinerPointRefinerOutput output = Refine(soup, options);
       ExpectNoFaults(output.Report);
       std::vector<Vec3> straight = output.Mesh.Points;
       Rotate(straight, axis, -0.3);
@@ -431,12 +431,9 @@ TEST(SteinerPointRefiner, NoMoreTetrahedraAcrossThinLayersAndWedges)
 {
   for (const PolygonSoup& soup : { MakeLayers(0.01), MakeWedge(20.0), MakeWedge(5.0) })
   {
-    const Stage3 mesh = MakeMesh(soup);
-    SteinerPointRefinerInput input;
-    input.Mesh = &mesh.Output.Mesh;
     SteinerPointRefinerOptions options;
     options.TetrahedraAcrossLayers = 3;
-    const SteinerPointRefinerOutput output = Refine(input, options);
+    const SteinerPointRefinerOutput output = Refine(soup, options);
     EXPECT_EQ(output.Report.TooLarge, 0);
     EXPECT_LT(output.Mesh.Tetrahedra.size(), 20000u);
   }
@@ -447,10 +444,7 @@ TEST(SteinerPointRefiner, PlatesAndLayersAreFilledUpToTheirAspectRatios)
   SteinerPointRefinerOptions options;
   const auto refine = [&](const PolygonSoup& soup)
   {
-    const Stage3 mesh = MakeMesh(soup);
-    SteinerPointRefinerInput input;
-    input.Mesh = &mesh.Output.Mesh;
-    const SteinerPointRefinerOutput output = Refine(input, options);
+    const SteinerPointRefinerOutput output = Refine(soup, options);
     EXPECT_EQ(output.Report.Slivers, 0);
     return output.Report;
   };

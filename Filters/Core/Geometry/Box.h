@@ -78,6 +78,18 @@ inline Box GetBox(const std::vector<Vec3>& points, const TriangleIds& t)
   }
   return box;
 }
+
+/** The box of each triangle. */
+inline std::vector<Box> MakeBoxes(
+  const std::vector<Vec3>& points, const std::vector<TriangleIds>& triangles)
+{
+  std::vector<Box> boxes(triangles.size());
+  for (std::size_t t = 0; t < boxes.size(); ++t)
+  {
+    boxes[t] = GetBox(points, triangles[t]);
+  }
+  return boxes;
+}
 } // namespace cdm
 
 #endif

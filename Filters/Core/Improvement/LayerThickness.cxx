@@ -21,19 +21,6 @@ std::array<Vec3, 3> GetCorners(const TriangleMesh& surface, Id triangle)
   return { surface.Points[ids[0]], surface.Points[ids[1]], surface.Points[ids[2]] };
 }
 
-std::vector<Box> MakeBoxes(const TriangleMesh& surface)
-{
-  std::vector<Box> boxes(surface.Triangles.size());
-  for (std::size_t t = 0; t < boxes.size(); ++t)
-  {
-    for (Id id : surface.Triangles[t])
-    {
-      boxes[t].Add(surface.Points[id]);
-    }
-  }
-  return boxes;
-}
-
 /** The share of the way at which it meets the triangle; infinite if it does not. */
 double FindMeeting(
   const Vec3& position, const Vec3& way, const Vec3& a, const Vec3& b, const Vec3& c)
@@ -60,7 +47,8 @@ LayerThickness::LayerThickness(TriangleMesh surface, std::vector<Id> facets, dou
   : Surface(std::move(surface)), Facets(std::move(facets)),
     Contacts(static_cast<Id>(this->Surface.Points.size()), this->Surface.Triangles, this->Facets),
     PointTriangles(ListTrianglesAtPoints(this->Surface.Triangles, this->Surface.Points.size())),
-    Thin(this->Surface, this->PointTriangles, aspectRatio), Tree(MakeBoxes(this->Surface))
+    Thin(this->Surface, this->PointTriangles, aspectRatio),
+    Tree(MakeBoxes(this->Surface.Points, this->Surface.Triangles))
 {
 }
 
@@ -86,10 +74,10 @@ Id LayerThickness::FindFirst(const Vec3& position, const Vec3& way, double& shar
   return first;
 }
 
-/** The triangles nearer than the reach that have the foot of the position's perpendicular in them. */
-std::vector<Id> LayerThickness::ListFootTriangles(const Vec3& position, double reach) const
+/** The feet of the position's perpendiculars on the triangles, if they are nearer than the reach. */
+std::vector<LayerThickness::Foot> LayerThickness::ListFeet(const Vec3& position, double reach) const
 {
-  std::vector<Id> found;
+  std::vector<Foot> feet;
   this->Tree.VisitOverlaps(Box::MakeAround(position, reach),
     [&](Id t)
     {
@@ -99,41 +87,39 @@ std::vector<Id> LayerThickness::ListFootTriangles(const Vec3& position, double r
       const Vec3 way = (-2.0 * height / Norm(normal)) * normal;
       if (height != 0.0 && std::abs(height) < reach && FindMeeting(position, way, a, b, c) < 1.0)
       {
-        found.push_back(t);
+        const Id face = 2 * t + (height > 0.0 ? 1 : 0);
+        feet.push_back(
+          { face, std::abs(height), (std::copysign(1.0, height) / Norm(normal)) * normal });
       }
     });
-  return found;
+  return feet;
 }
 
 std::vector<LayerThickness::Layer> LayerThickness::Find(const Vec3& position, double limit) const
 {
   std::vector<Layer> layers;
-  for (Id near : this->ListFootTriangles(position, 0.5 * limit))
+  for (const Foot& foot : this->ListFeet(position, 0.5 * limit))
   {
-    const Vec3 normal = GetAreaVector(this->Surface, this->Surface.Triangles[near]);
-    const Vec3& corner = this->Surface.Points[this->Surface.Triangles[near][0]];
-    const double height = Dot(normal, position - corner) / Norm(normal);
-    const Vec3 direction = (std::copysign(1.0, height) / Norm(normal)) * normal;
-    const double left = limit - std::abs(height);
+    const Id near = foot.Face / 2;
+    const double left = limit - foot.Height;
     double share = 0.0;
     // Nothing may lie between.
-    if (this->FindFirst(position, -2.0 * std::abs(height) * direction, share) != near)
+    if (this->FindFirst(position, -2.0 * foot.Height * foot.Direction, share) != near)
     {
       continue;
     }
-    const Id far = this->FindFirst(position, left * direction, share);
+    const Id far = this->FindFirst(position, left * foot.Direction, share);
     if (far == NoId || !this->Contacts.AreDisjoint(this->Facets[near], this->Facets[far]))
     {
       continue;
     }
-    const double thickness = std::abs(height) + share * left;
+    const double thickness = foot.Height + share * left;
     const Vec3 farNormal = GetAreaVector(this->Surface, this->Surface.Triangles[far]);
-    const Id nearFace = 2 * near + (height > 0.0 ? 1 : 0);
-    const Id farFace = 2 * far + (Dot(farNormal, direction) < 0.0 ? 1 : 0);
-    if (this->Thin.AreOpposite(nearFace, farFace) &&
-      !this->Thin.IsThin(nearFace, farFace, thickness))
+    const Id farFace = 2 * far + (Dot(farNormal, foot.Direction) < 0.0 ? 1 : 0);
+    if (this->Thin.AreOpposite(foot.Face, farFace) &&
+      !this->Thin.IsThin(foot.Face, farFace, thickness))
     {
-      layers.push_back({ thickness, direction });
+      layers.push_back({ thickness, foot.Direction });
     }
   }
   return layers;

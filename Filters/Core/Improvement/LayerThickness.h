@@ -59,8 +59,18 @@ public:
   bool IsTooThick(const std::array<Vec3, 4>& vertices, double longest, int across) const;
 
 private:
+  /** The foot of a position's perpendicular on a triangle. */
+  struct Foot
+  {
+    /** As in ThinLayers, seen from the position. */
+    Id Face;
+    /** Of the position above the triangle. */
+    double Height;
+    /** From there to the position, of length 1. */
+    Vec3 Direction;
+  };
   Id FindFirst(const Vec3& position, const Vec3& way, double& share) const;
-  std::vector<Id> ListFootTriangles(const Vec3& position, double reach) const;
+  std::vector<Foot> ListFeet(const Vec3& position, double reach) const;
 
   const TriangleMesh Surface;
   const std::vector<Id> Facets;

@@ -194,7 +194,7 @@ TetMesh RefinedMesh::TakeMesh()
   mesh.Points.resize(count);
   for (TetrahedronIds& ids : mesh.Tetrahedra)
   {
-    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]], newIds[ids[3]] };
+    ids = Renumber(ids, newIds);
   }
   return mesh;
 }

@@ -137,7 +137,7 @@ Status SliverPointMoves::TakeApart(const ExecutionContext& context, Parts& parts
   }
   for (TetrahedronIds& ids : parts.Mesh.Tetrahedra)
   {
-    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]], newIds[ids[3]] };
+    ids = Renumber(ids, newIds);
   }
   parts.IsIntact.assign(parts.Surface.Points.size(), 1);
   const Status status =

@@ -95,8 +95,8 @@ struct SteinerPointRefinerOptions
   /** What counts as flat, see StructuralEdges.h. */
   StructuralEdgeOptions StructuralEdges;
   /**
-   * The refinement stops when it has made about this many points. 0: no limit if sizes are asked
-   * for, otherwise 50000 and 200 for each point of the mesh. Shapes that need more can hardly be
+   * The refinement stops when it has made about this many points. 0: no limit if sizes, or more than
+   * one tetrahedron across layers, are asked for, otherwise 50000 and 200 for each point of the mesh. Shapes that need more can hardly be
    * reached.
    */
   Id MaximumNewPoints = 0;

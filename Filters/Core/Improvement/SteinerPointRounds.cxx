@@ -333,7 +333,7 @@ bool SteinerPointRounds::TakeGivenMesh(const DelaunaySurfaceRefinerOutput& refin
   }
   for (TetrahedronIds& ids : given.Mesh.Tetrahedra)
   {
-    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]], newIds[ids[3]] };
+    ids = Renumber(ids, newIds);
   }
   if (!IsLocallyDelaunay(given.Mesh, this->Context.GetNumberOfThreads()))
   {
@@ -620,7 +620,7 @@ void SteinerPointRounds::MakeOutput(SteinerPointRefinerOutput& output)
   }
   for (TetrahedronIds& ids : output.Mesh.Tetrahedra)
   {
-    ids = { newIds[ids[0]], newIds[ids[1]], newIds[ids[2]], newIds[ids[3]] };
+    ids = Renumber(ids, newIds);
   }
 }
 } // namespace cdm

@@ -58,6 +58,13 @@ inline std::array<Vec3, 4> GetCorners(
     points[tetrahedron[3]] };
 }
 
+/** The vertices by their new numbers. */
+inline TetrahedronIds Renumber(const TetrahedronIds& tetrahedron, const std::vector<Id>& newIds)
+{
+  return { newIds[tetrahedron[0]], newIds[tetrahedron[1]], newIds[tetrahedron[2]],
+    newIds[tetrahedron[3]] };
+}
+
 /** Drops tetrahedra whose vertex 0 is NoId; the others keep their order. */
 void RemoveDeadTetrahedra(TetMesh& mesh);
 } // namespace cdm

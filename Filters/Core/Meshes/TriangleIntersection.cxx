@@ -407,11 +407,7 @@ bool FindIntersectingPairs(const std::vector<Vec3>& points,
 {
   pairs.clear();
   const Id n = static_cast<Id>(triangles.size());
-  std::vector<Box> boxes(n);
-  for (Id t = 0; t < n; ++t)
-  {
-    boxes[t] = GetBox(points, triangles[t]);
-  }
+  const std::vector<Box> boxes = MakeBoxes(points, triangles);
   const BoxTree tree(boxes);
   const auto isActive = [&active](Id t) { return active.empty() || active[t]; };
   std::vector<Id> candidates;

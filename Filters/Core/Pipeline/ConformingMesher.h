@@ -66,9 +66,9 @@ struct ConformingMesherOptions
   bool CloseOpenBoundary = false;
   /** With Steiner points. Cubic model units; 0: off. */
   double MaximumVolume = 0.0;
-  /** With Steiner points, see SteinerPointRefinerOptions. 0 (automatic) or at least 1. */
+  /** Which layers Steiner points do not fill, see SteinerPointRefinerOptions. 0 or at least 1. */
   double LayerAspectRatio = 0.0;
-  /** With Steiner points, see SteinerPointRefinerOptions. At least 1. */
+  /** How many tetrahedra Steiner points make across layers, see there. At least 1. */
   int TetrahedraAcrossLayers = 1;
   /**
    * With Steiner points: rounds in which free points inside go to where fewer circumcenters lie

@@ -138,17 +138,6 @@ public:
   }
 
 private:
-  static std::vector<Box> MakeBoxes(
-    const std::vector<Vec3>& points, const std::vector<TriangleIds>& triangles)
-  {
-    std::vector<Box> boxes(triangles.size());
-    for (std::size_t t = 0; t < boxes.size(); ++t)
-    {
-      boxes[t] = GetBox(points, triangles[t]);
-    }
-    return boxes;
-  }
-
   bool CanBeBeside(const TriangleIds& patch, const TriangleIds& other) const
   {
     return ClassifyTriangles(this->Points, patch, other) != TriangleContact::Intersection ||

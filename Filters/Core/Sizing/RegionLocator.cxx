@@ -70,12 +70,11 @@ RegionLocator::~RegionLocator() = default;
 
 Status RegionLocator::Build()
 {
-  std::vector<Box> boxes(this->Surface.Triangles.size());
+  std::vector<Box> boxes = MakeBoxes(this->Surface.Points, this->Surface.Triangles);
   Box bounds;
-  for (std::size_t t = 0; t < boxes.size(); ++t)
+  for (const Box& box : boxes)
   {
-    boxes[t] = GetBox(this->Surface.Points, this->Surface.Triangles[t]);
-    bounds.Add(boxes[t]);
+    bounds.Add(box);
   }
   this->Low = bounds.Low;
   this->High = bounds.High;

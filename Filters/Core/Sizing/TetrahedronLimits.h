@@ -4,8 +4,8 @@
  * @brief Limits of the size and shape of tetrahedra, and the Steiner point that would improve one.
  *
  * A tetrahedron is too large by its volume, by an edge that is longer than allowed or than the
- * sizing asks for anywhere in it, or by a rule of the caller; it is badly shaped if the ratio of its circumradius to its
- * shortest edge is too large. A point at the circumcenter destroys it. For a badly shaped one the
+ * sizing asks for anywhere in it, or by a rule of the caller; it is badly shaped if the ratio of its
+ * circumradius to its shortest edge is too large. A point at the circumcenter destroys it. For a badly shaped one the
  * off-center serves better: on the way from the middle of the shortest edge to the circumcenter,
  * where the triangle that it makes with this edge is just well shaped. That leaves larger
  * tetrahedra and needs fewer points.
