@@ -109,7 +109,7 @@ std::map<TetrahedronIds, Id> GetRegions(const TetMesh& mesh, const std::vector<I
 void ExpectFilledBy(
   const CavityFilling& filling, const Cavity& cavity, const std::map<TetrahedronIds, Id>& expected)
 {
-  const std::vector<CavityFilling::Cell>& cells = filling.GetCells();
+  const std::vector<CavityCell>& cells = filling.GetCells();
   std::map<TetrahedronIds, Id> regions;
   std::vector<int> uses(cavity.Border.size(), 0);
   for (std::size_t k = 0; k < cells.size(); ++k)
@@ -127,7 +127,7 @@ void ExpectFilledBy(
       }
       else
       {
-        const Id border = CavityFilling::GetBorderFacet(neighbor);
+        const Id border = CavityCell::GetBorderFacet(neighbor);
         ++uses[border];
         const TriangleIds facet = GetFacet(cells[k].Ids, i);
         EXPECT_TRUE(std::is_permutation(facet.begin(), facet.end(), cavity.Border[border].begin()));
@@ -142,6 +142,7 @@ void ExpectFilledBy(
 TEST(CavityFilling, PutsBackWhatWasTakenOut)
 {
   std::size_t withWalls = 0;
+  std::size_t withManyPoints = 0;
   for (unsigned int seed = 1; seed <= 5; ++seed)
   {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -151,14 +152,42 @@ TEST(CavityFilling, PutsBackWhatWasTakenOut)
     for (int i = 0; i < 50; ++i)
     {
       const std::vector<Id> chosen =
-        Grow(mesh, static_cast<Id>(generator() % mesh.Tetrahedra.size()), 1 + generator() % 30);
+        Grow(mesh, static_cast<Id>(generator() % mesh.Tetrahedra.size()),
+          1 + generator() % (i % 5 == 0 ? 250 : 30));
       const Cavity cavity = TakeOut(mesh, chosen);
+      withManyPoints += cavity.Points.size() > CavityWrapping::MostPoints ? 1 : 0;
       withWalls += cavity.Walls.empty() ? 0 : 1;
       ASSERT_TRUE(filling.Run(cavity));
       ExpectFilledBy(filling, cavity, GetRegions(mesh, chosen));
     }
   }
   EXPECT_GT(withWalls, 20u);
+  EXPECT_GT(withManyPoints, 10u);
+}
+
+TEST(CavityFilling, EndsAtACellThatIsNotAccepted)
+{
+  std::mt19937_64 generator(1);
+  const TetMesh mesh = MakeMesh(generator).Mesh;
+  CavityFilling filling;
+  for (const std::size_t count : { 12, 250 })
+  {
+    const Cavity cavity = TakeOut(mesh, Grow(mesh, 0, count));
+    ASSERT_EQ(cavity.Points.size() > CavityWrapping::MostPoints, count == 250);
+    std::map<TetrahedronIds, Id> seen;
+    const auto see = [&](TetrahedronIds ids, Id region)
+    {
+      std::sort(ids.begin(), ids.end());
+      seen[ids] = region;
+      return true;
+    };
+    ASSERT_TRUE(filling.Run(cavity, see));
+    ExpectFilledBy(filling, cavity, seen);
+    std::size_t calls = 0;
+    EXPECT_FALSE(filling.Run(
+      cavity, [&](const TetrahedronIds& /*ids*/, Id /*region*/) { return ++calls < 3; }));
+    EXPECT_EQ(calls, 3u);
+  }
 }
 
 TEST(CavityFilling, RefusesWhatHasNoBorderAllAround)

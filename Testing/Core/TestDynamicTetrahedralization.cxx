@@ -190,14 +190,22 @@ void ExpectFacetsAsTheyAreFound(
     std::vector<TriangleIds> facets;
     const bool isFound =
       search.FindCavity(position, mesh.GetNumberOfPoints(), cavity.Tetrahedra.front(), again,
-        [&](const TriangleIds& facet)
+        [&]
         {
-          facets.push_back(facet);
+          facets.push_back(again.Facets.back());
           return facets.size() <= last;
         });
     EXPECT_EQ(isFound, last == cavity.Facets.size());
     EXPECT_EQ(facets.size(), std::min(last + 1, cavity.Facets.size()));
     EXPECT_TRUE(std::equal(facets.begin(), facets.end(), cavity.Facets.begin()));
+  }
+  for (const Id facet : cavity.Inner)
+  {
+    EXPECT_TRUE(search.IsAroundCavity(facet, position, mesh.GetNumberOfPoints()));
+  }
+  for (const Id facet : cavity.Outer)
+  {
+    EXPECT_FALSE(facet != NoId && search.IsAroundCavity(facet, position, mesh.GetNumberOfPoints()));
   }
 }
 

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <random>
+#include <string>
 
 using cdm::Vec3;
 
@@ -70,8 +73,33 @@ TEST(Measures, SliverAnglesKeepTheirRelativeAccuracy)
   EXPECT_GT(smallest, 0.0);
   // Facets through x + y = +-1 planes: the sliver's other angles are sqrt(2) h.
   EXPECT_NEAR(1.0, smallest / (std::sqrt(2.0) * h * Degrees), 1e-9);
-  EXPECT_EQ(
-    smallest, cdm::GetSmallestDihedralAngle({ -1, 0, 0 }, { 1, 0, 0 }, { 0, -1, h }, { 0, 1, h }));
+  EXPECT_NEAR(1.0,
+    cdm::GetSmallestDihedralAngle({ -1, 0, 0 }, { 1, 0, 0 }, { 0, -1, h }, { 0, 1, h }) / smallest,
+    1e-14);
+}
+
+TEST(Measures, TheSmallestAngleIsTheSmallestOfAll)
+{
+  constexpr unsigned int seed = 20261125;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int i = 0; i < 1000; ++i)
+  {
+    // Half of them flat, and of all sizes.
+    const double size = std::pow(10.0, 12.0 * uniform(generator));
+    const double height = i % 2 == 0 ? size : std::pow(10.0, -8.0) * size;
+    std::array<cdm::Vec3, 4> v;
+    for (cdm::Vec3& p : v)
+    {
+      p = { size * uniform(generator), size * uniform(generator), height * uniform(generator) };
+    }
+    const auto angles = cdm::GetDihedralAngles(v[0], v[1], v[2], v[3]);
+    const double smallest = *std::min_element(angles.begin(), angles.end());
+    EXPECT_NEAR(1.0, cdm::GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]) / smallest, 1e-12);
+    const double tangent2 = cdm::GetSmallestDihedralTangent2(v[0], v[1], v[2], v[3]);
+    EXPECT_NEAR(1.0, std::atan(std::sqrt(tangent2)) * Degrees / smallest, 1e-12);
+  }
 }
 
 TEST(Measures, FlatAndDegenerateTetrahedraHaveTheirLimits)

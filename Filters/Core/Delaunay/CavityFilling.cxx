@@ -65,7 +65,7 @@ public:
       [this](const TriangleIds& wall)
       {
         return this->VisitSides(
-          this->FindCorners(wall), [this](Id side) { this->Behind[side] = Wall; });
+          this->Input.FindCorners(wall), [this](Id side) { this->Behind[side] = Wall; });
       });
   }
 
@@ -74,7 +74,7 @@ public:
   {
     for (Id k = 0; k < static_cast<Id>(this->Input.Border.size()); ++k)
     {
-      const TriangleIds facet = this->FindCorners(this->Input.Border[k]);
+      const TriangleIds facet = this->Input.FindCorners(this->Input.Border[k]);
       Id inner = NoId;
       this->VisitSides(facet,
         [&](Id side)
@@ -129,7 +129,7 @@ public:
         Id& neighbor = this->Filling.Cells[k].Neighbors[i];
         if (this->Behind[side] >= 0)
         {
-          neighbor = OutOf(this->Behind[side]);
+          neighbor = CavityCell::OutOf(this->Behind[side]);
         }
         else if (this->Cells[inner / 4] != NoId)
         {
@@ -144,19 +144,6 @@ private:
   {
     const TetrahedronIds& vertices = this->Local.Tetrahedra[t];
     return std::find(vertices.begin(), vertices.end(), this->Infinite) != vertices.end();
-  }
-
-  /** Indices in the cavity; Infinite for a point that it does not have: no facet is found at it. */
-  TriangleIds FindCorners(TriangleIds facet) const
-  {
-    const std::vector<Id>& numbers = this->Input.Numbers;
-    for (Id& id : facet)
-    {
-      const auto place = std::lower_bound(numbers.begin(), numbers.end(), id);
-      const bool isThere = place != numbers.end() && *place == id;
-      id = isThere ? static_cast<Id>(place - numbers.begin()) : this->Infinite;
-    }
-    return facet;
   }
 
   /** Visits a facet from the tetrahedra on its sides, as 4 * tetrahedron + facet. False: none. */
@@ -208,15 +195,21 @@ private:
 };
 
 //--------------------------------------------------------------------------------------------------
-bool CavityFilling::Run(const Cavity& cavity)
+bool CavityFilling::Run(const Cavity& cavity, const CavityCellTest& accepts)
 {
   this->Cells.clear();
+  if (cavity.Numbers.size() <= CavityWrapping::MostPoints)
+  {
+    return this->Wrapping.Run(cavity, accepts, this->Cells);
+  }
   Flood flood(*this, cavity);
   if (!flood.Tetrahedralize() || !flood.FindWalls() || !flood.StartAtBorder() || !flood.Spread())
   {
     return false;
   }
   flood.Connect();
-  return true;
+  return !accepts ||
+    std::all_of(this->Cells.begin(), this->Cells.end(),
+      [&](const CavityCell& cell) { return accepts(cell.Ids, cell.Region); });
 }
 } // namespace cdm

@@ -123,6 +123,18 @@ bool CavitySearch::IsInConflict(Id tetrahedron, const Vec3& position, Id number)
   return side != 0 ? side > 0 : GetPulledPosition(vertices, ids, position, number, Orientation) > 0;
 }
 
+bool CavitySearch::IsAroundCavity(Id facet, const Vec3& position, Id number)
+{
+  const Id outer = this->GetNeighbor(facet / 4, facet % 4);
+  this->Visit(facet / 4);
+  if (outer != NoId)
+  {
+    this->Visit(outer / 4);
+  }
+  return this->IsInConflict(facet / 4, position, number) &&
+    (outer == NoId || !this->IsInConflict(outer / 4, position, number));
+}
+
 /** Whether all facets around a cavity are in front of the position. */
 bool CavitySearch::IsVisible(const PointCavity& cavity, const Vec3& position) const
 {
@@ -167,13 +179,13 @@ bool CavitySearch::LeaveOut(Id point)
   this->Substitutes.assign(this->Star.size(), NoId);
   this->CellNeighbors.clear();
   const Id first = this->GetFirstCell();
-  for (const CavityFilling::Cell& cell : this->GetCells())
+  for (const CavityCell& cell : this->GetCells())
   {
     std::array<Id, 4> neighbors;
     for (int i = 0; i < 4; ++i)
     {
       const Id inner = cell.Neighbors[i];
-      const Id facet = CavityFilling::GetBorderFacet(inner);
+      const Id facet = CavityCell::GetBorderFacet(inner);
       neighbors[i] = facet >= 0 ? outer[facet] : 4 * first + inner;
       if (facet >= 0)
       {

@@ -34,6 +34,8 @@ struct PointCavity
   std::vector<Id> Tetrahedra;
   /** Facets around the cavity; the point lies in front of each. */
   std::vector<TriangleIds> Facets;
+  /** Their facet ids, in the tetrahedra of the cavity. */
+  std::vector<Id> Inner;
   /** Facet ids of the tetrahedra beyond, NoId at the outer boundary. */
   std::vector<Id> Outer;
 };
@@ -77,17 +79,19 @@ public:
    */
   bool FindCavity(const Vec3& position, Id number, Id first, PointCavity& cavity)
   {
-    return this->FindCavity(
-      position, number, first, cavity, [](const TriangleIds&) { return true; });
+    return this->FindCavity(position, number, first, cavity, [] { return true; });
   }
   /**
    * The same, for a caller who has no use for most cavities.
-   * @param accepts is called with each facet of the cavity, in their order, as soon as it is found.
+   * @param accepts is called as soon as a facet of the cavity is found, the last one of its lists.
    *   If it returns false, the search ends and returns false
    */
   template <typename Accepts>
   bool FindCavity(
     const Vec3& position, Id number, Id first, PointCavity& cavity, Accepts&& accepts);
+
+  /** Whether a facet would be around the cavity of a point that reaches it; its id is Inner. */
+  bool IsAroundCavity(Id facet, const Vec3& position, Id number);
 
   /**
    * Leaves a point out from now on. False, and it is not, if the point lies on a boundary, or if
@@ -99,7 +103,7 @@ public:
   /** The tetrahedra around the point that is left out; border facet i of the cells is of the i-th. */
   const std::vector<Id>& GetStar() const { return this->Star; }
   /** The cells that replace them; cell i is the tetrahedron GetFirstCell() + i. */
-  const std::vector<CavityFilling::Cell>& GetCells() const { return this->Filling.GetCells(); }
+  const std::vector<CavityCell>& GetCells() const { return this->Filling.GetCells(); }
   Id GetFirstCell() const { return static_cast<Id>(this->Mesh.Tetrahedra.size()); }
   /** Points of a tetrahedron, or of a cell. */
   const TetrahedronIds& GetIds(Id tetrahedron) const
@@ -181,6 +185,7 @@ bool CavitySearch::FindCavity(
 {
   cavity.Tetrahedra.clear();
   cavity.Facets.clear();
+  cavity.Inner.clear();
   cavity.Outer.clear();
   const std::uint32_t stays = this->StartSearch();
   this->Visit(first);
@@ -221,8 +226,9 @@ bool CavitySearch::FindCavity(
       {
         const TriangleIds facet = GetFacet(this->GetIds(t), i);
         cavity.Facets.push_back({ facet[0], facet[2], facet[1] });
+        cavity.Inner.push_back(4 * t + i);
         cavity.Outer.push_back(outer);
-        if (!accepts(cavity.Facets.back()))
+        if (!accepts())
         {
           return false;
         }

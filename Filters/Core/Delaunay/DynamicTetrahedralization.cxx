@@ -140,7 +140,7 @@ bool DynamicTetrahedralization::Remove(Id point)
 }
 
 void DynamicTetrahedralization::Remove(
-  Id point, const std::vector<Id>& star, const std::vector<CavityFilling::Cell>& cells)
+  Id point, const std::vector<Id>& star, const std::vector<CavityCell>& cells)
 {
   std::vector<Id> outer;
   this->RemovedStar.clear();
@@ -188,14 +188,14 @@ void DynamicTetrahedralization::UndoRemove()
 }
 
 void DynamicTetrahedralization::Replace(const std::vector<Id>& tetrahedra,
-  const std::vector<Id>& outer, const std::vector<CavityFilling::Cell>& cells)
+  const std::vector<Id>& outer, const std::vector<CavityCell>& cells)
 {
   for (auto t = tetrahedra.rbegin(); t != tetrahedra.rend(); ++t)
   {
     this->Kill(*t);
   }
   this->Changed.clear();
-  for (const CavityFilling::Cell& cell : cells)
+  for (const CavityCell& cell : cells)
   {
     this->Make(cell.Ids, cell.Region);
   }
@@ -205,7 +205,7 @@ void DynamicTetrahedralization::Replace(const std::vector<Id>& tetrahedra,
     for (int i = 0; i < 4; ++i)
     {
       const Id inner = cells[k].Neighbors[i];
-      const Id facet = CavityFilling::GetBorderFacet(inner);
+      const Id facet = CavityCell::GetBorderFacet(inner);
       Id& neighbor = this->Mesh.Neighbors[made][i];
       neighbor = facet >= 0 ? outer[facet]
         : inner == NoId     ? NoId

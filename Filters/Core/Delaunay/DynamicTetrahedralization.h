@@ -106,7 +106,7 @@ public:
    * Removes a point that a search has left out, with the star and the cells that it had then. The
    * tetrahedra around the point have to be the same as then.
    */
-  void Remove(Id point, const std::vector<Id>& star, const std::vector<CavityFilling::Cell>& cells);
+  void Remove(Id point, const std::vector<Id>& star, const std::vector<CavityCell>& cells);
   /**
    * Undoes the last removal, as long as nothing else has been changed: all tetrahedra get back
    * their slots and stamps.
@@ -121,7 +121,7 @@ public:
    *   the tetrahedron beyond, NoId at the outer boundary
    */
   void Replace(const std::vector<Id>& tetrahedra, const std::vector<Id>& outer,
-    const std::vector<CavityFilling::Cell>& cells);
+    const std::vector<CavityCell>& cells);
 
   /** Makes a facet an outer one: the outside replaces what lay beyond. */
   void MakeOuter(Id facet) { this->Mesh.Neighbors[facet / 4][facet % 4] = NoId; }

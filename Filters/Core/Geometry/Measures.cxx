@@ -73,24 +73,39 @@ std::array<double, 6> GetDihedralAngles(const Vec3& a, const Vec3& b, const Vec3
     sides.GetAngle(4), sides.GetAngle(5) };
 }
 
+double GetSmallestDihedralTangent2(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  const Vec3 ab = b - a;
+  const Vec3 ac = c - a;
+  const Vec3 ad = d - a;
+  const Vec3 bc = c - b;
+  const Vec3 bd = d - b;
+  const Vec3 normalB = Cross(ad, ac);
+  const Vec3 normalC = Cross(ab, ad);
+  const Vec3 normalD = Cross(ac, ab);
+  const Vec3 normalA = Cross(bc, bd);
+  const double sixVolumes = Dot(normalD, ad);
+  if (sixVolumes == 0.0)
+  {
+    return 0.0;
+  }
+  const double lengths[6] = { SquaredNorm(ab), SquaredNorm(ac), SquaredNorm(ad), SquaredNorm(bc),
+    SquaredNorm(bd), SquaredNorm(d - c) };
+  const double products[6] = { Dot(normalC, normalD), Dot(normalB, normalD), Dot(normalB, normalC),
+    Dot(normalA, normalD), Dot(normalA, normalC), Dot(normalA, normalB) };
+  // n x m of two facets' normals is their edge times six volumes. The largest cotangent is sought.
+  double cotangent2 = 0.0;
+  for (int i = 0; i < 6; ++i)
+  {
+    const double product = std::min(products[i], 0.0);
+    cotangent2 = std::max(cotangent2, product / lengths[i] * product);
+  }
+  return sixVolumes * sixVolumes / cotangent2;
+}
+
 double GetSmallestDihedralAngle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
-  const DihedralSides sides(a, b, c, d);
-  if (sides.SixVolumes == 0.0)
-  {
-    const std::array<double, 6> angles = GetDihedralAngles(a, b, c, d);
-    return *std::min_element(angles.begin(), angles.end());
-  }
-  // The smallest angle has the largest cotangent: one arc tangent is enough.
-  int smallest = 0;
-  for (int i = 1; i < 6; ++i)
-  {
-    smallest =
-      sides.Products[i] * sides.Lengths[smallest] < sides.Products[smallest] * sides.Lengths[i]
-      ? i
-      : smallest;
-  }
-  return sides.GetAngle(smallest);
+  return std::atan(std::sqrt(GetSmallestDihedralTangent2(a, b, c, d))) * DegreesPerRadian;
 }
 
 double GetSmallestHeight(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)

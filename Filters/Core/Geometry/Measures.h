@@ -30,7 +30,10 @@ double GetTriangleArea(const Vec3& a, const Vec3& b, const Vec3& c);
  */
 std::array<double, 6> GetDihedralAngles(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
+/** The smallest of them, which is never above 70.53 degrees. */
 double GetSmallestDihedralAngle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+/** The square of its tangent, which tells tetrahedra apart as the angle does, and is quicker. */
+double GetSmallestDihedralTangent2(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /** Smallest of the four heights: distance of a vertex from the opposite facet's plane. */
 double GetSmallestHeight(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);

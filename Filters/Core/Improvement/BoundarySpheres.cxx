@@ -67,30 +67,44 @@ void BoundarySpheres::Follow(const std::vector<Id>& triangles, const std::vector
   }
 }
 
+bool BoundarySpheres::IsOnTriangle(Id triangle, const Vec3& position) const
+{
+  const std::vector<Vec3>& points = this->Surface.Points;
+  const TriangleIds& ids = this->Surface.Triangles[triangle];
+  return InEquatorialSphere(points[ids[0]], points[ids[1]], points[ids[2]], position) >= 0;
+}
+
+bool BoundarySpheres::IsOnEdge(Id edge, const Vec3& position) const
+{
+  const EdgeIds& ends = this->Edges[edge].Points;
+  return InDiametralSphere(
+           this->Surface.Points[ends[0]], this->Surface.Points[ends[1]], position) >= 0;
+}
+
 void BoundarySpheres::Find(const Vec3& position, Encroached& encroached) const
 {
   encroached.Triangles.clear();
   encroached.Edges.clear();
   this->Balls.FindSettled(position, encroached.Near);
-  const std::vector<Vec3>& points = this->Surface.Points;
   for (Id id : encroached.Near)
   {
-    if (id % 2 != 0)
-    {
-      const Id edge = this->SegmentEdges[id / 2];
-      const EdgeIds& ends = this->Edges[edge].Points;
-      if (InDiametralSphere(points[ends[0]], points[ends[1]], position) >= 0)
-      {
-        encroached.Edges.push_back(edge);
-      }
-      continue;
-    }
-    const TriangleIds& ids = this->Surface.Triangles[id / 2];
-    if (InEquatorialSphere(points[ids[0]], points[ids[1]], points[ids[2]], position) >= 0)
+    if (id % 2 == 0 && this->IsOnTriangle(id / 2, position))
     {
       encroached.Triangles.push_back(id / 2);
     }
+    else if (id % 2 != 0 && this->IsOnEdge(this->SegmentEdges[id / 2], position))
+    {
+      encroached.Edges.push_back(this->SegmentEdges[id / 2]);
+    }
   }
   std::sort(encroached.Edges.begin(), encroached.Edges.end());
+}
+
+bool BoundarySpheres::IsOnOneOf(const Encroached& encroached, const Vec3& position) const
+{
+  return std::any_of(encroached.Triangles.begin(), encroached.Triangles.end(),
+           [&](Id triangle) { return this->IsOnTriangle(triangle, position); }) ||
+    std::any_of(encroached.Edges.begin(), encroached.Edges.end(),
+      [&](Id edge) { return this->IsOnEdge(edge, position); });
 }
 } // namespace cdm

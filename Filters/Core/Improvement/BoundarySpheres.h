@@ -41,6 +41,8 @@ public:
   };
   /** Several threads may call it at once. */
   void Find(const Vec3& position, Encroached& encroached) const;
+  /** Whether a point encroaches on one of those that another point does. */
+  bool IsOnOneOf(const Encroached& encroached, const Vec3& position) const;
 
   /**
    * Follows splits and moves of the surface.
@@ -52,6 +54,8 @@ public:
     const std::vector<Id>& segments);
 
 private:
+  bool IsOnTriangle(Id triangle, const Vec3& position) const;
+  bool IsOnEdge(Id edge, const Vec3& position) const;
   void SetTriangle(Id triangle);
   void SetEdge(Id edge, Id segment);
 

@@ -509,7 +509,7 @@ bool BoundarySplits::AreWallsComplete()
     }
   }
   std::sort(this->WallRegions.begin(), this->WallRegions.end());
-  for (const CavityFilling::Cell& cell : this->Filling.GetCells())
+  for (const CavityCell& cell : this->Filling.GetCells())
   {
     for (int i = 0; i < 4; ++i)
     {

@@ -392,6 +392,14 @@ bool RefinedMesh::BreaksLimit(const TetrahedronIds& ids, const std::array<Vec3, 
     (fault == TetrahedronFault::Shape && !this->Shape->Sharp.IsAcross(ids));
 }
 
+bool RefinedMesh::BreaksLimit(const TriangleIds& facet, const Vec3& inside) const
+{
+  constexpr Id other = std::numeric_limits<Id>::max();
+  return this->BreaksLimit({ facet[0], facet[1], facet[2], other },
+    { this->Mesh.GetPoint(facet[0]), this->Mesh.GetPoint(facet[1]), this->Mesh.GetPoint(facet[2]),
+      inside });
+}
+
 void RefinedMesh::NoteChanges()
 {
   for (Id t : this->Mesh.GetChanged())
@@ -417,16 +425,11 @@ TetrahedronIds RefinedMesh::GetNames(const TetrahedronIds& ids) const
   return names;
 }
 
-Id RefinedMesh::CountBroken(const PointCavity& cavity, const Vec3& position) const
+std::size_t RefinedMesh::FindBroken(const PointCavity& cavity, const Vec3& position) const
 {
-  constexpr Id inside = std::numeric_limits<Id>::max();
-  return static_cast<Id>(std::count_if(cavity.Facets.begin(), cavity.Facets.end(),
-    [&](const TriangleIds& facet)
-    {
-      return this->BreaksLimit({ facet[0], facet[1], facet[2], inside },
-        { this->Mesh.GetPoint(facet[0]), this->Mesh.GetPoint(facet[1]),
-          this->Mesh.GetPoint(facet[2]), position });
-    }));
+  const auto found = std::find_if(cavity.Facets.begin(), cavity.Facets.end(),
+    [&](const TriangleIds& facet) { return this->BreaksLimit(facet, position); });
+  return static_cast<std::size_t>(found - cavity.Facets.begin());
 }
 
 bool RefinedMesh::IsClear(const PointCavity& cavity, const Vec3& position) const
@@ -451,6 +454,8 @@ bool RefinedMesh::EncroachesOnBoundary(
   const bool isNear = std::any_of(cavity.Facets.begin(), cavity.Facets.end(),
     [&](const TriangleIds& facet)
     { return *std::min_element(facet.begin(), facet.end()) < this->FirstInside; });
+  scratch.Triangles.clear();
+  scratch.Edges.clear();
   if (!isNear)
   {
     return false;

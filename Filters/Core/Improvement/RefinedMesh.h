@@ -178,6 +178,8 @@ public:
   bool BreaksLimit(Id tetrahedron) const;
   /** The same for a tetrahedron that might be made; ids of interior points do not matter. */
   bool BreaksLimit(const TetrahedronIds& ids, const std::array<Vec3, 4>& corners) const;
+  /** The same for the tetrahedron of a facet and a point inside. */
+  bool BreaksLimit(const TriangleIds& facet, const Vec3& inside) const;
 
   /** The tetrahedra themselves. Whoever changes them calls NoteChanges(), or undoes the change. */
   const DynamicTetrahedralization& GetTetrahedra() const { return this->Mesh; }
@@ -204,11 +206,14 @@ public:
       position, number == NoId ? this->Mesh.GetNumberOfPoints() : number, first, this->FoundCavity);
   }
   const PointCavity& GetCavity() const { return this->FoundCavity; }
-  /** Number of tetrahedra that would break a limit if the cavity were filled from the position. */
-  Id CountBroken(const PointCavity& cavity, const Vec3& position) const;
+  /**
+   * The first facet whose tetrahedron would break a limit if the cavity were filled from the
+   * position, or the number of facets.
+   */
+  std::size_t FindBroken(const PointCavity& cavity, const Vec3& position) const;
   /** Whether the position keeps the distances that the sizes of points at the cavity ask for. */
   bool IsClear(const PointCavity& cavity, const Vec3& position) const;
-  /** @param scratch is overwritten */
+  /** @param scratch gets what the position encroaches on, if that is why it does */
   bool EncroachesOnBoundary(
     const PointCavity& cavity, const Vec3& position, BoundarySpheres::Encroached& scratch) const;
   void Insert(const Vec3& position);

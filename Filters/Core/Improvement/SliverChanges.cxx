@@ -53,10 +53,57 @@ bool SliverChanges::IsAimed(const TriangleIds& facet, double angle) const
 }
 
 /**
- * Finds a cavity. False as soon as a tetrahedron that would fill it is too flat: most positions
- * fail by one of the first, and the search is what rating them takes long for.
+ * Whether the tetrahedron of a facet of the cavity and the new point is not too flat.
  * @param floor the angle that tetrahedra which are not aimed at have to keep; 0: not known yet
  * @param required the angle that the others have to surpass
+ */
+bool SliverChanges::IsEnough(
+  double angle, const TriangleIds& facet, double floor, double required) const
+{
+  return angle > required || (angle >= floor && !this->IsAimed(facet, angle));
+}
+
+/** Forgets what was wrong with positions before: a search of positions begins. */
+void SliverChanges::StartSearch()
+{
+  this->Spoilers.fill({});
+  this->EncroachedBefore = {};
+}
+
+void SliverChanges::NoteSpoiler(Id facet, bool isByLimit)
+{
+  std::rotate(this->Spoilers.begin(), this->Spoilers.end() - 1, this->Spoilers.end());
+  this->Spoilers.front() = { facet, isByLimit };
+}
+
+/**
+ * Whether a position is no good for the same reason as one before. That holds for three quarters of
+ * them, and takes a tenth of the time of a search for the cavity.
+ */
+bool SliverChanges::IsSpoiled(const Vec3& position, Id number, double floor, double required)
+{
+  const DynamicTetrahedralization& mesh = this->Mesh.GetTetrahedra();
+  const auto isNoGood = [&](const Spoiler& spoiler)
+  {
+    const auto [a, c, b] = GetFacet(this->Search.GetIds(spoiler.Facet / 4), spoiler.Facet % 4);
+    const TriangleIds facet{ a, b, c };
+    return spoiler.IsByLimit ? this->Mesh.BreaksLimit(facet, position)
+                             : !this->IsEnough(GetSmallestDihedralAngle(mesh.GetPoint(a),
+                                                 mesh.GetPoint(b), mesh.GetPoint(c), position),
+                                 facet, floor, required);
+  };
+  return this->Mesh.GetShape().Spheres.IsOnOneOf(this->EncroachedBefore, position) ||
+    std::any_of(this->Spoilers.begin(), this->Spoilers.end(),
+      [&](const Spoiler& spoiler)
+      {
+        return spoiler.Facet != NoId && isNoGood(spoiler) &&
+          this->Search.IsAroundCavity(spoiler.Facet, position, number);
+      });
+}
+
+/**
+ * Finds a cavity. False as soon as a tetrahedron that would fill it is too flat: most positions
+ * fail by one of the first, and the search is what rating them takes long for.
  */
 bool SliverChanges::FindCavity(
   const Vec3& position, Id first, Id number, double floor, double required)
@@ -64,13 +111,40 @@ bool SliverChanges::FindCavity(
   const DynamicTetrahedralization& mesh = this->Mesh.GetTetrahedra();
   this->Angles.clear();
   return this->Search.FindCavity(position, number, first, this->Found,
-    [&](const TriangleIds& facet)
+    [&]
     {
-      const double angle = GetSmallestDihedralAngle(
-        mesh.GetPoint(facet[0]), mesh.GetPoint(facet[1]), mesh.GetPoint(facet[2]), position);
-      this->Angles.push_back(angle);
-      return angle > required || (angle >= floor && !this->IsAimed(facet, angle));
+      const TriangleIds& facet = this->Found.Facets.back();
+      this->Angles.push_back(GetSmallestDihedralAngle(
+        mesh.GetPoint(facet[0]), mesh.GetPoint(facet[1]), mesh.GetPoint(facet[2]), position));
+      const bool isEnough = this->IsEnough(this->Angles.back(), facet, floor, required);
+      if (!isEnough)
+      {
+        this->NoteSpoiler(this->Found.Inner.back(), false);
+      }
+      return isEnough;
     });
+}
+
+/** Whether the mesh may have a point at the position, with the cavity that was found. */
+bool SliverChanges::IsAllowed(const Vec3& position, bool mayBreakLimits)
+{
+  if (!this->Mesh.IsClear(this->Found, position))
+  {
+    return false;
+  }
+  const std::size_t broken =
+    mayBreakLimits ? this->Found.Facets.size() : this->Mesh.FindBroken(this->Found, position);
+  if (broken < this->Found.Facets.size())
+  {
+    this->NoteSpoiler(this->Found.Inner[broken], true);
+    return false;
+  }
+  const bool isAllowed = !this->Mesh.EncroachesOnBoundary(this->Found, position, this->Encroached);
+  if (!this->Encroached.IsEmpty())
+  {
+    std::swap(this->Encroached, this->EncroachedBefore);
+  }
+  return isAllowed;
 }
 
 /**
@@ -123,7 +197,7 @@ void SliverChanges::MeasureCells(double floor)
 {
   this->Cells.Angles.clear();
   this->Cells.IsBroken.clear();
-  for (const CavityFilling::Cell& cell : this->Search.GetCells())
+  for (const CavityCell& cell : this->Search.GetCells())
   {
     const std::array<Vec3, 4> corners = GetCorners(this->Mesh.GetMesh().Points, cell.Ids);
     SmallestAngles after;
@@ -161,7 +235,8 @@ bool SliverChanges::LeavesFlatter(Id point, const Vec3& position, double require
 
 double SliverChanges::RateMove(Id point, const Vec3& position, double floor, double required)
 {
-  if (this->LeavesFlatter(point, position, required))
+  if (this->LeavesFlatter(point, position, required) ||
+    this->IsSpoiled(position, point, floor, required))
   {
     return 0.0;
   }
@@ -185,9 +260,8 @@ double SliverChanges::RateMove(Id point, const Vec3& position, double floor, dou
     }
   }
   const double angle = this->RateCavity(floor, required);
-  return angle > required && this->Mesh.IsClear(this->Found, position) &&
-      (this->Before.Broken > 0 || broken + this->Mesh.CountBroken(this->Found, position) == 0) &&
-      !this->Mesh.EncroachesOnBoundary(this->Found, position, this->Encroached)
+  return angle > required && (this->Before.Broken > 0 || broken == 0) &&
+      this->IsAllowed(position, this->Before.Broken > 0)
     ? angle
     : 0.0;
 }
@@ -198,6 +272,7 @@ bool SliverChanges::FindMove(Id point, SliverChange& change)
   {
     return false;
   }
+  this->StartSearch();
   this->MeasureStar(point);
   const double floor = this->GetFloor(this->Before.Angles);
   this->MeasureCells(floor);
@@ -234,7 +309,8 @@ bool SliverChanges::FindMove(Id point, SliverChange& change)
 double SliverChanges::RateInsertion(Id tetrahedron, const Vec3& position, double required)
 {
   const Id number = this->Mesh.GetTetrahedra().GetNumberOfPoints();
-  if (!this->FindCavity(position, tetrahedron, number, 0.0, required))
+  if (this->IsSpoiled(position, number, 0.0, required) ||
+    !this->FindCavity(position, tetrahedron, number, 0.0, required))
   {
     return 0.0;
   }
@@ -244,11 +320,7 @@ double SliverChanges::RateInsertion(Id tetrahedron, const Vec3& position, double
     this->IncludeTetrahedron(t, before);
   }
   const double angle = this->RateCavity(this->GetFloor(before), required);
-  return angle > required && this->Mesh.IsClear(this->Found, position) &&
-      this->Mesh.CountBroken(this->Found, position) == 0 &&
-      !this->Mesh.EncroachesOnBoundary(this->Found, position, this->Encroached)
-    ? angle
-    : 0.0;
+  return angle > required && this->IsAllowed(position, false) ? angle : 0.0;
 }
 
 void SliverChanges::FindInsertion(Id tetrahedron, SliverChange& change)
@@ -261,6 +333,7 @@ void SliverChanges::FindInsertion(Id tetrahedron, SliverChange& change)
   }
   const auto rate = [&](const Vec3& position, double required)
   { return this->RateInsertion(tetrahedron, position, required); };
+  this->StartSearch();
   Place best{ center, this->Mesh.GetAngle(tetrahedron) + SmallestGain, false };
   TryPlace(center, rate, best);
   SearchPlace(center, FirstInsertion * Distance(center, a), MakeCubeDirections(), this->Goal.Target,

@@ -8,8 +8,12 @@
  * rated by the smallest dihedral angle of all tetrahedra that the point would make there. If no
  * move helps, a new point is looked for in the same way.
  *
+ * Three quarters of the positions are no good for the same reason as one shortly before: the same
+ * facet of the cavity makes too flat a tetrahedron, or one that breaks a limit, or the same part of
+ * the boundary is encroached on. These are asked first, before a cavity is searched.
+ *
  * Deterministic. Several threads may look at one frozen mesh, each with an object of its own.
- * Cost: about 200 microseconds for each point that is tried.
+ * Cost: about 100 microseconds for each point that is tried.
  *
  * Reference: J. Tournois, R. Srinivasan, P. Alliez, "Perturbing slivers in 3D Delaunay meshes",
  * 2009, doi:10.1007/978-3-642-04319-2_10.
@@ -22,6 +26,7 @@
 #include "Core/Improvement/SliverList.h"
 #include "Core/Improvement/SliverMemory.h"
 
+#include <array>
 #include <vector>
 
 namespace cdm
@@ -56,7 +61,7 @@ struct SliverChange
   Vec3 Position;
   /** The tetrahedra around the point, and what fills their place: see CavitySearch. */
   std::vector<Id> Star;
-  std::vector<CavityFilling::Cell> Cells;
+  std::vector<CavityCell> Cells;
 };
 
 class SliverChanges
@@ -105,11 +110,22 @@ private:
     double Nearest = 0.0;
     Vec3 Mean;
   };
+  /** A facet of a cavity whose tetrahedron is why a position is no good. */
+  struct Spoiler
+  {
+    /** Its id, in the cavity. */
+    Id Facet = NoId;
+    /** Whether the tetrahedron breaks a limit; otherwise it is too flat. */
+    bool IsByLimit = false;
+  };
   template <typename IsSharp>
   void Include(double angle, IsSharp&& isSharp, SmallestAngles& smallest) const;
   void IncludeTetrahedron(Id tetrahedron, SmallestAngles& smallest) const;
   double GetFloor(const SmallestAngles& before) const;
   bool IsAimed(const TriangleIds& facet, double angle) const;
+  bool IsEnough(double angle, const TriangleIds& facet, double floor, double required) const;
+  bool IsSpoiled(const Vec3& position, Id number, double floor, double required);
+  void NoteSpoiler(Id facet, bool isByLimit);
   bool FindCavity(const Vec3& position, Id first, Id number, double floor, double required);
   double RateCavity(double floor, double required) const;
   void MeasureStar(Id point);
@@ -117,6 +133,8 @@ private:
   bool LeavesFlatter(Id point, const Vec3& position, double required) const;
   double RateMove(Id point, const Vec3& position, double floor, double required);
   double RateInsertion(Id tetrahedron, const Vec3& position, double required);
+  bool IsAllowed(const Vec3& position, bool mayBreakLimits);
+  void StartSearch();
   bool FindMove(Id point, SliverChange& change);
   void FindInsertion(Id tetrahedron, SliverChange& change);
 
@@ -126,6 +144,8 @@ private:
   PointCavity Found;
   /** Smallest angles of the tetrahedra that would fill the cavity, facet by facet. */
   std::vector<double> Angles;
+  std::array<Spoiler, 3> Spoilers;
+  BoundarySpheres::Encroached EncroachedBefore;
   Around Before;
   Filled Cells;
   BoundarySpheres::Encroached Encroached;

@@ -412,10 +412,6 @@ double SurfacePointMoves::Rate(Id point, const Vec3& position, double required)
       return 0.0;
     }
   }
-  if (!this->AreSpheresEmpty(point, position) || !this->Filling.Run(cavity))
-  {
-    return 0.0;
-  }
   const TetMesh& mesh = this->Mesh.GetMesh();
   const auto getVertices = [&](const TetrahedronIds& ids)
   {
@@ -427,19 +423,23 @@ double SurfacePointMoves::Rate(Id point, const Vec3& position, double required)
     return v;
   };
   double smallest = 180.0;
-  Id broken = 0;
-  for (const CavityFilling::Cell& cell : this->Filling.GetCells())
+  const auto isLarger = [&](const TetrahedronIds& ids, Id region)
   {
-    const std::array<Vec3, 4> v = getVertices(cell.Ids);
-    if (this->Given.HasAngle(cell.Ids, cell.Region))
+    if (this->Given.HasAngle(ids, region))
     {
-      smallest = std::min(smallest, GetSmallestDihedralAngle(v[0], v[1], v[2], v[3]));
-      if (smallest <= required)
-      {
-        return 0.0;
-      }
+      const auto [a, b, c, d] = getVertices(ids);
+      smallest = std::min(smallest, GetSmallestDihedralAngle(a, b, c, d));
     }
-    broken += this->Given.BreaksLimit(cell.Ids, v);
+    return smallest > required;
+  };
+  if (!this->AreSpheresEmpty(point, position) || !this->Filling.Run(cavity, isLarger))
+  {
+    return 0.0;
+  }
+  Id broken = 0;
+  for (const CavityCell& cell : this->Filling.GetCells())
+  {
+    broken += this->Given.BreaksLimit(cell.Ids, getVertices(cell.Ids));
   }
   for (std::size_t k = 0; k < this->Tetrahedra.size() && broken > 0; ++k)
   {

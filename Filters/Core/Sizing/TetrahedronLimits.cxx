@@ -14,22 +14,23 @@ namespace cdm
 TetrahedronFault TetrahedronLimits::Find(
   const std::array<Vec3, 4>& vertices, bool isShapeTested, Vec3& target, double& severity) const
 {
-  double longest = 0.0;
-  double shortest = std::numeric_limits<double>::infinity();
+  double longest2 = 0.0;
+  double shortest2 = std::numeric_limits<double>::infinity();
   int shortestEdge = 0;
   for (int e = 0; e < 6; ++e)
   {
-    const double length =
-      Distance(vertices[TetrahedronEdges[e][0]], vertices[TetrahedronEdges[e][1]]);
-    longest = std::max(longest, length);
-    if (length < shortest)
+    const double length2 =
+      SquaredNorm(vertices[TetrahedronEdges[e][1]] - vertices[TetrahedronEdges[e][0]]);
+    longest2 = std::max(longest2, length2);
+    if (length2 < shortest2)
     {
-      shortest = length;
+      shortest2 = length2;
       shortestEdge = e;
     }
   }
   const Vec3 center = GetCircumcenter(vertices[0], vertices[1], vertices[2], vertices[3]);
-  const double radius = Distance(center, vertices[0]);
+  const double radius2 = SquaredNorm(center - vertices[0]);
+  const double longest = std::sqrt(longest2);
   bool isLarge = (this->MaximumEdgeLength > 0.0 && longest > this->MaximumEdgeLength) ||
     (this->MaximumVolume > 0.0 &&
       GetSignedVolume(vertices[0], vertices[1], vertices[2], vertices[3]) > this->MaximumVolume);
@@ -50,14 +51,16 @@ TetrahedronFault TetrahedronLimits::Find(
   if (isLarge)
   {
     target = center;
-    severity = radius;
+    severity = std::sqrt(radius2);
     return TetrahedronFault::Size;
   }
-  if (!isShapeTested || this->RadiusEdgeRatio <= 0.0 || radius <= this->RadiusEdgeRatio * shortest)
+  if (!isShapeTested || this->RadiusEdgeRatio <= 0.0 ||
+    radius2 <= this->RadiusEdgeRatio * this->RadiusEdgeRatio * shortest2)
   {
     return TetrahedronFault::None;
   }
-  severity = radius / shortest;
+  const double shortest = std::sqrt(shortest2);
+  severity = std::sqrt(radius2) / shortest;
   target = center;
   const Vec3 middle = 0.5 *
     (vertices[TetrahedronEdges[shortestEdge][0]] + vertices[TetrahedronEdges[shortestEdge][1]]);
