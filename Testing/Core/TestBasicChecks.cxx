@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Certificate/EmptySphereSearch.h"
 #include "Core/Certificate/MeshCertificate.h"
+#include "Core/Geometry/EnclosingBall.h"
 #include "Core/Geometry/Predicates.h"
+#include "Core/Geometry/SphereForm.h"
 #include "Core/Meshes/MeshInvariants.h"
 #include "Core/Meshes/SimplexIncidence.h"
 #include "HullMeshes.h"
@@ -495,30 +497,12 @@ namespace
 constexpr std::array<Id, 0> NoVertices{};
 
 /** Points found by the search must hold all points that the exact predicate finds. */
-void CompareWithAllPoints(const std::vector<Vec3>& points, const TetrahedronIds& ids)
+template <typename Sphere, typename Predicate>
+void CompareWithAllPoints(const std::vector<Vec3>& points, const Sphere& sphere, Predicate&& isIn)
 {
-  const Vec3& a = points[ids[0]];
-  const Vec3& b = points[ids[1]];
-  const Vec3& c = points[ids[2]];
-  const Vec3& d = points[ids[3]];
   const EmptySphereSearch search(points);
-  if (Orientation(a, b, c, d) > 0)
-  {
-    std::set<Id> candidates;
-    search.FindInside(SphereForm(a, b, c, d), NoVertices,
-      [&](Id point)
-      {
-        candidates.insert(point);
-        return false;
-      });
-    for (std::size_t i = 0; i < points.size(); ++i)
-    {
-      EXPECT_TRUE(InSphere(a, b, c, d, points[i]) < 0 || candidates.count(static_cast<Id>(i)) == 1)
-        << i;
-    }
-  }
   std::set<Id> candidates;
-  search.FindInside(SphereForm(a, b, c), NoVertices,
+  search.FindInside(sphere, NoVertices,
     [&](Id point)
     {
       candidates.insert(point);
@@ -526,10 +510,43 @@ void CompareWithAllPoints(const std::vector<Vec3>& points, const TetrahedronIds&
     });
   for (std::size_t i = 0; i < points.size(); ++i)
   {
-    EXPECT_TRUE(AreCollinear(a, b, c) || InEquatorialSphere(a, b, c, points[i]) < 0 ||
-      candidates.count(static_cast<Id>(i)) == 1)
-      << i;
+    EXPECT_TRUE(!isIn(points[i]) || candidates.count(static_cast<Id>(i)) == 1) << i;
   }
+}
+
+/** Returns how many of the spheres, of a tetrahedron and of its first facet, have a usable ball. */
+int CompareWithAllPoints(const std::vector<Vec3>& points, const TetrahedronIds& ids)
+{
+  const Vec3& a = points[ids[0]];
+  const Vec3& b = points[ids[1]];
+  const Vec3& c = points[ids[2]];
+  const Vec3& d = points[ids[3]];
+  int balls = 0;
+  if (Orientation(a, b, c, d) > 0)
+  {
+    const auto isIn = [&](const Vec3& point) { return InSphere(a, b, c, d, point) >= 0; };
+    CompareWithAllPoints(points, SphereForm(a, b, c, d), isIn);
+    const EnclosingBall ball(a, b, c, d);
+    if (ball.IsUsable())
+    {
+      CompareWithAllPoints(points, ball, isIn);
+      ++balls;
+    }
+  }
+  const EnclosingBall ball(a, b, c);
+  if (AreCollinear(a, b, c))
+  {
+    EXPECT_FALSE(ball.IsUsable());
+    return balls;
+  }
+  const auto isIn = [&](const Vec3& point) { return InEquatorialSphere(a, b, c, point) >= 0; };
+  CompareWithAllPoints(points, SphereForm(a, b, c), isIn);
+  if (ball.IsUsable())
+  {
+    CompareWithAllPoints(points, ball, isIn);
+    ++balls;
+  }
+  return balls;
 }
 } // namespace
 
@@ -593,14 +610,16 @@ TEST(EmptySphereSearch, FindsWhatTheExactPredicatesFind)
         const double z = flatness * uniform();
         points.push_back(scale * Vec3{ 0.1 * x - 0.3 * z, 0.1 * y + 0.1 * x, z + 0.03 * x + 7.0 });
       }
+      int balls = 0;
       for (int i = 0; i < 20; ++i)
       {
         TetrahedronIds ids{ static_cast<Id>(random() % 200), static_cast<Id>(random() % 200),
           static_cast<Id>(random() % 200), static_cast<Id>(random() % 200) };
-        CompareWithAllPoints(points, ids);
+        balls += CompareWithAllPoints(points, ids);
         std::swap(ids[0], ids[1]);
-        CompareWithAllPoints(points, ids);
+        balls += CompareWithAllPoints(points, ids);
       }
+      EXPECT_GT(balls, 20);
     }
   }
 }

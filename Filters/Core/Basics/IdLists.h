@@ -59,6 +59,29 @@ public:
     }
   }
 
+  /** Builds the lists of the triangles at each point, ascending. */
+  void Build(Id numberOfPoints, const std::vector<TriangleIds>& triangles)
+  {
+    this->Begin.assign(static_cast<std::size_t>(numberOfPoints) + 1, 0);
+    for (const TriangleIds& ids : triangles)
+    {
+      for (const Id point : ids)
+      {
+        ++this->Begin[point + 1];
+      }
+    }
+    std::partial_sum(this->Begin.begin(), this->Begin.end(), this->Begin.begin());
+    this->End.assign(this->Begin.begin(), this->Begin.end() - 1);
+    this->Ids.resize(3 * triangles.size());
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+    {
+      for (const Id point : triangles[t])
+      {
+        this->Ids[this->End[point]++] = static_cast<Id>(t);
+      }
+    }
+  }
+
   /** Adds an owner, after all others. */
   void Append(const std::vector<Id>& ids)
   {
@@ -87,16 +110,8 @@ private:
 inline IdLists ListTrianglesAtPoints(
   const std::vector<TriangleIds>& triangles, std::size_t numberOfPoints)
 {
-  std::vector<std::pair<Id, Id>> pairs;
-  for (Id t = 0; t < static_cast<Id>(triangles.size()); ++t)
-  {
-    for (Id point : triangles[t])
-    {
-      pairs.emplace_back(point, t);
-    }
-  }
   IdLists lists;
-  lists.Build(static_cast<Id>(numberOfPoints), pairs);
+  lists.Build(static_cast<Id>(numberOfPoints), triangles);
   return lists;
 }
 

@@ -3,7 +3,8 @@
  * @file EmptySphereSearch.h
  * @brief Finds points that may lie inside of a sphere: the search behind SphereCriteria.h.
  *
- * Method: boxes of a k-d tree that the sphere surely does not touch (SphereForm.h) are left out.
+ * Method: boxes of a k-d tree that the sphere surely does not touch are left out (SphereForm.h, or
+ * EnclosingBall.h).
  *
  * Guarantees: no point strictly inside or on the sphere is left out (up to overflow, where
  * nothing is left out).
@@ -14,7 +15,6 @@
 
 #include "Core/Basics/Types.h"
 #include "Core/Basics/Vec3.h"
-#include "Core/Geometry/SphereForm.h"
 
 #include <algorithm>
 #include <array>
@@ -32,9 +32,10 @@ public:
    * Calls isInside(id) for every point that may lie in the sphere, until it returns true; returns
    * whether it did. The simplex's own vertices are passed over: they lie on the sphere, which is
    * what takes longest to tell.
+   * @param sphere has MayTouch() and MayHold() as SphereForm does
    */
-  template <typename Simplex, typename Predicate>
-  bool FindInside(const SphereForm& sphere, const Simplex& simplex, Predicate&& isInside) const
+  template <typename Sphere, typename Simplex, typename Predicate>
+  bool FindInside(const Sphere& sphere, const Simplex& simplex, Predicate&& isInside) const
   {
     // Every level of the tree leaves at most one node behind.
     std::array<Id, 64> stack;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Certificate/SphereCriteria.h"
 
+#include "Core/Geometry/EnclosingBall.h"
 #include "Core/Geometry/Predicates.h"
+#include "Core/Geometry/SphereForm.h"
 
 #include <utility>
 
@@ -13,8 +15,10 @@ bool SphereCriteria::IsDelaunay(const TetrahedronIds& ids) const
   const Vec3& b = this->Points[ids[1]];
   const Vec3& c = this->Points[ids[2]];
   const Vec3& d = this->Points[ids[3]];
-  return !this->Search.FindInside(SphereForm(a, b, c, d), ids,
-    [&](Id point) { return InSphere(a, b, c, d, this->Points[point]) > 0; });
+  const auto isInside = [&](Id point) { return InSphere(a, b, c, d, this->Points[point]) > 0; };
+  const EnclosingBall ball(a, b, c, d);
+  return !(ball.IsUsable() ? this->Search.FindInside(ball, ids, isInside)
+                           : this->Search.FindInside(SphereForm(a, b, c, d), ids, isInside));
 }
 
 bool SphereCriteria::IsDelaunay(const TriangleIds& ids) const
@@ -66,9 +70,13 @@ bool SphereCriteria::HasEmptySmallestSphere(const TriangleIds& ids) const
   const Vec3& a = this->Points[ids[0]];
   const Vec3& b = this->Points[ids[1]];
   const Vec3& c = this->Points[ids[2]];
-  return AreCollinear(a, b, c) ||
-    !this->Search.FindInside(SphereForm(a, b, c), ids,
-      [&](Id point) { return InEquatorialSphere(a, b, c, this->Points[point]) > 0; });
+  const auto isInside = [&](Id point)
+  { return InEquatorialSphere(a, b, c, this->Points[point]) > 0; };
+  const EnclosingBall ball(a, b, c);
+  // Collinear points have no ball.
+  return ball.IsUsable()
+    ? !this->Search.FindInside(ball, ids, isInside)
+    : AreCollinear(a, b, c) || !this->Search.FindInside(SphereForm(a, b, c), ids, isInside);
 }
 
 bool SphereCriteria::HasEmptySmallestSphere(const EdgeIds& ids) const

@@ -15,8 +15,8 @@ BoundaryShape::BoundaryShape(const TriangleMesh& surface, const std::vector<Stru
 void BoundaryShape::Follow(const BoundaryChange& change)
 {
   this->Spheres.Follow(change.Triangles, change.Edges, change.Segments);
-  this->PointTriangles =
-    ListTrianglesAtPoints(this->Surface.Triangles, this->Surface.Points.size());
+  this->PointTriangles.Build(
+    static_cast<Id>(this->Surface.Points.size()), this->Surface.Triangles);
   this->Sharp.Follow(this->Edges, change.Edges, change.Triangles, change.Parents);
   this->Layers.Follow(change.Triangles, change.Parents);
 }

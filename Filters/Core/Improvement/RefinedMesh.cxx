@@ -161,9 +161,9 @@ void RefinedMesh::SetSurfaceSizes(Id first, const std::vector<double>& sizes)
   this->BoundSizes(changed);
 }
 
-std::vector<InteriorPoint> RefinedMesh::GetInterior() const
+void RefinedMesh::GetInterior(std::vector<InteriorPoint>& interior) const
 {
-  std::vector<InteriorPoint> interior;
+  interior.clear();
   interior.reserve(this->Points.size() - this->FirstInside);
   for (Id p = this->FirstInside; p < this->Mesh.GetNumberOfPoints(); ++p)
   {
@@ -172,7 +172,6 @@ std::vector<InteriorPoint> RefinedMesh::GetInterior() const
       interior.push_back(this->Points[p]);
     }
   }
-  return interior;
 }
 
 TetMesh RefinedMesh::TakeMesh()

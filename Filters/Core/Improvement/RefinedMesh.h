@@ -105,8 +105,8 @@ public:
   /** Sizes as in InteriorPoint::Size for new points of the surface, from the first one on. */
   void SetSurfaceSizes(Id first, const std::vector<double>& sizes);
 
-  /** The points that are in the mesh now. */
-  std::vector<InteriorPoint> GetInterior() const;
+  /** Lists the points that are in the mesh now. */
+  void GetInterior(std::vector<InteriorPoint>& interior) const;
   const TetMesh& GetMesh() const { return this->Mesh.GetMesh(); }
   /**
    * Gives the mesh away, without dead tetrahedra and unused ids: points are those of the surface,

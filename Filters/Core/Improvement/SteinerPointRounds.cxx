@@ -291,7 +291,7 @@ Status SteinerPointRounds::RefineSurface(
   if (this->Mesh)
   {
     this->CollectReport();
-    this->Interior = this->Mesh->GetInterior();
+    this->Mesh->GetInterior(this->Interior);
     input.TrianglesToSplit = std::move(this->Mesh->GetRequests().Triangles);
     input.EdgesToSplit = std::move(this->Mesh->GetRequests().Edges);
     this->Mesh.reset();
@@ -393,7 +393,10 @@ void SteinerPointRounds::TakeMesh(
 
 void SteinerPointRounds::NoteState()
 {
-  this->Noted = { this->Surface, this->Edges, this->Mesh->GetInterior() };
+  // Assigned one by one, they keep their memory.
+  this->Noted.Surface = this->Surface;
+  this->Noted.Edges = this->Edges;
+  this->Mesh->GetInterior(this->Noted.Interior);
 }
 
 /**
@@ -578,7 +581,7 @@ void SteinerPointRounds::CollectReport()
 TetMesh SteinerPointRounds::Finish()
 {
   this->CollectReport();
-  this->Interior = this->Mesh->GetInterior();
+  this->Mesh->GetInterior(this->Interior);
   return this->Mesh->TakeMesh();
 }
 

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file EnclosingBall.h
+ * @brief A ball that surely encloses a sphere through three or four points, and is hardly larger.
+ *
+ * Method: the center in double precision, and the radius with what rounding may have done to both.
+ * That takes a tenth of the time of SphereForm.h, and tells nearly all points and boxes that are
+ * outside. Flat simplices, whose center is not known well enough, are for
+ * SphereForm.h.
+ */
+#ifndef cdmEnclosingBall_h
+#define cdmEnclosingBall_h
+
+#include "Core/Basics/Vec3.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cdm
+{
+class EnclosingBall
+{
+public:
+  /** The smallest sphere through three points. */
+  EnclosingBall(const Vec3& a, const Vec3& b, const Vec3& c) : Origin(a)
+  {
+    const Vec3 u = b - a;
+    const Vec3 v = c - a;
+    const Vec3 normal = Cross(u, v);
+    const double product = BoundLength(u) * BoundLength(v);
+    this->Set(Cross(normal, SquaredNorm(v) * u - SquaredNorm(u) * v), SquaredNorm(normal),
+      product * product, BoundLength(u) + BoundLength(v));
+  }
+  /** The circumsphere of a tetrahedron. */
+  EnclosingBall(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) : Origin(a)
+  {
+    const Vec3 u = b - a;
+    const Vec3 v = c - a;
+    const Vec3 w = d - a;
+    const Vec3 uv = Cross(u, v);
+    this->Set(SquaredNorm(w) * uv + SquaredNorm(v) * Cross(w, u) + SquaredNorm(u) * Cross(v, w),
+      Dot(uv, w), BoundLength(u) * BoundLength(v) * BoundLength(w),
+      BoundLength(u) + BoundLength(v) + BoundLength(w));
+  }
+
+  /** False: nothing can be told. */
+  bool IsUsable() const { return this->Usable; }
+  /** False only if no point of the box lies inside or on the circumsphere. */
+  bool MayTouch(const Vec3& lower, const Vec3& upper) const
+  {
+    double square = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double center = this->Center[axis];
+      const double nearest = std::min(
+        std::max(center, lower[axis] - this->Origin[axis]), upper[axis] - this->Origin[axis]);
+      square += (nearest - center) * (nearest - center);
+    }
+    return square <= this->SquaredRadius;
+  }
+  /** False only if the point lies outside of the circumsphere. */
+  bool MayHold(const Vec3& point) const
+  {
+    return SquaredNorm(point - this->Origin - this->Center) <= this->SquaredRadius;
+  }
+
+private:
+  static constexpr double Roundoff = std::numeric_limits<double>::epsilon() / 2.0;
+  /** More than rounding does to distances. */
+  static constexpr double Wider = 1.0 + 1e-12;
+  /** Of the center, in radii: with a larger one, too many points are left. */
+  static constexpr double LargestError = 1e-9;
+  /** Below this, digits may have been lost to underflow. */
+  static constexpr double SmallestDenominator = 1e-280;
+
+  static double BoundLength(const Vec3& a) { return std::abs(a.X) + std::abs(a.Y) + std::abs(a.Z); }
+
+  /**
+   * The center is half of the numerator over the denominator, which are sums of products.
+   * @param product bound of the magnitudes in the denominator
+   * @param lengths the same for the numerator, in units of it
+   */
+  void Set(const Vec3& numerator, double denominator, double product, double lengths)
+  {
+    const double half = 0.5 / denominator;
+    this->Center = half * numerator;
+    // The products are off by less than 24 roundings each; the bound is more than twice as large.
+    const double error =
+      64.0 * Roundoff * product * std::abs(half) * (lengths + BoundLength(this->Center));
+    const double radius = Norm(this->Center);
+    const double outer = Wider * (radius + 2.0 * error);
+    this->SquaredRadius = Wider * outer * outer;
+    this->Usable = error < LargestError * radius && denominator > SmallestDenominator;
+  }
+
+  Vec3 Origin;
+  /** Relative to the origin. */
+  Vec3 Center;
+  double SquaredRadius;
+  bool Usable;
+};
+} // namespace cdm
+
+#endif
