@@ -193,6 +193,43 @@ TEST(DelaunaySurfaceRefiner, HonoursAreaAngleAndSizing)
   MeshAndCheck(refined);
 }
 
+TEST(DelaunaySurfaceRefiner, ExcusedTrianglesMayBeNarrow)
+{
+  const TriangleMesh bar = Triangulate(MakeBox({ 9.0, 1.0, 1.0 }));
+  DelaunaySurfaceRefinerInput input;
+  input.Surface = &bar;
+  DelaunaySurfaceRefinerOptions options;
+  options.MinimumAngle = 20.0;
+  DelaunaySurfaceRefinerOutput refined;
+  ASSERT_TRUE(RefineDelaunaySurface(input, options, {}, refined).IsOk());
+  EXPECT_GE(testing_core::GetSmallestAngle(refined.Surface), 20.0);
+  EXPECT_FALSE(refined.NewPoints.empty());
+
+  input.ExcusedTriangles.assign(bar.Triangles.size(), 1);
+  ASSERT_TRUE(RefineDelaunaySurface(input, options, {}, refined).IsOk());
+  EXPECT_TRUE(refined.NewPoints.empty());
+
+  // All but those of one side: points at its edges are all that it gets.
+  const double top = 1.0;
+  for (std::size_t t = 0; t < bar.Triangles.size(); ++t)
+  {
+    const TriangleIds& ids = bar.Triangles[t];
+    input.ExcusedTriangles[t] =
+      std::all_of(ids.begin(), ids.end(), [&](Id id) { return bar.Points[id].Z == top; }) ? 0 : 1;
+  }
+  ASSERT_TRUE(RefineDelaunaySurface(input, options, {}, refined).IsOk());
+  TriangleMesh side = refined.Surface;
+  side.Triangles.erase(std::remove_if(side.Triangles.begin(), side.Triangles.end(),
+                         [&](const TriangleIds& ids) {
+                           return !std::all_of(ids.begin(), ids.end(),
+                             [&](Id id) { return side.Points[id].Z == top; });
+                         }),
+    side.Triangles.end());
+  EXPECT_GE(testing_core::GetSmallestAngle(side), 20.0);
+  EXPECT_LT(testing_core::GetSmallestAngle(refined.Surface), 20.0);
+  MeshAndCheck(refined);
+}
+
 /** What can never end is not begun: it was five minutes of work, and no mesh. */
 TEST(DelaunaySurfaceRefiner, RefusesSizesThatNeedTooManyPoints)
 {

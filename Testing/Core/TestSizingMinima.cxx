@@ -195,7 +195,7 @@ TEST(SizingMinima, FindsPointsOfHexahedraTrianglesAndClouds)
     Id edge = NoId;
     EXPECT_TRUE(triangleLimits.IsTooCoarse(
       { Vec3{ 0.0, 0.0, 0.15 }, Vec3{ 1.0, 0.0, 0.15 }, Vec3{ 0.0, 1.0, 0.15 } },
-      { false, false, false }, edge))
+      { false, false, false }, true, edge))
       << size;
   }
 }

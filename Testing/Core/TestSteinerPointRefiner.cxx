@@ -293,6 +293,19 @@ TEST(SteinerPointRefiner, LongAndFlatBoxesAreNoThinLayers)
   }
 }
 
+/** It took seven rounds, each of which split the sides once or twice. */
+TEST(SteinerPointRefiner, NarrowTrianglesAreSplitInOneRound)
+{
+  for (const double length : { 30.0, 100.0, 300.0 })
+  {
+    const SteinerPointRefinerOutput output =
+      Refine(MakeBox({ length, 1.0, 1.0 }), SteinerPointRefinerOptions());
+    ExpectNoFaults(output.Report);
+    EXPECT_LE(output.Report.Rounds, 3) << length;
+    EXPECT_LE(output.Mesh.Tetrahedra.size(), 4.0 * length) << length;
+  }
+}
+
 TEST(SteinerPointRefiner, TurnedBoxesGetNoFlatTetrahedra)
 {
   // Their facets are plane but for rounding, and many of their points lie on one circle.

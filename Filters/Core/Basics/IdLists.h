@@ -115,18 +115,25 @@ inline IdLists ListTrianglesAtPoints(
   return lists;
 }
 
-/** Whether three points, which may be others than those of the lists, have a triangle. */
-inline bool IsTriangle(const std::vector<TriangleIds>& triangles, const IdLists& pointTriangles,
+/** The triangle of three points, which may be others than those of the lists; or NoId. */
+inline Id FindTriangle(const std::vector<TriangleIds>& triangles, const IdLists& pointTriangles,
   const TriangleIds& points)
 {
   const Id count = pointTriangles.GetNumberOfOwners();
   if (points[0] >= count || points[1] >= count || points[2] >= count)
   {
-    return false;
+    return NoId;
   }
   const IdLists::Range around = pointTriangles[points[0]];
-  return std::any_of(around.begin(), around.end(),
+  const Id* const found = std::find_if(around.begin(), around.end(),
     [&](Id t) { return Contains(triangles[t], points[1]) && Contains(triangles[t], points[2]); });
+  return found != around.end() ? *found : NoId;
+}
+
+inline bool IsTriangle(const std::vector<TriangleIds>& triangles, const IdLists& pointTriangles,
+  const TriangleIds& points)
+{
+  return FindTriangle(triangles, pointTriangles, points) != NoId;
 }
 } // namespace cdm
 

@@ -15,8 +15,7 @@ BoundaryShape::BoundaryShape(const TriangleMesh& surface, const std::vector<Stru
 void BoundaryShape::Follow(const BoundaryChange& change)
 {
   this->Spheres.Follow(change.Triangles, change.Edges, change.Segments);
-  this->PointTriangles.Build(
-    static_cast<Id>(this->Surface.Points.size()), this->Surface.Triangles);
+  this->PointTriangles.Build(static_cast<Id>(this->Surface.Points.size()), this->Surface.Triangles);
   this->Sharp.Follow(this->Edges, change.Edges, change.Triangles, change.Parents);
   this->Layers.Follow(change.Triangles, change.Parents);
 }

@@ -365,6 +365,31 @@ bool RefinedMesh::IsFaulty(Id tetrahedron, bool isShapeTested) const
       !this->IsFlat(tetrahedron));
 }
 
+std::vector<char> RefinedMesh::FindExcusedTriangles() const
+{
+  const std::vector<TriangleIds>& triangles = this->Boundary.Surface.Triangles;
+  const std::vector<Id>& facets = this->Shape->Sharp.GetFacets();
+  std::vector<char> isMarked = this->Shape->Sharp.MarkFacets();
+  for (Id t = 0; t < this->Mesh.GetNumberOfTetrahedra(); ++t)
+  {
+    for (int i = 0; i < 4 && !this->Mesh.IsDead(t) && this->IsInLayer(t); ++i)
+    {
+      const Id triangle = FindTriangle(
+        triangles, this->Shape->PointTriangles, GetFacet(this->GetMesh().Tetrahedra[t], i));
+      if (triangle != NoId)
+      {
+        isMarked[facets[triangle]] = 1;
+      }
+    }
+  }
+  std::vector<char> isExcused(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+  {
+    isExcused[t] = isMarked[facets[t]];
+  }
+  return isExcused;
+}
+
 const std::vector<Id>& RefinedMesh::FindFaulty(bool isShapeTested) const
 {
   if (isShapeTested != this->IsFaultyShape)

@@ -174,6 +174,11 @@ public:
    */
   const std::vector<Id>& FindFaulty(bool isShapeTested) const;
   bool IsFaulty(Id tetrahedron, bool isShapeTested) const;
+  /**
+   * One for each triangle of the boundary: whether tetrahedra in its surface facet may be excused
+   * from the limits of shapes, as the facet has a sharp angle or lies at a thin layer.
+   */
+  std::vector<char> FindExcusedTriangles() const;
   /** Whether the tetrahedron breaks a limit that it is refined for. */
   bool BreaksLimit(Id tetrahedron) const;
   /** The same for a tetrahedron that might be made; ids of interior points do not matter. */

@@ -28,6 +28,12 @@ constexpr double BoundaryEdgeRatio = 1.15;
  * microseconds. With more splits than that, the mesh is made anew.
  */
 constexpr std::size_t TetrahedraPerSplit = 32;
+/**
+ * So many points, and ten for each point of the surface, may be made for narrow triangles: more are
+ * hardly needed, but for angles that cannot be had.
+ */
+constexpr std::size_t MostShapePoints = 2000;
+constexpr std::size_t MostShapePointsPerPoint = 10;
 /** Fewest point ids that a round reserves for new points of the boundary. */
 constexpr Id FewestReservedPoints = 256;
 
@@ -277,6 +283,27 @@ Status SteinerPointRounds::RemakeMesh()
 }
 
 /**
+ * Whether narrow triangles are split before the next mesh is made. Each tetrahedron at a triangle
+ * has a circumradius at least as large, and no longer shortest edge: so narrow ones would have to be
+ * split in any case, but for those that are excused, in several rounds with a mesh in each.
+ */
+bool SteinerPointRounds::MayShapeSurface() const
+{
+  return !this->HasFailedToShape && !this->SurfaceSizes.empty() &&
+    this->Options.RadiusEdgeRatio > 0.0 && this->Options.StructuralEdges.AccuracyAngle == 0.0 &&
+    this->Report.UnresolvedTriangles == 0 && !this->CanSplitInPlace() &&
+    this->GetMaximumOfShapes() > 0;
+}
+
+/** How many points narrow triangles may take; with more, they are left to the rounds. */
+Id SteinerPointRounds::GetMaximumOfShapes() const
+{
+  return std::min(
+    static_cast<Id>(MostShapePoints + MostShapePointsPerPoint * this->Surface.Points.size()),
+    this->GetMeshOptions().MaximumNewPoints);
+}
+
+/**
  * Refines the surface for the points inside of the mesh so far, and splits what was requested. The
  * mesh is dropped: it took half of the memory while the next one was made.
  */
@@ -288,8 +315,10 @@ Status SteinerPointRounds::RefineSurface(
   input.Sizing = this->Input.Sizing;
   DelaunaySurfaceRefinerOptions options = this->GetSurfaceOptions();
   options.StructuralEdges.Facets = this->GetFacets();
+  const bool isShaped = this->Mesh && this->MayShapeSurface();
   if (this->Mesh)
   {
+    input.ExcusedTriangles = isShaped ? this->Mesh->FindExcusedTriangles() : std::vector<char>();
     this->CollectReport();
     this->Mesh->GetInterior(this->Interior);
     input.TrianglesToSplit = std::move(this->Mesh->GetRequests().Triangles);
@@ -298,6 +327,21 @@ Status SteinerPointRounds::RefineSurface(
   }
   const std::vector<Vec3> points = GetPositions(this->Interior);
   input.MeshPoints = &points;
+  if (isShaped)
+  {
+    DelaunaySurfaceRefinerOptions shaped = options;
+    shaped.MinimumAngle = std::asin(0.5 / this->Options.RadiusEdgeRatio) * DegreesPerRadian;
+    shaped.MaximumNewPoints = this->GetMaximumOfShapes();
+    Status status = RefineDelaunaySurface(input, shaped, context, refined);
+    if (status.IsAborted() ||
+      (status.IsOk() && refined.UnresolvedTriangles.empty() &&
+        static_cast<Id>(refined.NewPoints.size()) < shaped.MaximumNewPoints))
+    {
+      return status;
+    }
+    refined = DelaunaySurfaceRefinerOutput();
+    this->HasFailedToShape = true;
+  }
   Status status = RefineDelaunaySurface(input, options, context, refined);
   return status.IsOk() ? status : this->Translate(std::move(status), {});
 }

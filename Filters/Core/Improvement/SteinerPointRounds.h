@@ -109,6 +109,8 @@ private:
     AdvancingFrontTetrahedralizerOutput made, const std::vector<InteriorPoint>& interior);
   Status RestoreState(const ExecutionContext& context);
   bool CanSplitInPlace() const;
+  bool MayShapeSurface() const;
+  Id GetMaximumOfShapes() const;
   Status SplitInPlace();
   std::size_t CollectSurfaceSizes();
   void SpreadSurfaceSizes();
@@ -141,6 +143,8 @@ private:
   std::vector<char> IsNew;
   std::vector<char> IsSurfaceFree;
   bool HasMovedPoints = false;
+  /** Whether narrow triangles took too many points, or spoilt the criterion. */
+  bool HasFailedToShape = false;
   bool HasSplitNothing = false;
   State Noted;
   bool HasFinalBoundary = false;

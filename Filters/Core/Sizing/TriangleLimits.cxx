@@ -7,8 +7,8 @@
 
 namespace cdm
 {
-bool TriangleLimits::IsTooCoarse(
-  const std::array<Vec3, 3>& corners, const std::array<bool, 3>& isStructural, Id& edge) const
+bool TriangleLimits::IsTooCoarse(const std::array<Vec3, 3>& corners,
+  const std::array<bool, 3>& isStructural, bool isAngleTested, Id& edge) const
 {
   constexpr double RadiansPerDegree = 3.14159265358979323846 / 180.0;
   edge = NoId;
@@ -47,7 +47,7 @@ bool TriangleLimits::IsTooCoarse(
     }
     return true;
   }
-  if (this->MinimumAngle > 0.0)
+  if (isAngleTested && this->MinimumAngle > 0.0)
   {
     const int shortest = static_cast<int>(std::min_element(lengths, lengths + 3) - lengths);
     const double sine = 2.0 * area / (lengths[(shortest + 1) % 3] * lengths[(shortest + 2) % 3]);

@@ -33,12 +33,13 @@ struct TriangleLimits
 
   /**
    * @param isStructural for the edges from each corner to the next one
+   * @param isAngleTested whether the smallest angle counts
    * @param edge the structural edge to split first if the triangle is too large, the longest of
    * them;
    *        otherwise NoId
    */
-  bool IsTooCoarse(
-    const std::array<Vec3, 3>& corners, const std::array<bool, 3>& isStructural, Id& edge) const;
+  bool IsTooCoarse(const std::array<Vec3, 3>& corners, const std::array<bool, 3>& isStructural,
+    bool isAngleTested, Id& edge) const;
 };
 } // namespace cdm
 

@@ -112,6 +112,7 @@ Status SurfaceRefiner::Prepare(int numberOfThreads)
   plan.IsTrial = plan.IsTrial && edges.HasRoundedFacets;
   this->Refinement = std::make_unique<SurfaceRefinement>(
     surface, edges.Edges, meshPoints, this->Options, this->Input.Sizing, false, plan);
+  this->Refinement->SetExcusedTriangles(this->Input.ExcusedTriangles);
   return Status();
 }
 

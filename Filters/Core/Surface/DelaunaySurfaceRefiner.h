@@ -108,6 +108,8 @@ struct DelaunaySurfaceRefinerInput
    */
   std::vector<Id> TrianglesToSplit = {};
   std::vector<EdgeIds> EdgesToSplit = {};
+  /** One for each triangle: whether MinimumAngle does not count there. May be empty. */
+  std::vector<char> ExcusedTriangles = {};
 };
 
 struct DelaunaySurfaceRefinerReport

@@ -444,6 +444,21 @@ void SharpAngles::FindArms(const IdLists& pointTriangles, const IdLists& neighbo
   this->PointArms.Build(numberOfPoints, pairs);
 }
 
+std::vector<char> SharpAngles::MarkFacets() const
+{
+  std::vector<char> isMarked = this->IsFacetSharp;
+  for (std::size_t t = 0; t < this->Facets.size(); ++t)
+  {
+    const TriangleIds& ids = this->Surface.Triangles[t];
+    if (std::any_of(
+          ids.begin(), ids.end(), [this](Id point) { return !this->PointArms[point].empty(); }))
+    {
+      isMarked[this->Facets[t]] = 1;
+    }
+  }
+  return isMarked;
+}
+
 bool SharpAngles::IsAtCorner(const TetrahedronIds& ids) const
 {
   return std::any_of(ids.begin(), ids.end(),

@@ -83,6 +83,10 @@ public:
    * for slivers is across for shapes.
    */
   bool IsAcross(const TetrahedronIds& ids, SharpAngleUse use = SharpAngleUse::Shape) const;
+  /** The surface facet of each triangle. */
+  const std::vector<Id>& GetFacets() const { return this->Facets; }
+  /** For each surface facet whether it has a sharp angle, or a sharp plane angle at its edges. */
+  std::vector<char> MarkFacets() const;
 
 private:
   /** Smaller plane angles and angles at tips are sharp. */

@@ -298,8 +298,6 @@ bool SurfaceRefinement::IsDelaunay(Id triangle) const
 
 bool SurfaceRefinement::IsTooLarge(Id triangle) const
 {
-  TriangleLimits sizes = this->Limits;
-  sizes.MinimumAngle = 0.0;
   const TriangleIds& ids = this->Surface->GetTriangle(triangle).Points;
   std::array<bool, 3> isStructural;
   for (int i = 0; i < 3; ++i)
@@ -307,8 +305,9 @@ bool SurfaceRefinement::IsTooLarge(Id triangle) const
     isStructural[i] = this->Surface->GetSegmentAt(triangle, i) != NoId;
   }
   Id edge = NoId;
-  return sizes.IsTooCoarse(
-    { this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]] }, isStructural, edge);
+  return this->Limits.IsTooCoarse(
+    { this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]] }, isStructural, false,
+    edge);
 }
 
 bool SurfaceRefinement::IsUnresolved(Id triangle) const
@@ -826,7 +825,10 @@ bool SurfaceRefinement::FindTooCoarse(Id t, Id& segment) const
   Id edge;
   const bool isTooCoarse =
     this->Limits.IsTooCoarse({ this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]] },
-      { segments[0] != NoId, segments[1] != NoId, segments[2] != NoId }, edge);
+      { segments[0] != NoId, segments[1] != NoId, segments[2] != NoId },
+      this->ExcusedTriangles.empty() ||
+        this->ExcusedTriangles[this->Surface->GetTriangle(t).Source] == 0,
+      edge);
   segment = edge != NoId ? segments[edge] : NoId;
   return isTooCoarse;
 }

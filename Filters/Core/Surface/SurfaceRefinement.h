@@ -65,6 +65,11 @@ public:
     const std::vector<Vec3>& meshPoints, const DelaunaySurfaceRefinerOptions& options,
     SizingField sizing, bool isSaturated, SurfaceRefinementPlan plan = {});
 
+  /** See DelaunaySurfaceRefinerInput. */
+  void SetExcusedTriangles(std::vector<char> isExcused)
+  {
+    this->ExcusedTriangles = std::move(isExcused);
+  }
   /**
    * Refines all triangles and, where they count, edges; later calls only what has changed since. At
    * the largest number of points, the plan says what is done with the rest.
@@ -321,6 +326,8 @@ private:
   BallIndex SegmentBalls;
   /** Marks segments that are encroached on and cannot be split. */
   std::vector<char> IsEncroached;
+  /** One for each triangle of the input, or none. */
+  std::vector<char> ExcusedTriangles;
 };
 } // namespace cdm
 
