@@ -71,6 +71,26 @@ bool IsSphereFilled(const TetMesh& mesh, Id tetrahedron, int edge)
   return isInside(TetrahedronEdges[5 - edge][0]) || isInside(TetrahedronEdges[5 - edge][1]);
 }
 
+/** Those of the edges whose smallest spheres are not empty, ascending. */
+std::vector<EdgeIds> FindFilledEdges(
+  const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfPoints)
+{
+  std::vector<EdgeIds> filled;
+  ForEachCandidate(mesh, edges, numberOfPoints,
+    [&](Id tetrahedron, int i, const EdgeIds& edge)
+    {
+      if (IsSphereFilled(mesh, tetrahedron, i))
+      {
+        filled.push_back(edge);
+      }
+    });
+  SortUnique(filled);
+  std::vector<EdgeIds> found;
+  std::set_intersection(
+    filled.begin(), filled.end(), edges.begin(), edges.end(), std::back_inserter(found));
+  return found;
+}
+
 bool HasNegativeCouplingInAnyRegion(
   const TetMesh& mesh, const EdgeIds& edge, const std::vector<SimplexIncidence::Record>& records)
 {
@@ -85,7 +105,7 @@ bool HasNegativeCouplingInAnyRegion(
     { return HasNegativeCoupling(mesh, edge, records.begin(), records.end(), region); });
 }
 
-/** Those of the edges with a negative coupling, ascending: their smallest spheres are not empty. */
+/** Those of the edges with a negative coupling, ascending. */
 std::vector<EdgeIds> FindNegative(
   const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfPoints)
 {
@@ -111,10 +131,7 @@ std::vector<EdgeIds> FindNegative(
     {
       records.push_back({ edge[1], NoId, simplices[last].second });
     }
-    const bool isFilled = std::any_of(records.begin(), records.end(),
-      [&](const SimplexIncidence::Record& record)
-      { return IsSphereFilled(mesh, record.Simplex / 6, record.Simplex % 6); });
-    if (isFilled && HasNegativeCouplingInAnyRegion(mesh, edge, records))
+    if (HasNegativeCouplingInAnyRegion(mesh, edge, records))
     {
       negative.push_back(edge);
     }
@@ -234,8 +251,9 @@ const std::vector<EdgeIds>& NegativeCouplings::Update(const DynamicTetrahedraliz
   changed.erase(std::remove_if(changed.begin(), changed.end(), isNoEdge), changed.end());
   this->NumberOfTests += static_cast<std::int64_t>(changed.size());
 
-  const std::vector<EdgeIds> found =
-    FindNegative(mesh.GetMesh(), changed, static_cast<Id>(boundary.Points.size()));
+  const Id numberOfPoints = static_cast<Id>(boundary.Points.size());
+  const std::vector<EdgeIds> filled = FindFilledEdges(mesh.GetMesh(), changed, numberOfPoints);
+  const std::vector<EdgeIds> found = FindNegative(mesh.GetMesh(), filled, numberOfPoints);
   std::vector<EdgeIds> both;
   std::merge(this->Negative.begin(), this->Negative.end(), found.begin(), found.end(),
     std::back_inserter(both));

@@ -12,8 +12,8 @@
  * Method: only edges whose smallest spheres are not empty are looked at. After the first time only
  * those at tetrahedra that are new, and at triangles that have changed.
  *
- * Deterministic. Cost: O(n) for n tetrahedra, once through all of them; a few nanoseconds for each one
- * far from all changes.
+ * Deterministic. Cost: O(n) for n tetrahedra, twice through all of them; a few nanoseconds for each
+ * one far from all changes.
  * Reference: P. Fleischmann, thesis, 3.1.
  */
 #ifndef cdmNegativeCouplings_h

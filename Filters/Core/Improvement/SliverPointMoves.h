@@ -15,7 +15,7 @@
  *  4. moved boundary points give interior points new room: 2. is done again.
  *
  * Guarantees: a Delaunay mesh stays Delaunay. Deterministic.
- * Cost: about a millisecond for each point that it tries to move; 120 bytes per tetrahedron.
+ * Cost: about 100 microseconds for each point that it tries to move; 120 bytes per tetrahedron.
  */
 #ifndef cdmSliverPointMoves_h
 #define cdmSliverPointMoves_h

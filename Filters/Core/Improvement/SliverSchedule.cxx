@@ -18,12 +18,12 @@ constexpr int MaximumSliverRounds = 40;
 /** Moves of the boundary's points in a row that leave as many slivers as before. */
 constexpr int MaximumMoves = 4;
 /** Rounds in a row that split the boundary for negative couplings in vain. */
-constexpr int MaximumCouplingRounds = 4;
+constexpr int MaximumCouplingRounds = 16;
 /** Roundings of points in a row that do not do away with a quarter of the flat tetrahedra. */
 constexpr int MaximumRoundings = 3;
 constexpr double RoundingGain = 0.75;
 /** How many times sizes are halved for what is left. */
-constexpr int MaximumHalvings = 3;
+constexpr int MaximumHalvings = 5;
 /** Passes over slivers and shapes, alternating, when the boundary stays as it is. */
 constexpr int MaximumLastPasses = 5;
 } // namespace

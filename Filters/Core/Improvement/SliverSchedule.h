@@ -25,11 +25,11 @@
  *  - 3 (SurfacePointMoves.h) pauses once when four tries in a row have left as many slivers;
  *  - 4 waits for the splits that bad shapes request, if these can be made: they remove slivers too;
  *  - 5 ends the round if it leaves new points or requests that can be made;
- *  - 6 (NegativeCouplings.h) is given up after four tries in a row that left as many couplings.
+ *  - 6 (NegativeCouplings.h) is given up after sixteen tries in a row that left as many couplings.
  *    Each try lets 1 to 5 begin anew, as splits make new slivers. It comes before 7, which takes
  *    long;
  *  - 9 halves the sizes there, which only keep the refinement from going on without end, and searches
- *    longer, up to three times in all: it is needed for one to three tetrahedra of a million;
+ *    longer, up to five times in all: it is needed for one to three tetrahedra of a million;
  *  - 1 to 5 are left out after forty rounds in a row that moved or split the boundary for slivers
  *    in vain. They and 7 are left out if no dihedral angle is asked for.
  */
