@@ -130,6 +130,7 @@ inline Id FindTriangle(const std::vector<TriangleIds>& triangles, const IdLists&
   return found != around.end() ? *found : NoId;
 }
 
+/** Whether three points have a triangle. */
 inline bool IsTriangle(const std::vector<TriangleIds>& triangles, const IdLists& pointTriangles,
   const TriangleIds& points)
 {

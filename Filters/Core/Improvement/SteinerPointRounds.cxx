@@ -291,8 +291,7 @@ bool SteinerPointRounds::MayShapeSurface() const
 {
   return !this->HasFailedToShape && !this->SurfaceSizes.empty() &&
     this->Options.RadiusEdgeRatio > 0.0 && this->Options.StructuralEdges.AccuracyAngle == 0.0 &&
-    this->Report.UnresolvedTriangles == 0 && !this->CanSplitInPlace() &&
-    this->GetMaximumOfShapes() > 0;
+    this->Report.UnresolvedTriangles == 0 && !this->CanSplitInPlace();
 }
 
 /** How many points narrow triangles may take; with more, they are left to the rounds. */
@@ -327,15 +326,16 @@ Status SteinerPointRounds::RefineSurface(
   }
   const std::vector<Vec3> points = GetPositions(this->Interior);
   input.MeshPoints = &points;
-  if (isShaped)
+  const Id maximum = isShaped ? this->GetMaximumOfShapes() : 0;
+  if (maximum > 0)
   {
     DelaunaySurfaceRefinerOptions shaped = options;
     shaped.MinimumAngle = std::asin(0.5 / this->Options.RadiusEdgeRatio) * DegreesPerRadian;
-    shaped.MaximumNewPoints = this->GetMaximumOfShapes();
+    shaped.MaximumNewPoints = maximum;
     Status status = RefineDelaunaySurface(input, shaped, context, refined);
     if (status.IsAborted() ||
       (status.IsOk() && refined.UnresolvedTriangles.empty() &&
-        static_cast<Id>(refined.NewPoints.size()) < shaped.MaximumNewPoints))
+        static_cast<Id>(refined.NewPoints.size()) < maximum))
     {
       return status;
     }
