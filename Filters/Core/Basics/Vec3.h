@@ -60,6 +60,12 @@ inline double Norm(const Vec3& a)
   return std::sqrt(SquaredNorm(a));
 }
 
+/** The sum of the components' magnitudes, which is at least the length. */
+inline double SumNorm(const Vec3& a)
+{
+  return std::abs(a.X) + std::abs(a.Y) + std::abs(a.Z);
+}
+
 inline double Distance(const Vec3& a, const Vec3& b)
 {
   return Norm(a - b);

@@ -50,6 +50,7 @@ private:
     /** What is behind the facet for them. */
     std::array<Id, 2> Behind{ Open, Open };
   };
+
   void Clear(std::size_t numberOfPoints);
   /** The side that sees the points in this order; it is new if the facet is. */
   Id GetSide(const TriangleIds& points);

@@ -60,16 +60,6 @@ void DynamicTetrahedralization::Note(Id tetrahedron)
   this->Noted.push_back(tetrahedron);
 }
 
-bool DynamicTetrahedralization::ListMadeSince(std::int64_t count, std::vector<Id>& slots) const
-{
-  if (count < this->FirstNoted)
-  {
-    return false;
-  }
-  slots.assign(this->Noted.begin() + (count - this->FirstNoted), this->Noted.end());
-  return true;
-}
-
 void DynamicTetrahedralization::Kill(Id tetrahedron)
 {
   this->Mesh.Tetrahedra[tetrahedron][0] = NoId;

@@ -29,10 +29,12 @@
 #ifndef cdmDynamicTetrahedralization_h
 #define cdmDynamicTetrahedralization_h
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Delaunay/CavityFilling.h"
 #include "Core/Delaunay/CavitySearch.h"
 #include "Core/Meshes/TetMesh.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -134,10 +136,25 @@ public:
     return this->FirstNoted + static_cast<std::int64_t>(this->Noted.size());
   }
   /**
-   * Lists the slots of all tetrahedra that have been made since there were so many; a slot that has
-   * been used again is there again. False if that is too long ago to be known.
+   * Calls visit(slot) for the slots of all tetrahedra that have been made since there were so many,
+   * once each, ascending. If that is too long ago to be known, all slots are visited.
+   * @param scratch is overwritten
    */
-  bool ListMadeSince(std::int64_t count, std::vector<Id>& slots) const;
+  template <typename Visitor>
+  void VisitMadeSince(std::int64_t count, std::vector<Id>& scratch, Visitor&& visit) const
+  {
+    if (count < this->FirstNoted)
+    {
+      for (Id t = 0; t < this->GetNumberOfTetrahedra(); ++t)
+      {
+        visit(t);
+      }
+      return;
+    }
+    scratch.assign(this->Noted.begin() + (count - this->FirstNoted), this->Noted.end());
+    SortUnique(scratch);
+    std::for_each(scratch.begin(), scratch.end(), visit);
+  }
 
 private:
   Id Make(const TetrahedronIds& ids, Id region);

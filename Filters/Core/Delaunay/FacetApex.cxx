@@ -16,17 +16,11 @@ namespace
 {
 constexpr double Roundoff = std::numeric_limits<double>::epsilon() / 2.0;
 
-/** At least the length of a vector, and the sum of the magnitudes in products of its components. */
-double BoundLength(const Vec3& a)
-{
-  return std::abs(a.X) + std::abs(a.Y) + std::abs(a.Z);
-}
-
 /** The plane of a facet, relative to the facet's first point. */
 struct Plane
 {
   Plane(const Vec3& a, const Vec3& b, const Vec3& c)
-    : U(b - a), V(c - a), Normal(Cross(U, V)), BoundU(BoundLength(U)), BoundV(BoundLength(V))
+    : U(b - a), V(c - a), Normal(Cross(U, V)), BoundU(SumNorm(U)), BoundV(SumNorm(V))
   {
   }
 
@@ -54,7 +48,7 @@ struct FacetApex::Sphere
       Gradient(SquaredNorm(apex) * plane.Normal + SquaredNorm(plane.V) * Cross(apex, plane.U) +
         SquaredNorm(plane.U) * Cross(plane.V, apex))
   {
-    const double length = BoundLength(apex);
+    const double length = SumNorm(apex);
     // Products of five components, each off by less than 18 roundings.
     this->Scale = 32.0 * Roundoff * plane.BoundU * plane.BoundV * length;
     this->Reach = plane.BoundU + plane.BoundV + length;
@@ -106,7 +100,7 @@ Id FacetApex::Find(const TriangleIds& facet, bool isFacet)
   for (Id point = 0; point < count; ++point)
   {
     const Vec3 arm = points[point] - a;
-    const double bound = BoundLength(arm);
+    const double bound = SumNorm(arm);
     const Determinant<double> height = plane.GetSide(arm, bound);
     const bool isCertain = height.IsCertain();
     const bool isCorner =
@@ -133,7 +127,7 @@ Id FacetApex::Find(const TriangleIds& facet, bool isFacet)
       [&](Id point)
       {
         const Vec3 arm = points[point] - a;
-        return apex == NoId || isInside(point, arm, BoundLength(arm));
+        return apex == NoId || isInside(point, arm, SumNorm(arm));
       });
   return isDelaunay ? apex : NoId;
 }

@@ -3,10 +3,10 @@
  * @file EnclosingBall.h
  * @brief A ball that surely encloses a sphere through three or four points, and is hardly larger.
  *
- * Method: the center in double precision, and the radius with what rounding may have done to both.
- * That takes a tenth of the time of SphereForm.h, and tells nearly all points and boxes that are
- * outside. Flat simplices, whose center is not known well enough, are for
- * SphereForm.h.
+ * Method: the center is computed in double precision, and the radius is made larger by all that
+ * rounding may have done to both. The ball takes a tenth of the time of a SphereForm, and tells nearly
+ * all points and boxes that are outside. The center of a flat simplex is not known well enough: there
+ * a SphereForm is needed.
  */
 #ifndef cdmEnclosingBall_h
 #define cdmEnclosingBall_h
@@ -28,9 +28,9 @@ public:
     const Vec3 u = b - a;
     const Vec3 v = c - a;
     const Vec3 normal = Cross(u, v);
-    const double product = BoundLength(u) * BoundLength(v);
+    const double product = SumNorm(u) * SumNorm(v);
     this->Set(Cross(normal, SquaredNorm(v) * u - SquaredNorm(u) * v), SquaredNorm(normal),
-      product * product, BoundLength(u) + BoundLength(v));
+      product * product, SumNorm(u) + SumNorm(v));
   }
   /** The circumsphere of a tetrahedron. */
   EnclosingBall(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) : Origin(a)
@@ -40,8 +40,7 @@ public:
     const Vec3 w = d - a;
     const Vec3 uv = Cross(u, v);
     this->Set(SquaredNorm(w) * uv + SquaredNorm(v) * Cross(w, u) + SquaredNorm(u) * Cross(v, w),
-      Dot(uv, w), BoundLength(u) * BoundLength(v) * BoundLength(w),
-      BoundLength(u) + BoundLength(v) + BoundLength(w));
+      Dot(uv, w), SumNorm(u) * SumNorm(v) * SumNorm(w), SumNorm(u) + SumNorm(v) + SumNorm(w));
   }
 
   /** False: nothing can be told. */
@@ -69,12 +68,10 @@ private:
   static constexpr double Roundoff = std::numeric_limits<double>::epsilon() / 2.0;
   /** More than rounding does to distances. */
   static constexpr double Wider = 1.0 + 1e-12;
-  /** Of the center, in radii: with a larger one, too many points are left. */
+  /** The largest error of the center, in radii, with which the ball leaves few points. */
   static constexpr double LargestError = 1e-9;
   /** Below this, digits may have been lost to underflow. */
   static constexpr double SmallestDenominator = 1e-280;
-
-  static double BoundLength(const Vec3& a) { return std::abs(a.X) + std::abs(a.Y) + std::abs(a.Z); }
 
   /**
    * The center is half of the numerator over the denominator, which are sums of products.
@@ -87,7 +84,7 @@ private:
     this->Center = half * numerator;
     // The products are off by less than 24 roundings each; the bound is more than twice as large.
     const double error =
-      64.0 * Roundoff * product * std::abs(half) * (lengths + BoundLength(this->Center));
+      64.0 * Roundoff * product * std::abs(half) * (lengths + SumNorm(this->Center));
     const double radius = Norm(this->Center);
     const double outer = Wider * (radius + 2.0 * error);
     this->SquaredRadius = Wider * outer * outer;

@@ -37,7 +37,8 @@ struct DihedralSides
     const Vec3 normalC = Cross(ab, ad);
     const Vec3 normalD = Cross(ac, ab);
     this->SixVolumes = std::abs(Dot(normalD, ad));
-    this->Lengths = { Norm(ab), Norm(ac), Norm(ad), Norm(bc), Norm(bd), Norm(d - c) };
+    this->SquaredLengths = { SquaredNorm(ab), SquaredNorm(ac), SquaredNorm(ad), SquaredNorm(bc),
+      SquaredNorm(bd), SquaredNorm(d - c) };
     this->Products = { Dot(normalC, normalD), Dot(normalB, normalD), Dot(normalB, normalC),
       Dot(normalA, normalD), Dot(normalA, normalC), Dot(normalA, normalB) };
   }
@@ -45,12 +46,12 @@ struct DihedralSides
   double GetAngle(int edge) const
   {
     // n x m of the facets' normals is the edge times six volumes: that is the sine.
-    return std::atan2(this->SixVolumes * this->Lengths[edge], 0.0 - this->Products[edge]) *
-      DegreesPerRadian;
+    const double length = std::sqrt(this->SquaredLengths[edge]);
+    return std::atan2(this->SixVolumes * length, 0.0 - this->Products[edge]) * DegreesPerRadian;
   }
 
   double SixVolumes;
-  std::array<double, 6> Lengths;
+  std::array<double, 6> SquaredLengths;
   /** Scalar product of the normals of the two facets at each edge. */
   std::array<double, 6> Products;
 };
@@ -75,32 +76,19 @@ std::array<double, 6> GetDihedralAngles(const Vec3& a, const Vec3& b, const Vec3
 
 double GetSmallestDihedralTangent2(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
-  const Vec3 ab = b - a;
-  const Vec3 ac = c - a;
-  const Vec3 ad = d - a;
-  const Vec3 bc = c - b;
-  const Vec3 bd = d - b;
-  const Vec3 normalB = Cross(ad, ac);
-  const Vec3 normalC = Cross(ab, ad);
-  const Vec3 normalD = Cross(ac, ab);
-  const Vec3 normalA = Cross(bc, bd);
-  const double sixVolumes = Dot(normalD, ad);
-  if (sixVolumes == 0.0)
+  const DihedralSides sides(a, b, c, d);
+  if (sides.SixVolumes == 0.0)
   {
     return 0.0;
   }
-  const double lengths[6] = { SquaredNorm(ab), SquaredNorm(ac), SquaredNorm(ad), SquaredNorm(bc),
-    SquaredNorm(bd), SquaredNorm(d - c) };
-  const double products[6] = { Dot(normalC, normalD), Dot(normalB, normalD), Dot(normalB, normalC),
-    Dot(normalA, normalD), Dot(normalA, normalC), Dot(normalA, normalB) };
-  // n x m of two facets' normals is their edge times six volumes. The largest cotangent is sought.
+  // The smallest angle is acute, and has the largest cotangent.
   double cotangent2 = 0.0;
   for (int i = 0; i < 6; ++i)
   {
-    const double product = std::min(products[i], 0.0);
-    cotangent2 = std::max(cotangent2, product / lengths[i] * product);
+    const double product = std::min(sides.Products[i], 0.0);
+    cotangent2 = std::max(cotangent2, product / sides.SquaredLengths[i] * product);
   }
-  return sixVolumes * sixVolumes / cotangent2;
+  return sides.SixVolumes * sides.SixVolumes / cotangent2;
 }
 
 double GetSmallestDihedralAngle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)

@@ -83,8 +83,7 @@ bool BoundarySpheres::IsOnEdge(Id edge, const Vec3& position) const
 
 void BoundarySpheres::Find(const Vec3& position, Encroached& encroached) const
 {
-  encroached.Triangles.clear();
-  encroached.Edges.clear();
+  encroached.Clear();
   this->Balls.FindSettled(position, encroached.Near);
   for (Id id : encroached.Near)
   {

@@ -38,6 +38,11 @@ public:
     std::vector<Id> Near;
 
     bool IsEmpty() const { return this->Triangles.empty() && this->Edges.empty(); }
+    void Clear()
+    {
+      this->Triangles.clear();
+      this->Edges.clear();
+    }
   };
   /** Several threads may call it at once. */
   void Find(const Vec3& position, Encroached& encroached) const;

@@ -62,11 +62,11 @@ private:
   /** The foot of a position's perpendicular on a triangle. */
   struct Foot
   {
-    /** As in ThinLayers, seen from the position. */
+    /** The triangle's face that looks at the position, numbered as in ThinLayers. */
     Id Face;
-    /** Of the position above the triangle. */
+    /** How high the position is above the triangle. */
     double Height;
-    /** From there to the position, of length 1. */
+    /** The unit vector from the foot to the position. */
     Vec3 Direction;
   };
   Id FindFirst(const Vec3& position, const Vec3& way, double& share) const;

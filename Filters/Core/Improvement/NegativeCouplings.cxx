@@ -219,17 +219,9 @@ std::vector<EdgeIds> NegativeCouplings::TakeChanged(
         [&changed](int, const EdgeIds& edge) { changed.push_back(edge); });
     }
   };
-  if (this->NextStamp > 0 && mesh.ListMadeSince(this->NumberMade, this->New))
+  if (this->NextStamp > 0)
   {
-    SortUnique(this->New);
-    std::for_each(this->New.begin(), this->New.end(), visit);
-  }
-  else if (this->NextStamp > 0)
-  {
-    for (Id t = 0; t < mesh.GetNumberOfTetrahedra(); ++t)
-    {
-      visit(t);
-    }
+    mesh.VisitMadeSince(this->NumberMade, this->New, visit);
   }
   this->NumberMade = mesh.CountMade();
   this->NextStamp = mesh.GetNextStamp();

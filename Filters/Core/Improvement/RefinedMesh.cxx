@@ -478,10 +478,9 @@ bool RefinedMesh::EncroachesOnBoundary(
   const bool isNear = std::any_of(cavity.Facets.begin(), cavity.Facets.end(),
     [&](const TriangleIds& facet)
     { return *std::min_element(facet.begin(), facet.end()) < this->FirstInside; });
-  scratch.Triangles.clear();
-  scratch.Edges.clear();
   if (!isNear)
   {
+    scratch.Clear();
     return false;
   }
   this->Shape->Spheres.Find(position, scratch);

@@ -67,7 +67,7 @@ bool SliverChanges::IsEnough(
 void SliverChanges::StartSearch()
 {
   this->Spoilers.fill({});
-  this->EncroachedBefore = {};
+  this->EncroachedBefore.Clear();
 }
 
 void SliverChanges::NoteSpoiler(Id facet, bool isByLimit)

@@ -13,10 +13,8 @@
 #ifndef cdmTetrahedronWatch_h
 #define cdmTetrahedronWatch_h
 
-#include "Core/Basics/SortedIds.h"
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -47,18 +45,7 @@ public:
         }
       }
     };
-    if (this->NumberMade >= 0 && mesh.ListMadeSince(this->NumberMade, this->New))
-    {
-      SortUnique(this->New);
-      std::for_each(this->New.begin(), this->New.end(), visit);
-    }
-    else
-    {
-      for (Id t = 0; t < mesh.GetNumberOfTetrahedra(); ++t)
-      {
-        visit(t);
-      }
-    }
+    mesh.VisitMadeSince(this->NumberMade, this->New, visit);
     this->NumberMade = mesh.CountMade();
     this->NextStamp = mesh.GetNextStamp();
     return this->Found;

@@ -36,7 +36,7 @@ public:
     // Relative error of center and radius with room to spare.
     const double error = 64.0 * Epsilon * condition * condition;
     const double reach = this->Radius + Norm(u) + Norm(v);
-    const double size = std::abs(this->A.X) + std::abs(this->A.Y) + std::abs(this->A.Z);
+    const double size = SumNorm(this->A);
     this->Slack = error * reach + 16.0 * Epsilon * (size + reach);
     this->SquaredReach = (this->Radius + this->Slack) * (this->Radius + this->Slack);
     this->SquaredCore = (this->Radius - this->Slack) * (this->Radius - this->Slack);
