@@ -86,15 +86,10 @@ void FlipSearch::Keep(Flip& flip, Flip& best) const
   }
 }
 
-/** The 2-3 flip at a facet. */
+/** The 2-3 flip at an open facet. */
 void FlipSearch::TryFacet(Id tetrahedron, int facet, Flip& best) const
 {
   const Id neighbor = this->Mesh.GetMesh().Neighbors[tetrahedron][facet];
-  if (neighbor == NoId ||
-    this->Mesh.GetMesh().Regions[neighbor / 4] != this->Mesh.GetMesh().Regions[tetrahedron])
-  {
-    return;
-  }
   const Id p = this->Mesh.GetMesh().Tetrahedra[tetrahedron][facet];
   const Id q = this->Mesh.GetMesh().Tetrahedra[neighbor / 4][neighbor % 4];
   const TriangleIds triangle = GetFacet(this->Mesh.GetMesh().Tetrahedra[tetrahedron], facet);
@@ -185,16 +180,49 @@ void FlipSearch::TryEdge(Id tetrahedron, int edge, Flip& best) const
   this->Keep(flip, best);
 }
 
+/**
+ * Whether flips across a facet of the tetrahedron are worth a search: the tetrahedron beyond is in
+ * the same region and, if flips have to leave Delaunay tetrahedra, has the same circumsphere.
+ */
+bool FlipSearch::IsOpen(Id tetrahedron, int facet) const
+{
+  const TetMesh& mesh = this->Mesh.GetMesh();
+  const Id neighbor = mesh.Neighbors[tetrahedron][facet];
+  if (neighbor == NoId || mesh.Regions[neighbor / 4] != mesh.Regions[tetrahedron])
+  {
+    return false;
+  }
+  const auto [a, b, c, d] = GetCorners(mesh.Points, mesh.Tetrahedra[tetrahedron]);
+  return this->IsAnyShapeAllowed ||
+    InSphere(a, b, c, d, this->Mesh.GetPoint(mesh.Tetrahedra[neighbor / 4][neighbor % 4])) == 0;
+}
+
 Flip FlipSearch::FindBest(Id tetrahedron) const
 {
-  Flip best;
+  std::array<bool, 4> isOpen{};
   for (int facet = 0; facet < 4; ++facet)
   {
-    this->TryFacet(tetrahedron, facet, best);
+    isOpen[facet] = this->IsOpen(tetrahedron, facet);
+  }
+  Flip best;
+  if (std::find(isOpen.begin(), isOpen.end(), true) == isOpen.end())
+  {
+    return best;
+  }
+  for (int facet = 0; facet < 4; ++facet)
+  {
+    if (isOpen[facet])
+    {
+      this->TryFacet(tetrahedron, facet, best);
+    }
   }
   for (int edge = 0; edge < 6; ++edge)
   {
-    this->TryEdge(tetrahedron, edge, best);
+    // The facets at the edge are opposite to the other vertices.
+    if (isOpen[EdgeVertices[edge][2]] || isOpen[EdgeVertices[edge][3]])
+    {
+      this->TryEdge(tetrahedron, edge, best);
+    }
   }
   return best;
 }

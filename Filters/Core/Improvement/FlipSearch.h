@@ -8,7 +8,13 @@
  * programming. A flip counts if it stays in one region, if each new tetrahedron has the circumsphere
  * of one that it replaces, and if the sorted smallest angles grow lexicographically.
  *
- * Cost: O(k^3) for a ring of k tetrahedra, of which there are at most eight.
+ * A Delaunay mesh leaves only those flips a choice that replace cospherical tetrahedra. So a facet
+ * is searched if the tetrahedra on both sides have one circumsphere, and an edge if one of its
+ * facets in the bad tetrahedron is such a one: an edge that other Delaunay tetrahedra do without
+ * lies inside a polyhedron of cospherical points, or in a facet of two of them.
+ *
+ * Cost: four in-sphere tests where there is no choice; O(k^3) for a ring of k tetrahedra, of which
+ * there are at most eight.
  * References: see SliverRemover.h.
  */
 #ifndef cdmFlipSearch_h
@@ -43,6 +49,7 @@ private:
   AngleKey GetSmallestKey(const std::vector<Id>& tetrahedra) const;
   AngleKey Rate(const TetrahedronIds& ids, const std::vector<Id>& old, AngleKey required) const;
   void Keep(Flip& flip, Flip& best) const;
+  bool IsOpen(Id tetrahedron, int facet) const;
   void TryFacet(Id tetrahedron, int facet, Flip& best) const;
   bool TriangulateRing(const EdgeRing& ring, RingMiddles& middle) const;
 
