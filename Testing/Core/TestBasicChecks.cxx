@@ -514,7 +514,7 @@ void CompareWithAllPoints(const std::vector<Vec3>& points, const Sphere& sphere,
   }
 }
 
-/** Returns how many of the spheres, of a tetrahedron and of its first facet, have a usable ball. */
+/** Returns how many of the spheres of a tetrahedron, of a facet and an edge have a usable ball. */
 int CompareWithAllPoints(const std::vector<Vec3>& points, const TetrahedronIds& ids)
 {
   const Vec3& a = points[ids[0]];
@@ -532,6 +532,14 @@ int CompareWithAllPoints(const std::vector<Vec3>& points, const TetrahedronIds& 
       CompareWithAllPoints(points, ball, isIn);
       ++balls;
     }
+  }
+  const EnclosingBall edge(a, b);
+  EXPECT_FALSE(a == b && edge.IsUsable());
+  if (edge.IsUsable())
+  {
+    CompareWithAllPoints(
+      points, edge, [&](const Vec3& point) { return InDiametralSphere(a, b, point) >= 0; });
+    ++balls;
   }
   const EnclosingBall ball(a, b, c);
   if (AreCollinear(a, b, c))
@@ -597,29 +605,34 @@ TEST(EmptySphereSearch, FindsWhatTheExactPredicatesFind)
 {
   std::mt19937 random(7);
   const auto uniform = [&] { return random() / 4294967296.0; };
-  for (const double flatness : { 1.0, 1e-8, 1e-15, 0.0 })
+  // Far away nothing is known of the centers; halfway there, less than close by.
+  for (const double distance : { 7.0, 7e5, 7e9 })
   {
-    for (const double scale : { 1e-30, 1.0, 1e30 })
+    for (const double flatness : { 1.0, 1e-8, 1e-15, 0.0 })
     {
-      std::vector<Vec3> points;
-      for (int i = 0; i < 200; ++i)
+      for (const double scale : { 1e-30, 1.0, 1e30 })
       {
-        // Slanted layers, so that rounding makes them thick where they are not.
-        const double x = std::floor(uniform() * 6.0);
-        const double y = std::floor(uniform() * 6.0);
-        const double z = flatness * uniform();
-        points.push_back(scale * Vec3{ 0.1 * x - 0.3 * z, 0.1 * y + 0.1 * x, z + 0.03 * x + 7.0 });
+        std::vector<Vec3> points;
+        for (int i = 0; i < 200; ++i)
+        {
+          // Slanted layers, so that rounding makes them thick where they are not.
+          const double x = std::floor(uniform() * 6.0);
+          const double y = std::floor(uniform() * 6.0);
+          const double z = flatness * uniform();
+          points.push_back(
+            scale * Vec3{ 0.1 * x - 0.3 * z, 0.1 * y + 0.1 * x, z + 0.03 * x + distance });
+        }
+        int balls = 0;
+        for (int i = 0; i < 20; ++i)
+        {
+          TetrahedronIds ids{ static_cast<Id>(random() % 200), static_cast<Id>(random() % 200),
+            static_cast<Id>(random() % 200), static_cast<Id>(random() % 200) };
+          balls += CompareWithAllPoints(points, ids);
+          std::swap(ids[0], ids[1]);
+          balls += CompareWithAllPoints(points, ids);
+        }
+        EXPECT_EQ(balls > 20, distance < 7e9) << distance;
       }
-      int balls = 0;
-      for (int i = 0; i < 20; ++i)
-      {
-        TetrahedronIds ids{ static_cast<Id>(random() % 200), static_cast<Id>(random() % 200),
-          static_cast<Id>(random() % 200), static_cast<Id>(random() % 200) };
-        balls += CompareWithAllPoints(points, ids);
-        std::swap(ids[0], ids[1]);
-        balls += CompareWithAllPoints(points, ids);
-      }
-      EXPECT_GT(balls, 20);
     }
   }
 }

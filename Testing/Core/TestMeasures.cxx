@@ -59,6 +59,10 @@ TEST(Measures, AnglesComeInTheOrderOfTheEdges)
   // With d at height h over the origin only the edge bc changes: tan = h / (1 / sqrt(2)).
   const auto low = cdm::GetDihedralAngles({}, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 0.1 });
   EXPECT_NEAR(std::atan(0.1 * std::sqrt(2.0)) * Degrees, low[3], 1e-12);
+  for (int i = 0; i < 6; ++i)
+  {
+    EXPECT_EQ(low[i], cdm::GetDihedralAngle({}, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 0.1 }, i));
+  }
 }
 
 TEST(Measures, SliverAnglesKeepTheirRelativeAccuracy)

@@ -12,7 +12,7 @@ namespace cdm
 {
 namespace
 {
-constexpr Id LeafSize = 8;
+constexpr Id LeafSize = 12;
 /** Up to this many points one thread builds the tree. */
 constexpr Id FewPoints = 1 << 14;
 } // namespace

@@ -8,11 +8,12 @@
  *
  * Guarantees: no point strictly inside or on the sphere is left out (up to overflow, where
  * nothing is left out).
- * Cost: O(n log n) to build; 28 bytes per point and 64 bytes per eight points.
+ * Cost: O(n log n) to build; 28 bytes per point, and 10 to 22 in the nodes.
  */
 #ifndef cdmEmptySphereSearch_h
 #define cdmEmptySphereSearch_h
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Basics/Types.h"
 #include "Core/Basics/Vec3.h"
 
@@ -30,8 +31,7 @@ public:
 
   /**
    * Calls isInside(id) for every point that may lie in the sphere, until it returns true; returns
-   * whether it did. The simplex's own vertices are passed over: they lie on the sphere, which is
-   * what takes longest to tell.
+   * whether it did. The simplex's own vertices are passed over.
    * @param sphere has MayTouch() and MayHold() as SphereForm does
    */
   template <typename Sphere, typename Simplex, typename Predicate>
@@ -40,33 +40,33 @@ public:
     // Every level of the tree leaves at most one node behind.
     std::array<Id, 64> stack;
     int size = 0;
-    if (!this->Nodes.empty())
+    Id index = this->Nodes.empty() ? NoId : 0;
+    while (index != NoId)
     {
-      stack[size++] = 0;
-    }
-    while (size > 0)
-    {
-      const Id index = stack[--size];
       const Node& node = this->Nodes[index];
-      if (!sphere.MayTouch(node.Lower, node.Upper))
+      if (node.Right == NoId)
       {
-        continue;
-      }
-      if (node.Right != NoId)
-      {
-        stack[size++] = node.Right;
-        stack[size++] = index + 1;
-        continue;
-      }
-      for (Id i = node.Begin; i < node.End; ++i)
-      {
-        const Id point = this->Order[i];
-        if (std::find(simplex.begin(), simplex.end(), point) == simplex.end() &&
-          sphere.MayHold(this->Positions[i]) && isInside(point))
+        if (this->IsAnyInside(node, sphere, simplex, isInside))
         {
           return true;
         }
       }
+      else
+      {
+        // Both children at once: a node that comes from the stack need not be tested any more.
+        const bool isLeft = this->MayTouch(sphere, index + 1);
+        const bool isRight = this->MayTouch(sphere, node.Right);
+        if (isLeft && isRight)
+        {
+          stack[size++] = node.Right;
+        }
+        if (isLeft || isRight)
+        {
+          index = isLeft ? index + 1 : node.Right;
+          continue;
+        }
+      }
+      index = size > 0 ? stack[--size] : NoId;
     }
     return false;
   }
@@ -91,6 +91,25 @@ private:
     Id Node;
   };
 
+  template <typename Sphere>
+  bool MayTouch(const Sphere& sphere, Id node) const
+  {
+    return sphere.MayTouch(this->Nodes[node].Lower, this->Nodes[node].Upper);
+  }
+  template <typename Sphere, typename Simplex, typename Predicate>
+  bool IsAnyInside(
+    const Node& leaf, const Sphere& sphere, const Simplex& simplex, Predicate&& isInside) const
+  {
+    for (Id i = leaf.Begin; i < leaf.End; ++i)
+    {
+      if (sphere.MayHold(this->Positions[i]) && !Contains(simplex, this->Order[i]) &&
+        isInside(this->Order[i]))
+      {
+        return true;
+      }
+    }
+    return false;
+  }
   static Id CountNodes(Id numberOfPoints);
   /** Makes the root only. Returns the first point of its right child, or NoId if it is a leaf. */
   Id Split(const std::vector<Vec3>& points, const Subtree& subtree);

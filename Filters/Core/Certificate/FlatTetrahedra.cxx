@@ -4,7 +4,7 @@
 #include "Core/Geometry/Measures.h"
 
 #include <algorithm>
-#include <map>
+#include <numeric>
 #include <utility>
 
 namespace cdm
@@ -55,8 +55,19 @@ public:
 private:
   void MarkPoints(const std::vector<double>& smallestAngles, const BasicFindings& findings);
   void ListEdges(const std::vector<EdgeIds>& structuralEdges);
+  Id FindEdge(Id a, Id b) const;
   void FindSharpWedges();
   void FindSharpPlaneAngles();
+
+  /** Of a region at an edge of the list, with the sum of its angles. */
+  struct Wedge
+  {
+    Id Edge;
+    Id Region;
+    double Angle;
+    /** At the same edge, or NoId. */
+    Id Next;
+  };
 
   const TetMesh& Mesh;
   /** One for each point: of outer or interface facets; of these and of a flat tetrahedron. */
@@ -65,6 +76,8 @@ private:
   /** Structural edges with an end that a flat tetrahedron has, ascending; their ends. */
   std::vector<EdgeIds> Edges;
   std::vector<char> IsEnd;
+  /** For each point the first of these edges that does not begin at a lower one. */
+  std::vector<Id> FirstEdges;
   /** One for each point: whether two structural edges meet there at a sharp angle. */
   std::vector<char> IsSharp;
   /** Points of sharp wedges with the region of the wedge, ascending. */
@@ -107,6 +120,32 @@ void FlatTetrahedra::ListEdges(const std::vector<EdgeIds>& structuralEdges)
       this->IsEnd[edge[0]] = this->IsEnd[edge[1]] = 1;
     }
   }
+  if (!this->Edges.empty())
+  {
+    this->FirstEdges.assign(this->Mesh.Points.size() + 1, 0);
+    for (const EdgeIds& edge : this->Edges)
+    {
+      ++this->FirstEdges[edge[0] + 1];
+    }
+    std::partial_sum(this->FirstEdges.begin(), this->FirstEdges.end(), this->FirstEdges.begin());
+  }
+}
+
+/** The number of an edge in the list, or NoId. */
+Id FlatTetrahedra::FindEdge(Id a, Id b) const
+{
+  if (this->IsEnd[a] != 0 && this->IsEnd[b] != 0)
+  {
+    const auto [first, last] = std::minmax(a, b);
+    for (Id i = this->FirstEdges[first]; i < this->FirstEdges[first + 1]; ++i)
+    {
+      if (this->Edges[i][1] == last)
+      {
+        return i;
+      }
+    }
+  }
+  return NoId;
 }
 
 void FlatTetrahedra::FindSharpWedges()
@@ -115,36 +154,40 @@ void FlatTetrahedra::FindSharpWedges()
   {
     return;
   }
-  /** The wedge of a region at an edge of the list: the sum of its angles. */
-  std::map<std::pair<std::size_t, Id>, double> wedges;
+  std::vector<Wedge> wedges;
+  std::vector<Id> firstWedges(this->Edges.size(), NoId);
   for (std::size_t i = 0; i < this->Mesh.Tetrahedra.size(); ++i)
   {
     const TetrahedronIds& ids = this->Mesh.Tetrahedra[i];
     for (int edge = 0; edge < 6; ++edge)
     {
-      const Id a = ids[EdgeVertices[edge][0]];
-      const Id b = ids[EdgeVertices[edge][1]];
-      if (this->IsEnd[a] == 0 || this->IsEnd[b] == 0)
+      const Id number = this->FindEdge(ids[EdgeVertices[edge][0]], ids[EdgeVertices[edge][1]]);
+      if (number == NoId)
       {
         continue;
       }
-      const EdgeIds key{ std::min(a, b), std::max(a, b) };
-      const auto found = std::lower_bound(this->Edges.begin(), this->Edges.end(), key);
-      if (found != this->Edges.end() && *found == key)
+      const Id region = this->Mesh.Regions[i];
+      Id wedge = firstWedges[number];
+      while (wedge != NoId && wedges[wedge].Region != region)
       {
-        const std::size_t number = static_cast<std::size_t>(found - this->Edges.begin());
-        wedges[{ number, this->Mesh.Regions[i] }] += GetDihedralAngles(this->Mesh.Points[ids[0]],
-          this->Mesh.Points[ids[1]], this->Mesh.Points[ids[2]], this->Mesh.Points[ids[3]])[edge];
+        wedge = wedges[wedge].Next;
       }
+      if (wedge == NoId)
+      {
+        wedge = static_cast<Id>(wedges.size());
+        wedges.push_back({ number, region, 0.0, std::exchange(firstWedges[number], wedge) });
+      }
+      const auto [a, b, c, d] = GetCorners(this->Mesh.Points, ids);
+      wedges[wedge].Angle += GetDihedralAngle(a, b, c, d, edge);
     }
   }
-  for (const auto& [place, angle] : wedges)
+  for (const Wedge& wedge : wedges)
   {
-    if (angle < SharpWedge)
+    if (wedge.Angle < SharpWedge)
     {
-      for (const Id point : this->Edges[place.first])
+      for (const Id point : this->Edges[wedge.Edge])
       {
-        this->SharpPoints.emplace_back(point, place.second);
+        this->SharpPoints.emplace_back(point, wedge.Region);
       }
     }
   }

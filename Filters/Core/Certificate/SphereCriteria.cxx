@@ -4,21 +4,30 @@
 #include "Core/Geometry/EnclosingBall.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Geometry/SphereForm.h"
+#include "Core/Meshes/TetMesh.h"
 
+#include <tuple>
 #include <utility>
 
 namespace cdm
 {
+template <std::size_t N, typename Predicate>
+bool SphereCriteria::FindInside(const std::array<Id, N>& ids, Predicate&& isInside) const
+{
+  const auto find = [&](const auto&... corners)
+  {
+    const EnclosingBall ball(corners...);
+    return ball.IsUsable() ? this->Search.FindInside(ball, ids, isInside)
+                           : this->Search.FindInside(SphereForm(corners...), ids, isInside);
+  };
+  return std::apply([&](auto... id) { return find(this->Points[id]...); }, ids);
+}
+
 bool SphereCriteria::IsDelaunay(const TetrahedronIds& ids) const
 {
-  const Vec3& a = this->Points[ids[0]];
-  const Vec3& b = this->Points[ids[1]];
-  const Vec3& c = this->Points[ids[2]];
-  const Vec3& d = this->Points[ids[3]];
-  const auto isInside = [&](Id point) { return InSphere(a, b, c, d, this->Points[point]) > 0; };
-  const EnclosingBall ball(a, b, c, d);
-  return !(ball.IsUsable() ? this->Search.FindInside(ball, ids, isInside)
-                           : this->Search.FindInside(SphereForm(a, b, c, d), ids, isInside));
+  const auto [a, b, c, d] = GetCorners(this->Points, ids);
+  return !this->FindInside(
+    ids, [&](Id point) { return InSphere(a, b, c, d, this->Points[point]) > 0; });
 }
 
 bool SphereCriteria::IsDelaunay(const TriangleIds& ids) const
@@ -72,18 +81,14 @@ bool SphereCriteria::HasEmptySmallestSphere(const TriangleIds& ids) const
   const Vec3& c = this->Points[ids[2]];
   const auto isInside = [&](Id point)
   { return InEquatorialSphere(a, b, c, this->Points[point]) > 0; };
-  const EnclosingBall ball(a, b, c);
-  // Collinear points have no ball.
-  return ball.IsUsable()
-    ? !this->Search.FindInside(ball, ids, isInside)
-    : AreCollinear(a, b, c) || !this->Search.FindInside(SphereForm(a, b, c), ids, isInside);
+  return AreCollinear(a, b, c) || !this->FindInside(ids, isInside);
 }
 
 bool SphereCriteria::HasEmptySmallestSphere(const EdgeIds& ids) const
 {
   const Vec3& a = this->Points[ids[0]];
   const Vec3& b = this->Points[ids[1]];
-  return !this->Search.FindInside(SphereForm(a, b), ids,
-    [&](Id point) { return InDiametralSphere(a, b, this->Points[point]) > 0; });
+  return !this->FindInside(
+    ids, [&](Id point) { return InDiametralSphere(a, b, this->Points[point]) > 0; });
 }
 } // namespace cdm

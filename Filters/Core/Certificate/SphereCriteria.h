@@ -21,6 +21,10 @@
 
 #include "Core/Certificate/EmptySphereSearch.h"
 
+#include <array>
+#include <cstddef>
+#include <vector>
+
 namespace cdm
 {
 class SphereCriteria
@@ -48,6 +52,10 @@ public:
   bool HasEmptySmallestSphere(const EdgeIds& edge) const;
 
 private:
+  /** EmptySphereSearch::FindInside() of the smallest sphere through the points of a simplex. */
+  template <std::size_t N, typename Predicate>
+  bool FindInside(const std::array<Id, N>& ids, Predicate&& isInside) const;
+
   const std::vector<Vec3>& Points;
   EmptySphereSearch Search;
 };

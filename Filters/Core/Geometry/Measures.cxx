@@ -74,6 +74,11 @@ std::array<double, 6> GetDihedralAngles(const Vec3& a, const Vec3& b, const Vec3
     sides.GetAngle(4), sides.GetAngle(5) };
 }
 
+double GetDihedralAngle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, int edge)
+{
+  return DihedralSides(a, b, c, d).GetAngle(edge);
+}
+
 double GetSmallestDihedralTangent2(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
   const DihedralSides sides(a, b, c, d);

@@ -30,6 +30,9 @@ double GetTriangleArea(const Vec3& a, const Vec3& b, const Vec3& c);
  */
 std::array<double, 6> GetDihedralAngles(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
+/** One of them: 0 for the edge ab, 5 for cd. */
+double GetDihedralAngle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, int edge);
+
 /** The smallest of them, which is never above 70.53 degrees. */
 double GetSmallestDihedralAngle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 /** The square of its tangent, which tells tetrahedra apart as the angle does, and is quicker. */

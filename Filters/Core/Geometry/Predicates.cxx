@@ -502,7 +502,8 @@ int InEquatorialSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& 
 
 bool AreCollinear(const Vec3& a, const Vec3& b, const Vec3& c)
 {
-  return CGAL::collinear(ToPoint3(a), ToPoint3(b), ToPoint3(c));
+  return ProjectedOrientation(0, a, b, c) == 0 && ProjectedOrientation(1, a, b, c) == 0 &&
+    ProjectedOrientation(2, a, b, c) == 0;
 }
 
 int ProjectedOrientation(int axis, const Vec3& a, const Vec3& b, const Vec3& c)
