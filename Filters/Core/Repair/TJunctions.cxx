@@ -126,7 +126,7 @@ bool SplitEdgesAtVertices(const std::vector<Vec3>& points, double tolerance,
     boxes[e].Low = boxes[e].Low - margin;
     boxes[e].High = boxes[e].High + margin;
   }
-  const BoxTree tree(std::move(boxes));
+  const BoxTree tree(boxes);
 
   std::vector<Id> vertices = polygons.Vertices;
   SortUnique(vertices);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <utility>
 
 namespace cdm
 {
@@ -12,17 +11,22 @@ namespace
 constexpr Id LeafSize = 4;
 }
 
-BoxTree::BoxTree(std::vector<Box> boxes) : Boxes(std::move(boxes)), Order(this->Boxes.size())
+BoxTree::BoxTree(const std::vector<Box>& boxes) : Order(boxes.size())
 {
   std::iota(this->Order.begin(), this->Order.end(), 0);
   if (!this->Order.empty())
   {
     this->Nodes.reserve(this->Order.size());
-    this->Build(0, static_cast<Id>(this->Order.size()));
+    this->Build(boxes, 0, static_cast<Id>(this->Order.size()));
+  }
+  this->Boxes.reserve(boxes.size());
+  for (const Id id : this->Order)
+  {
+    this->Boxes.push_back(boxes[id]);
   }
 }
 
-void BoxTree::Build(Id begin, Id end)
+void BoxTree::Build(const std::vector<Box>& boxes, Id begin, Id end)
 {
   const std::size_t index = this->Nodes.size();
   this->Nodes.emplace_back();
@@ -31,7 +35,7 @@ void BoxTree::Build(Id begin, Id end)
   node.End = end;
   for (Id i = begin; i < end; ++i)
   {
-    node.Bounds.Add(this->Boxes[this->Order[i]]);
+    node.Bounds.Add(boxes[this->Order[i]]);
   }
   if (end - begin > LeafSize)
   {
@@ -40,16 +44,16 @@ void BoxTree::Build(Id begin, Id end)
     const Id middle = begin + (end - begin) / 2;
     std::nth_element(this->Order.begin() + begin, this->Order.begin() + middle,
       this->Order.begin() + end,
-      [this, axis](Id a, Id b)
+      [&boxes, axis](Id a, Id b)
       {
         // Halves first: the sum of large coordinates may overflow.
-        const double left = 0.5 * this->Boxes[a].Low[axis] + 0.5 * this->Boxes[a].High[axis];
-        const double right = 0.5 * this->Boxes[b].Low[axis] + 0.5 * this->Boxes[b].High[axis];
+        const double left = 0.5 * boxes[a].Low[axis] + 0.5 * boxes[a].High[axis];
+        const double right = 0.5 * boxes[b].Low[axis] + 0.5 * boxes[b].High[axis];
         return left != right ? left < right : a < b;
       });
-    this->Build(begin, middle);
+    this->Build(boxes, begin, middle);
     node.Right = static_cast<Id>(this->Nodes.size());
-    this->Build(middle, end);
+    this->Build(boxes, middle, end);
   }
   this->Nodes[index] = node;
 }

@@ -27,7 +27,7 @@ namespace cdm
 class BoxTree
 {
 public:
-  explicit BoxTree(std::vector<Box> boxes);
+  explicit BoxTree(const std::vector<Box>& boxes);
 
   /** Calls visit(id) for each box that overlaps the given one. */
   template <class Function>
@@ -52,10 +52,11 @@ private:
     Id Right = NoId;
   };
 
-  void Build(Id begin, Id end);
+  void Build(const std::vector<Box>& boxes, Id begin, Id end);
 
-  std::vector<Box> Boxes;
   std::vector<Id> Order;
+  /** The boxes in that order. */
+  std::vector<Box> Boxes;
   std::vector<Node> Nodes;
 };
 
@@ -65,32 +66,33 @@ void BoxTree::VisitOverlaps(const Box& box, Function&& visit) const
   // The depth of a tree split at medians is below the number of bits of an Id.
   Id stack[64];
   int size = 0;
-  if (!this->Nodes.empty())
+  Id index = this->Nodes.empty() ? NoId : 0;
+  while (index != NoId)
   {
-    stack[size++] = 0;
-  }
-  while (size > 0)
-  {
-    const Id index = stack[--size];
     const Node& node = this->Nodes[index];
-    if (!node.Bounds.Overlaps(box))
-    {
-      continue;
-    }
     if (node.Right != NoId)
     {
-      stack[size++] = node.Right;
-      stack[size++] = index + 1;
-      continue;
-    }
-    for (Id i = node.Begin; i < node.End; ++i)
-    {
-      const Id id = this->Order[i];
-      if (this->Boxes[id].Overlaps(box))
+      // Both children at once: a node that comes from the stack need not be tested any more.
+      const bool isLeft = this->Nodes[index + 1].Bounds.Overlaps(box);
+      const bool isRight = this->Nodes[node.Right].Bounds.Overlaps(box);
+      if (isLeft && isRight)
       {
-        visit(id);
+        stack[size++] = node.Right;
+      }
+      if (isLeft || isRight)
+      {
+        index = isLeft ? index + 1 : node.Right;
+        continue;
       }
     }
+    for (Id i = node.Begin; node.Right == NoId && i < node.End; ++i)
+    {
+      if (this->Boxes[i].Overlaps(box))
+      {
+        visit(this->Order[i]);
+      }
+    }
+    index = size > 0 ? stack[--size] : NoId;
   }
 }
 
@@ -126,10 +128,9 @@ double BoxTree::FindDistance(const Vec3& point, double limit, Function&& getDist
     }
     for (Id i = node.Begin; i < node.End; ++i)
     {
-      const Id id = this->Order[i];
-      if (this->Boxes[id].GetSquaredDistance(point) < limit * limit)
+      if (this->Boxes[i].GetSquaredDistance(point) < limit * limit)
       {
-        limit = std::min(limit, static_cast<double>(getDistance(id)));
+        limit = std::min(limit, static_cast<double>(getDistance(this->Order[i])));
       }
     }
   }

@@ -78,7 +78,7 @@ Status RegionLocator::Build()
   }
   this->Low = bounds.Low;
   this->High = bounds.High;
-  this->Tree = std::make_unique<BoxTree>(std::move(boxes));
+  this->Tree = std::make_unique<BoxTree>(boxes);
   const Status status = this->FindRegions();
   if (status.IsOk())
   {

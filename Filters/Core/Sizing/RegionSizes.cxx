@@ -92,7 +92,7 @@ Status RegionSizes::FindBoundary(SizedRegion& region) const
     return Status::Failure(StatusCode::InvalidOption,
       "RegionSizes: the surface has no region " + std::to_string(region.Region) + ".");
   }
-  region.Tree = std::make_unique<BoxTree>(std::move(boxes));
+  region.Tree = std::make_unique<BoxTree>(boxes);
   return {};
 }
 
