@@ -113,6 +113,13 @@ public:
     }
   }
 
+  void ReservePoints(Id count)
+  {
+    this->Mesh->ReservePoints(this->FirstInside, count);
+    this->FirstInside += count;
+    this->Splits->SetFirstInside(this->FirstInside);
+  }
+
   /** Moves points of the surface by rounding errors; the mesh does not know of it yet. */
   void RoundPoints(int count)
   {
@@ -287,10 +294,11 @@ TEST(BoundarySplits, TheMeshIsAsMadeAnew)
       seed % 3 == 0 ? SurfaceCriterion::SmallestSphereAndEdges : SurfaceCriterion::SmallestSphere;
     GrowingMesh mesh(seed % 2 == 0 ? MakeStraightBoxes()
                                    : MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, 2, 0.5 * seed),
-      criterion, 20000, generator);
+      criterion, 0, generator);
     const std::size_t before = mesh.GetNumberOfSurfacePoints();
     for (int run = 0; run < 8; ++run)
     {
+      mesh.ReservePoints(2500);
       ASSERT_TRUE(mesh.Split(run, 8 - run));
       mesh.ExpectAsMadeAnew();
       mesh.ExpectShapeAsMadeAnew();

@@ -103,6 +103,20 @@ void DynamicTetrahedralization::Fill(Id point, const PointCavity& cavity)
   }
 }
 
+void DynamicTetrahedralization::ReservePoints(Id first, Id count)
+{
+  this->Mesh.Points.insert(this->Mesh.Points.begin() + first, count, Vec3());
+  this->PointTetrahedra.insert(this->PointTetrahedra.begin() + first, count, NoId);
+  for (TetrahedronIds& ids : this->Mesh.Tetrahedra)
+  {
+    for (Id& id : ids)
+    {
+      id += id >= first ? count : 0;
+    }
+  }
+  this->RemovedStar.clear();
+}
+
 Id DynamicTetrahedralization::Insert(const Vec3& position, const PointCavity& cavity)
 {
   const Id point = this->GetNumberOfPoints();

@@ -115,6 +115,11 @@ public:
    */
   void UndoRemove();
 
+  /**
+   * Inserts point ids that no tetrahedron uses before a point: this one and all after it get higher
+   * ids. A removal before it cannot be undone any more.
+   */
+  void ReservePoints(Id first, Id count);
   /** Moves a point, before the caller replaces all tetrahedra that this changes. */
   void SetPoint(Id point, const Vec3& position) { this->Mesh.Points[point] = position; }
   /**

@@ -55,6 +55,8 @@ public:
   Status Run(
     std::vector<Id>& triangles, std::vector<EdgeIds>& edges, const ExecutionContext& context);
   bool IsUsable() const { return this->CanGoOn; }
+  /** Interior points have got higher ids: DynamicTetrahedralization::ReservePoints(). */
+  void SetFirstInside(Id firstInside) { this->FirstInside = firstInside; }
 
   /** Tetrahedra that the last run has made; some may be gone again. */
   const std::vector<Id>& GetChanged() const { return this->Changed; }
@@ -90,7 +92,7 @@ private:
   void UpdateEdges();
 
   DynamicTetrahedralization& Mesh;
-  const Id FirstInside;
+  Id FirstInside;
   TriangleMesh& Surface;
   std::vector<StructuralEdge>& Edges;
   SurfaceRefinement Refinement;

@@ -21,22 +21,9 @@ constexpr double FlatAngle = 1e-6;
  */
 constexpr double SizeRatio = 0.05;
 
-/** Inserts reserved point ids, which no tetrahedron uses, before the point first. */
-TetMesh ReservePoints(TetMesh mesh, std::size_t first, Id reserve)
-{
-  if (reserve > 0)
-  {
-    mesh.Points.insert(mesh.Points.begin() + static_cast<std::ptrdiff_t>(first), reserve, Vec3());
-    for (TetrahedronIds& ids : mesh.Tetrahedra)
-    {
-      for (Id& id : ids)
-      {
-        id += id >= static_cast<Id>(first) ? reserve : 0;
-      }
-    }
-  }
-  return mesh;
-}
+/** Point ids that are reserved for splits: so many for each request, and so many more. */
+constexpr std::size_t ReservedPerRequest = 4;
+constexpr std::size_t FewestReserved = 256;
 
 /** For each source cell one triangle that comes from it. */
 std::vector<Id> ListSourceTriangles(const TriangleMesh& surface)
@@ -55,9 +42,8 @@ std::vector<Id> ListSourceTriangles(const TriangleMesh& surface)
 RefinedMesh::RefinedMesh(TetMesh mesh, const RefinedBoundary& boundary,
   const std::vector<InteriorPoint>& interior, SliverMemory& memory,
   const RefinedMeshOptions& options)
-  : Mesh(ReservePoints(std::move(mesh), boundary.Surface.Points.size(), options.Reserve)),
-    Boundary(boundary), Limits(options.Limits),
-    FirstInside(static_cast<Id>(boundary.Surface.Points.size()) + options.Reserve),
+  : Mesh(std::move(mesh)), Boundary(boundary), Limits(options.Limits),
+    FirstInside(static_cast<Id>(boundary.Surface.Points.size())),
     MaximumNewPoints(options.MaximumNewPoints), Memory(memory),
     Shape(std::make_unique<BoundaryShape>(boundary.Surface, boundary.Edges, boundary.KeptEdges,
       options.SharpPlaneAngle, options.LayerAspectRatio)),
@@ -72,7 +58,6 @@ RefinedMesh::RefinedMesh(TetMesh mesh, const RefinedBoundary& boundary,
     this->Points.push_back(
       { positions[p], sizes.empty() ? 0.0 : sizes[p], false, NoId, static_cast<Id>(p) });
   }
-  this->Points.resize(this->FirstInside);
   this->Points.insert(this->Points.end(), interior.begin(), interior.end());
   std::vector<Id> all(this->Mesh.GetNumberOfTetrahedra());
   std::iota(all.begin(), all.end(), 0);
@@ -225,9 +210,29 @@ std::size_t RefinedMesh::RequestNegativeCouplings()
   return edges.size();
 }
 
+/** Reserves point ids for the requested splits, and as many more as half of the surface has. */
+void RefinedMesh::ReservePoints()
+{
+  const std::size_t onSurface = this->Boundary.Surface.Points.size();
+  const std::size_t wanted = FewestReserved + ReservedPerRequest * this->Requests.GetNumber();
+  if (this->FirstInside >= static_cast<Id>(onSurface + wanted))
+  {
+    return;
+  }
+  const Id count = static_cast<Id>(wanted + onSurface / 2);
+  this->Mesh.ReservePoints(this->FirstInside, count);
+  this->Points.insert(this->Points.begin() + this->FirstInside, count, InteriorPoint());
+  this->FirstInside += count;
+  if (this->Splits)
+  {
+    this->Splits->SetFirstInside(this->FirstInside);
+  }
+}
+
 bool RefinedMesh::SplitBoundary(const DelaunaySurfaceRefinerOptions& options,
   const SizingField& sizing, const ExecutionContext& context, Status& status)
 {
+  this->ReservePoints();
   if (!this->Splits)
   {
     this->Splits = std::make_unique<BoundarySplits>(

@@ -69,8 +69,6 @@ struct RefinedMeshOptions
 {
   TetrahedronLimits Limits;
   Id MaximumNewPoints = 0;
-  /** Number of points that SplitBoundary() may add to the surface: their ids are reserved. */
-  Id Reserve = 0;
   /** Plane angles between structural edges below this are sharp. Degrees; see SharpAngles. */
   double SharpPlaneAngle = UsualSharpPlaneAngle;
   /** How many times as wide as thick thin layers are at least; 0: see ThinLayers. */
@@ -230,6 +228,7 @@ public:
   void NoteRemoval();
 
 private:
+  void ReservePoints();
   std::vector<Id> TakeMovedSurfacePoints();
   void FollowBoundary(const std::vector<Id>& moved, const std::vector<Id>& sourceTriangles);
   void BoundSizes(const std::vector<Id>& tetrahedra);
@@ -242,7 +241,7 @@ private:
    * Id of the first interior point. Points of the surface, and ids reserved for new ones, come
    * before.
    */
-  const Id FirstInside;
+  Id FirstInside;
   Id MaximumNewPoints;
   SliverMemory& Memory;
   std::unique_ptr<BoundaryShape> Shape;

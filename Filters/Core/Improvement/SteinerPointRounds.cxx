@@ -34,8 +34,6 @@ constexpr std::size_t TetrahedraPerSplit = 32;
  */
 constexpr std::size_t MostShapePoints = 2000;
 constexpr std::size_t MostShapePointsPerPoint = 10;
-/** Fewest point ids that a round reserves for new points of the boundary. */
-constexpr Id FewestReservedPoints = 256;
 
 Id GetMaximumNewPoints(
   const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options)
@@ -205,7 +203,6 @@ RefinedMeshOptions SteinerPointRounds::GetMeshOptions() const
   }
   options.MaximumNewPoints = GetMaximumNewPoints(this->Input, this->Options) -
     this->Report.BoundaryPoints - this->Report.InteriorPoints;
-  options.Reserve = FewestReservedPoints + static_cast<Id>(this->Surface.Points.size()) / 2;
   if (this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges)
   {
     options.SharpPlaneAngle = SharpPlaneAngleOfEmptySpheres;
