@@ -68,6 +68,7 @@ private:
   void CollectFront();
   void Finish();
   void CollectPointsUsed();
+  void AppendHull();
   void CompleteBoundary();
   Id GetSideLabel(Id side) const
   {
@@ -506,6 +507,46 @@ void AdvancingFront::CollectPointsUsed()
     [&](std::size_t i) { this->Order[i] = places[this->Order[i]]; });
 }
 
+/**
+ * Appends the facets of the hull to the surface, in the order of their points: a counting sort by the
+ * first one. Sorting all at once took a tenth of the time for points on a sphere.
+ */
+void AdvancingFront::AppendHull()
+{
+  using Facet = std::pair<TriangleIds, Id>;
+  std::vector<Id> ends(this->Points.size() + 1, 0);
+  std::vector<Facet> facets;
+  facets.reserve(this->HullFacets.size());
+  for (Id facet : this->HullFacets)
+  {
+    facets.emplace_back(this->GetFacetPoints(facet), this->Regions[facet / 4]);
+    ++ends[facets.back().first[0] + 1];
+  }
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  // Of each point first the beginning, then the end.
+  std::vector<Facet> sorted(facets.size());
+  for (const Facet& facet : facets)
+  {
+    sorted[ends[facet.first[0]]++] = facet;
+  }
+  facets = {};
+  const std::size_t first = this->Surface.Triangles.size();
+  this->Surface.Triangles.resize(first + sorted.size());
+  this->Surface.SourceCells.resize(first + sorted.size(), NoId);
+  this->Surface.Labels.resize(first + sorted.size());
+  ForEach(this->Points.size(), this->NumberOfThreads,
+    [&](std::size_t point)
+    {
+      const Id begin = point == 0 ? 0 : ends[point - 1];
+      std::sort(sorted.begin() + begin, sorted.begin() + ends[point]);
+      for (Id i = begin; i < ends[point]; ++i)
+      {
+        this->Surface.Triangles[first + i] = sorted[i].first;
+        this->Surface.Labels[first + i] = { OutsideRegion, sorted[i].second };
+      }
+    });
+}
+
 void AdvancingFront::CompleteBoundary()
 {
   // It carries what its sides really border on. Sides that the front has not reached keep their
@@ -527,19 +568,7 @@ void AdvancingFront::CompleteBoundary()
       ? 1
       : 0;
   }
-  std::vector<std::pair<TriangleIds, Id>> hull;
-  hull.reserve(this->HullFacets.size());
-  for (Id facet : this->HullFacets)
-  {
-    hull.emplace_back(this->GetFacetPoints(facet), this->Regions[facet / 4]);
-  }
-  std::sort(hull.begin(), hull.end());
-  for (const auto& [ids, region] : hull)
-  {
-    this->Surface.Triangles.push_back(ids);
-    this->Surface.SourceCells.push_back(NoId);
-    this->Surface.Labels.push_back({ OutsideRegion, region });
-  }
+  this->AppendHull();
   this->Surface.Points = this->Points;
 }
 
