@@ -274,17 +274,20 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
 {
   const TetMesh& mesh = this->Mesh.GetMesh();
   this->Tetrahedra = this->Star;
-  std::vector<Id> outer;
-  const auto isIn = [&](Id t)
+  // Marks of cavities before are lower.
+  this->Marks.resize(mesh.Tetrahedra.size(), 0);
+  const Id outside = ++this->LastMark;
+  const Id inside = ++this->LastMark;
+  for (const Id t : this->Star)
   {
-    return std::find(this->Tetrahedra.begin(), this->Tetrahedra.end(), t) != this->Tetrahedra.end();
-  };
+    this->Marks[t] = inside;
+  }
   for (std::size_t k = 0; k < this->Tetrahedra.size(); ++k)
   {
     for (Id neighbor : mesh.Neighbors[this->Tetrahedra[k]])
     {
       const Id t = neighbor == NoId ? NoId : neighbor / 4;
-      if (t == NoId || isIn(t) || std::find(outer.begin(), outer.end(), t) != outer.end())
+      if (t == NoId || this->Marks[t] >= outside)
       {
         continue;
       }
@@ -293,7 +296,12 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
         this->Visited.push_back(t);
       }
       const auto [a, b, c, d] = GetCorners(mesh.Points, mesh.Tetrahedra[t]);
-      (InSphere(a, b, c, d, position) >= 0 ? this->Tetrahedra : outer).push_back(t);
+      const bool isInside = InSphere(a, b, c, d, position) >= 0;
+      this->Marks[t] = isInside ? inside : outside;
+      if (isInside)
+      {
+        this->Tetrahedra.push_back(t);
+      }
     }
     if (this->Tetrahedra.size() > LargestCavity)
     {
@@ -314,7 +322,7 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
     {
       const TriangleIds facet = GetFacet(ids, i);
       const Id neighbor = mesh.Neighbors[t][i];
-      const bool isInside = neighbor != NoId && isIn(neighbor / 4);
+      const bool isInside = neighbor != NoId && this->Marks[neighbor / 4] == inside;
       const bool isTriangle = this->IsOnSurface(facet);
       if (!isInside && !isTriangle &&
         (neighbor == NoId || mesh.Regions[neighbor / 4] != mesh.Regions[t]))

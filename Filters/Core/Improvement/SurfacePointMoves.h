@@ -116,6 +116,9 @@ private:
   std::vector<Id> Star;
   /** Work space for one position: the tetrahedra that it changes, and the facets around these. */
   std::vector<Id> Tetrahedra;
+  /** For each tetrahedron whether it lies inside of the cavity, or is a neighbor: see there. */
+  std::vector<Id> Marks;
+  Id LastMark = 0;
   Cavity Around;
   std::vector<Id> Outer;
   CavityFilling Filling;
