@@ -2,6 +2,8 @@
 #include "Core/Certificate/MeshCertificate.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
+#include "Core/Improvement/FlipSearch.h"
+#include "Core/Improvement/FlippableMesh.h"
 #include "Core/Improvement/SliverRemover.h"
 #include "Core/Meshes/MeshBoundary.h"
 #include "Core/Meshes/MeshInvariants.h"
@@ -346,6 +348,39 @@ TEST(SliverRemover, DiagonalOfCocircularPointsIsTurnedBetweenTwoSpheres)
   }
   EXPECT_EQ(1, flips);
   EXPECT_NEAR(angles[0], angles[1], 1e-9);
+}
+
+TEST(SliverRemover, NoRemovalOfAnEdgeIsOverlooked)
+{
+  // Edges are searched where facets show cospherical points. Here all edges are tried.
+  Id flips = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    TetMesh mesh =
+      testing_core::MakeHullMesh(testing_core::MakeRandomPoints(60, seed, seed % 2 ? 0.25 : 0.125));
+    SliverRemoverOptions options;
+    options.DihedralAngleTarget = 70.0;
+    SliverRemoverReport report;
+    do
+    {
+      ASSERT_TRUE(RemoveSlivers(mesh, options, {}, report).IsOk());
+      flips += report.Flips;
+    } while (report.Flips > 0);
+    FlippableMesh flippable(mesh, options.DihedralAngleTarget);
+    flippable.MeasureAngles(1);
+    const FlipSearch search(flippable, false);
+    for (Id t = 0; t < static_cast<Id>(mesh.Tetrahedra.size()); ++t)
+    {
+      for (int edge = 0; edge < 6 && flippable.GetAngle(t) < flippable.GetTarget(); ++edge)
+      {
+        Flip best;
+        search.TryEdge(t, edge, best);
+        EXPECT_TRUE(best.New.empty()) << t << ", " << edge;
+      }
+    }
+  }
+  EXPECT_GT(flips, 100);
 }
 
 TEST(SliverRemover, FlatTetrahedronOnTheOutsideIsPeeledOff)
