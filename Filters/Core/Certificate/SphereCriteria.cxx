@@ -25,9 +25,9 @@ bool SphereCriteria::FindInside(const std::array<Id, N>& ids, Predicate&& isInsi
 
 bool SphereCriteria::IsDelaunay(const TetrahedronIds& ids) const
 {
-  const auto [a, b, c, d] = GetCorners(this->Points, ids);
+  const std::array<Vec3, 4> v = GetCorners(this->Points, ids);
   return !this->FindInside(
-    ids, [&](Id point) { return InSphere(a, b, c, d, this->Points[point]) > 0; });
+    ids, [&](Id point) { return InSphere(v[0], v[1], v[2], v[3], this->Points[point]) > 0; });
 }
 
 bool SphereCriteria::IsDelaunay(const TriangleIds& ids) const
