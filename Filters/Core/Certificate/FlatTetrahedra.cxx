@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Certificate/FlatTetrahedra.h"
 
+#include "Core/Basics/IdLists.h"
 #include "Core/Geometry/Measures.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace cdm
@@ -59,13 +59,13 @@ private:
   void FindSharpWedges();
   void FindSharpPlaneAngles();
 
-  /** Of a region at an edge of the list, with the sum of its angles. */
+  /** The wedge of a region at an edge of the list: the angles of its tetrahedra there, summed. */
   struct Wedge
   {
     Id Edge;
     Id Region;
     double Angle;
-    /** At the same edge, or NoId. */
+    /** Another wedge at the same edge, or NoId. */
     Id Next;
   };
 
@@ -76,8 +76,8 @@ private:
   /** Structural edges with an end that a flat tetrahedron has, ascending; their ends. */
   std::vector<EdgeIds> Edges;
   std::vector<char> IsEnd;
-  /** For each point the first of these edges that does not begin at a lower one. */
-  std::vector<Id> FirstEdges;
+  /** For each point the numbers of these edges that begin at it. */
+  IdLists PointEdges;
   /** One for each point: whether two structural edges meet there at a sharp angle. */
   std::vector<char> IsSharp;
   /** Points of sharp wedges with the region of the wedge, ascending. */
@@ -112,22 +112,19 @@ void FlatTetrahedra::MarkPoints(
 
 void FlatTetrahedra::ListEdges(const std::vector<EdgeIds>& structuralEdges)
 {
+  std::vector<std::pair<Id, Id>> pointEdges;
   for (const EdgeIds& edge : structuralEdges)
   {
     if (this->IsOfFlat[edge[0]] != 0 || this->IsOfFlat[edge[1]] != 0)
     {
+      pointEdges.emplace_back(edge[0], static_cast<Id>(this->Edges.size()));
       this->Edges.push_back(edge);
       this->IsEnd[edge[0]] = this->IsEnd[edge[1]] = 1;
     }
   }
   if (!this->Edges.empty())
   {
-    this->FirstEdges.assign(this->Mesh.Points.size() + 1, 0);
-    for (const EdgeIds& edge : this->Edges)
-    {
-      ++this->FirstEdges[edge[0] + 1];
-    }
-    std::partial_sum(this->FirstEdges.begin(), this->FirstEdges.end(), this->FirstEdges.begin());
+    this->PointEdges.Build(static_cast<Id>(this->Mesh.Points.size()), pointEdges);
   }
 }
 
@@ -137,11 +134,11 @@ Id FlatTetrahedra::FindEdge(Id a, Id b) const
   if (this->IsEnd[a] != 0 && this->IsEnd[b] != 0)
   {
     const auto [first, last] = std::minmax(a, b);
-    for (Id i = this->FirstEdges[first]; i < this->FirstEdges[first + 1]; ++i)
+    for (const Id edge : this->PointEdges[first])
     {
-      if (this->Edges[i][1] == last)
+      if (this->Edges[edge][1] == last)
       {
-        return i;
+        return edge;
       }
     }
   }

@@ -274,7 +274,6 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
 {
   const TetMesh& mesh = this->Mesh.GetMesh();
   this->Tetrahedra = this->Star;
-  // Marks of cavities before are lower.
   this->Marks.resize(mesh.Tetrahedra.size(), 0);
   const Id outside = ++this->LastMark;
   const Id inside = ++this->LastMark;

@@ -116,7 +116,10 @@ private:
   std::vector<Id> Star;
   /** Work space for one position: the tetrahedra that it changes, and the facets around these. */
   std::vector<Id> Tetrahedra;
-  /** For each tetrahedron whether it lies inside of the cavity, or is a neighbor: see there. */
+  /**
+   * One for each tetrahedron: the last mark if it is in the cavity, one less if it is a neighbor that
+   * stays. Lower marks are those of earlier cavities.
+   */
   std::vector<Id> Marks;
   Id LastMark = 0;
   Cavity Around;

@@ -70,7 +70,17 @@ void BoxTree::VisitOverlaps(const Box& box, Function&& visit) const
   while (index != NoId)
   {
     const Node& node = this->Nodes[index];
-    if (node.Right != NoId)
+    if (node.Right == NoId)
+    {
+      for (Id i = node.Begin; i < node.End; ++i)
+      {
+        if (this->Boxes[i].Overlaps(box))
+        {
+          visit(this->Order[i]);
+        }
+      }
+    }
+    else
     {
       // Both children at once: a node that comes from the stack need not be tested any more.
       const bool isLeft = this->Nodes[index + 1].Bounds.Overlaps(box);
@@ -83,13 +93,6 @@ void BoxTree::VisitOverlaps(const Box& box, Function&& visit) const
       {
         index = isLeft ? index + 1 : node.Right;
         continue;
-      }
-    }
-    for (Id i = node.Begin; node.Right == NoId && i < node.End; ++i)
-    {
-      if (this->Boxes[i].Overlaps(box))
-      {
-        visit(this->Order[i]);
       }
     }
     index = size > 0 ? stack[--size] : NoId;

@@ -509,10 +509,15 @@ void AdvancingFront::CollectPointsUsed()
 
 /**
  * Appends the facets of the hull to the surface, in the order of their points: a counting sort by the
- * first one. Sorting all at once took a tenth of the time for points on a sphere.
+ * first one. Sorting all at once took a tenth of the time for points on a sphere; lists of ids for
+ * each point are slower than this, too.
  */
 void AdvancingFront::AppendHull()
 {
+  if (this->HullFacets.empty())
+  {
+    return;
+  }
   using Facet = std::pair<TriangleIds, Id>;
   std::vector<Id> ends(this->Points.size() + 1, 0);
   std::vector<Facet> facets;
@@ -523,7 +528,7 @@ void AdvancingFront::AppendHull()
     ++ends[facets.back().first[0] + 1];
   }
   std::partial_sum(ends.begin(), ends.end(), ends.begin());
-  // Of each point first the beginning, then the end.
+  // The number of each point is where its facets begin; once they are placed, it is where they end.
   std::vector<Facet> sorted(facets.size());
   for (const Facet& facet : facets)
   {
