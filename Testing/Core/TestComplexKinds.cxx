@@ -309,6 +309,23 @@ TEST(ComplexKinds, Fans)
   EXPECT_EQ(MeshComplexes(ComplexKind::Fan, 40)[0].Missed.size(), 0u);
 }
 
+/**
+ * Rounding sends walks around corners where many facets meet. They end when they come back: with
+ * each of them ten thousand steps long this one took six minutes.
+ */
+TEST(ComplexKinds, WalksAroundCorners)
+{
+  BoundaryTriangulatorOutput triangulated;
+  ASSERT_TRUE(MakePlaced(ComplexKind::Fan, 57, triangulated));
+  for (const SurfaceCriterion criterion :
+    { SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
+  {
+    bool isFulfilled = false;
+    EXPECT_LT(MeshComplex(triangulated.Surface, criterion, isFulfilled), 600u);
+    EXPECT_TRUE(isFulfilled);
+  }
+}
+
 TEST(ComplexKinds, TiltedPlates)
 {
   EXPECT_EQ(MeshComplexes(ComplexKind::TiltedPlates, 10)[0].Missed.size(), 0u);

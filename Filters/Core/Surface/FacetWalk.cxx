@@ -7,6 +7,7 @@
 #include "Core/Search/PointSearches.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace cdm
 {
@@ -49,8 +50,19 @@ bool FacetWalk::Run(Id t, Id mirrored, const Vec3& target, Landing& landing) con
   const double radius = Norm(GetCircumcenterOffset(a, b, c));
   Id current = t;
   Id previous = NoId;
+  // Rounding may send a walk around a corner for ever. Each step follows from these two triangles:
+  // the walk goes around where they are those of the last power of two (Brent's method).
+  std::pair<Id, Id> mark(NoId, NoId);
   for (int step = 0; step <= LongestWalk; ++step)
   {
+    if (mark == std::make_pair(current, previous))
+    {
+      return false;
+    }
+    if ((step & (step - 1)) == 0)
+    {
+      mark = { current, previous };
+    }
     const TriangleIds& ids = surface.GetTriangle(current).Points;
     Id worst = NoId;
     double worstSide = 0.0;

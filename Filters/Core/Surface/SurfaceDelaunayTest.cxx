@@ -19,14 +19,53 @@ constexpr double Epsilon = std::numeric_limits<double>::epsilon();
 /** The search in a sphere stops after this many points. */
 constexpr std::size_t EnoughPoints = 64;
 
-/** Collects the points in and on the smallest sphere through a triangle. */
+/** The plane of a triangle, and on which side of it a box surely lies. */
+class TrianglePlane
+{
+public:
+  TrianglePlane(const Vec3& a, const Vec3& b, const Vec3& c)
+    : Origin(a), Normal(Cross(b - a, c - a)), Tolerance(1e-13 * Norm(b - a) * Norm(c - a))
+  {
+  }
+
+  /** False if any point of the box may lie on the plane or behind it. */
+  bool IsInFront(const Box& box) const { return this->IsBeyond(box, 1.0); }
+
+  /** False if any point of the box may lie on the plane or in front of it. */
+  bool IsBehind(const Box& box) const { return this->IsBeyond(box, -1.0); }
+
+private:
+  bool IsBeyond(const Box& box, double sign) const
+  {
+    double height = 0.0;
+    double size = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double slope = sign * this->Normal[axis];
+      const double nearest = slope > 0.0 ? box.Low[axis] : box.High[axis];
+      height += slope * (nearest - this->Origin[axis]);
+      size += std::abs(nearest) + std::abs(this->Origin[axis]);
+    }
+    return height > this->Tolerance * size;
+  }
+
+  Vec3 Origin;
+  Vec3 Normal;
+  /** Far more than rounding leaves of a distance from the plane, in units of the normal. */
+  double Tolerance;
+};
+
+/**
+ * Collects the points in and on the smallest sphere through a triangle. Where there are many, and
+ * all on one side, only those in the plane can still matter, and one that is deeper.
+ */
 class SmallestSphereVisitor
 {
 public:
   SmallestSphereVisitor(const std::vector<Vec3>& points, const TriangleIds& triangle,
     bool isOneEnough, SurfaceDelaunayTest::Result& result)
     : IsOneEnough(isOneEnough), Triangle(triangle), A(points[triangle[0]]), B(points[triangle[1]]),
-      C(points[triangle[2]]), Found(result)
+      C(points[triangle[2]]), Plane(A, B, C), Found(result)
   {
     this->Center = this->A + GetCircumcenterOffset(this->A, this->B, this->C);
     this->Radius = Distance(this->Center, this->A);
@@ -49,8 +88,9 @@ public:
   double Order(const Box& box) const
   {
     const double distance = box.GetSquaredDistance(this->Center);
-    if (this->Found.InsideSmallestSphere.size() >= EnoughPoints &&
-      (this->IsOneEnough || this->IsCoplanarInside || (this->IsFrontInside && this->IsBackInside)))
+    if (this->HasEnough() &&
+      (this->IsOneEnough || this->IsCoplanarInside || (this->IsFrontInside && this->IsBackInside) ||
+        (distance >= this->Deepest && (this->Plane.IsInFront(box) || this->Plane.IsBehind(box)))))
     {
       return Infinity;
     }
@@ -62,6 +102,9 @@ public:
   }
 
   bool IsNeedle() const { return this->Form.has_value(); }
+
+  /** Whether there are so many points inside that some may have been left out. */
+  bool HasEnough() const { return this->Found.InsideSmallestSphere.size() >= EnoughPoints; }
 
   /** Beyond it nothing matters. */
   Box GetReach() const
@@ -129,6 +172,7 @@ private:
   Vec3 A;
   Vec3 B;
   Vec3 C;
+  TrianglePlane Plane;
   /** The sphere in twice the working precision, for needles. */
   std::optional<SphereForm> Form;
   /**
@@ -142,6 +186,56 @@ private:
 };
 
 /**
+ * Finds the point in front of a triangle whose lambda is smallest: starts with any point in front,
+ * and looks for one inside of the sphere through it.
+ */
+class SmallestLambdaVisitor
+{
+public:
+  SmallestLambdaVisitor(const std::vector<Vec3>& points, const TriangleIds& triangle, Id front)
+    : Triangle(triangle), A(points[triangle[0]]), B(points[triangle[1]]), C(points[triangle[2]]),
+      Plane(A, B, C), Best(front), D(points[front]), Form(A, B, C, D)
+  {
+  }
+
+  double Order(const Box& box) const
+  {
+    return this->Form.MayTouch(box.Low, box.High) && !this->Plane.IsBehind(box)
+      ? box.GetSquaredDistance(this->A)
+      : Infinity;
+  }
+
+  void Visit(Id id, const Vec3& q)
+  {
+    if (id == this->Triangle[0] || id == this->Triangle[1] || id == this->Triangle[2] ||
+      id == this->Best)
+    {
+      return;
+    }
+    const int side = this->Form.GetSide(q);
+    if (side >= 0 && Orientation(this->A, this->B, this->C, q) > 0 &&
+      (side > 0 || InSphere(this->A, this->B, this->C, this->D, q) > 0))
+    {
+      this->Best = id;
+      this->D = q;
+      this->Form = SphereForm(this->A, this->B, this->C, q);
+    }
+  }
+
+  Id GetBest() const { return this->Best; }
+
+private:
+  TriangleIds Triangle;
+  Vec3 A;
+  Vec3 B;
+  Vec3 C;
+  TrianglePlane Plane;
+  Id Best;
+  Vec3 D;
+  SphereForm Form;
+};
+
+/**
  * Whether the sphere through a triangle and a point in front of it, of smallest lambda, holds a
  * point behind the triangle, inside or on it.
  */
@@ -152,13 +246,8 @@ public:
   OtherSideVisitor(const std::vector<Vec3>& points, const TriangleIds& triangle, Id front,
     const Vec3& center, double radius)
     : Triangle(triangle), A(points[triangle[0]]), B(points[triangle[1]]), C(points[triangle[2]]),
-      D(points[front]), Front(front), Center(center), SquaredRadius(radius * radius)
+      D(points[front]), Front(front), Center(center), SquaredRadius(radius * radius), Plane(A, B, C)
   {
-    const Vec3 u = this->B - this->A;
-    const Vec3 v = this->C - this->A;
-    this->Normal = Cross(u, v);
-    // Far more than rounding leaves of a distance from the plane, in units of the normal.
-    this->Tolerance = 1e-13 * Norm(u) * Norm(v);
     if (!this->IsBall())
     {
       this->Form.emplace(this->A, this->B, this->C, this->D);
@@ -170,7 +259,7 @@ public:
     const bool mayHold = this->IsBall()
       ? box.GetSquaredDistance(this->Center) <= this->SquaredRadius
       : this->Form->MayTouch(box.Low, box.High);
-    return !this->IsFound && mayHold && !this->IsInFront(box) ? 0.0 : Infinity;
+    return !this->IsFound && mayHold && !this->Plane.IsInFront(box) ? 0.0 : Infinity;
   }
 
   Box GetReach() const
@@ -197,20 +286,6 @@ public:
 private:
   bool IsBall() const { return this->SquaredRadius < Infinity; }
 
-  /** False if any point of the box may lie behind the triangle. */
-  bool IsInFront(const Box& box) const
-  {
-    double height = 0.0;
-    double size = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const double nearest = this->Normal[axis] > 0.0 ? box.Low[axis] : box.High[axis];
-      height += this->Normal[axis] * (nearest - this->A[axis]);
-      size += std::abs(nearest) + std::abs(this->A[axis]);
-    }
-    return height > this->Tolerance * size;
-  }
-
   TriangleIds Triangle;
   Vec3 A;
   Vec3 B;
@@ -219,8 +294,7 @@ private:
   Id Front;
   Vec3 Center;
   double SquaredRadius;
-  Vec3 Normal;
-  double Tolerance;
+  TrianglePlane Plane;
   /** The sphere in twice the working precision, where there is no ball. */
   std::optional<SphereForm> Form;
 };
@@ -267,6 +341,12 @@ void SurfaceDelaunayTest::Run(
     {
       best = candidate;
     }
+  }
+  if (visitor.HasEnough())
+  {
+    SmallestLambdaVisitor smallestLambda(this->Points, turned, best);
+    this->Octree.Visit(smallestLambda);
+    best = smallestLambda.GetBest();
   }
   const Vec3 normal = Cross(b - a, c - a);
   const Vec3 arm = this->Points[best] - a;

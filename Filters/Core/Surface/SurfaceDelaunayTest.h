@@ -34,7 +34,7 @@ public:
     bool IsDelaunay = false;
     /**
      * Points strictly inside of the smallest sphere through the triangle, the deepest one first. If
-     * there are many and the triangle is not Delaunay, only some of those near its center.
+     * there are many, only some of those near its center.
      */
     std::vector<Id> InsideSmallestSphere;
     /** Points on that sphere, but not in the plane of the triangle. */

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The double sphere test of triangles (SurfaceDelaunayTest.h) beside the definition, with the exact
+// predicates on all points.
+#include "Core/Geometry/Measures.h"
+#include "Core/Geometry/Predicates.h"
+#include "Core/Search/PointOctree.h"
+#include "Core/Surface/SurfaceDelaunayTest.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+#include <random>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+using namespace cdm;
+
+namespace
+{
+/** How the points of a test lie. */
+enum class Shape : int
+{
+  Cube,
+  /** Integer coordinates: many points on spheres, circles and planes. */
+  Grid,
+  /** z = x^2 + y^2: spheres through narrow triangles hold most points, all of them on one side. */
+  Paraboloid,
+  /** A plane but for its thousandth part: needles, and spheres larger than all. */
+  Sheet,
+  /** A sheet, and a few points on its other side. */
+  TwoSheets,
+  NumberOfShapes
+};
+
+std::vector<Vec3> MakePoints(Shape shape, int count, std::mt19937& random)
+{
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::uniform_int_distribution<int> step(0, 6);
+  std::set<std::tuple<double, double, double>> points;
+  while (static_cast<int>(points.size()) < count)
+  {
+    const double x = unit(random);
+    const double y = unit(random);
+    const double z = unit(random);
+    switch (shape)
+    {
+      case Shape::Grid:
+        points.insert({ step(random), step(random), step(random) });
+        break;
+      case Shape::Paraboloid:
+        points.insert({ x, y, x * x + y * y });
+        break;
+      case Shape::Sheet:
+        points.insert({ x, y, 1e-3 * z });
+        break;
+      case Shape::TwoSheets:
+        points.insert({ x, y, points.size() < 5 ? -0.1 : 1e-3 * z });
+        break;
+      default:
+        points.insert({ x, y, z });
+        break;
+    }
+  }
+  std::vector<Vec3> list;
+  for (const auto& [x, y, z] : points)
+  {
+    list.push_back({ x, y, z });
+  }
+  std::shuffle(list.begin(), list.end(), random);
+  return list;
+}
+
+/** The definition, cocircular points left aside. */
+bool IsStronglyDelaunay(const std::vector<Vec3>& points, const TriangleIds& t)
+{
+  const Vec3& a = points[t[0]];
+  const Vec3& b = points[t[1]];
+  const Vec3& c = points[t[2]];
+  Id front = NoId;
+  for (Id id = 0; id < static_cast<Id>(points.size()); ++id)
+  {
+    const int side = Orientation(a, b, c, points[id]);
+    if (side == 0 && id != t[0] && id != t[1] && id != t[2] &&
+      InEquatorialSphere(a, b, c, points[id]) > 0)
+    {
+      return false;
+    }
+    if (side > 0 && (front == NoId || InSphere(a, b, c, points[front], points[id]) > 0))
+    {
+      front = id;
+    }
+  }
+  return front == NoId ||
+    std::none_of(points.begin(), points.end(),
+      [&](const Vec3& q)
+      { return Orientation(a, b, c, q) < 0 && InSphere(a, b, c, points[front], q) >= 0; });
+}
+
+/** What the test says of one triangle, beside the definition. Returns the points in its sphere. */
+std::size_t CheckTriangle(const std::vector<Vec3>& points, const SurfaceDelaunayTest& test,
+  const TriangleIds& t, SurfaceDelaunayTest::Result& found)
+{
+  std::vector<Id> inside;
+  for (Id id = 0; id < static_cast<Id>(points.size()); ++id)
+  {
+    if (id != t[0] && id != t[1] && id != t[2] &&
+      InEquatorialSphere(points[t[0]], points[t[1]], points[t[2]], points[id]) > 0)
+    {
+      inside.push_back(id);
+    }
+  }
+  test.Run(t, found, true);
+  EXPECT_EQ(found.IsDelaunay, inside.empty() && IsStronglyDelaunay(points, t));
+  test.Run(t, found);
+  EXPECT_EQ(found.IsDelaunay, IsStronglyDelaunay(points, t));
+  EXPECT_EQ(found.InsideSmallestSphere.empty(), inside.empty());
+  std::vector<Id> listed = found.InsideSmallestSphere;
+  std::sort(listed.begin(), listed.end());
+  EXPECT_TRUE(std::includes(inside.begin(), inside.end(), listed.begin(), listed.end()));
+  EXPECT_EQ(std::adjacent_find(listed.begin(), listed.end()), listed.end());
+  if (inside.size() < 64)
+  {
+    EXPECT_EQ(listed, inside);
+  }
+  return inside.size();
+}
+} // namespace
+
+TEST(StronglyDelaunay, IsWhatTheDefinitionSays)
+{
+  for (int shape = 0; shape < static_cast<int>(Shape::NumberOfShapes); ++shape)
+  {
+    int numberOfGood = 0;
+    int numberOfLarge = 0;
+    for (unsigned seed = 1; seed <= 6; ++seed)
+    {
+      SCOPED_TRACE("shape " + std::to_string(shape) + ", seed " + std::to_string(seed));
+      std::mt19937 random(seed);
+      const std::vector<Vec3> points =
+        MakePoints(static_cast<Shape>(shape), seed % 2 == 0 ? 300 : 60, random);
+      PointOctree octree;
+      octree.Insert(points);
+      const SurfaceDelaunayTest test(points, octree);
+      SurfaceDelaunayTest::Result found;
+      // Of a triangle of points that are near to each other more is to be told.
+      std::vector<Id> nearest(points.size());
+      for (int i = 0; i < 400; ++i)
+      {
+        std::iota(nearest.begin(), nearest.end(), 0);
+        const Vec3 center = points[random() % points.size()];
+        const std::size_t reach = i % 2 == 0 ? 5 : points.size();
+        std::partial_sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(reach),
+          nearest.end(),
+          [&](Id p, Id q)
+          { return SquaredNorm(points[p] - center) < SquaredNorm(points[q] - center); });
+        std::shuffle(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(reach), random);
+        const TriangleIds t{ nearest[0], nearest[1], nearest[2] };
+        if (AreCollinear(points[t[0]], points[t[1]], points[t[2]]))
+        {
+          continue;
+        }
+        numberOfLarge += CheckTriangle(points, test, t, found) >= 64 ? 1 : 0;
+        numberOfGood += found.IsDelaunay ? 1 : 0;
+      }
+    }
+    EXPECT_GT(numberOfGood, 0) << "shape " << shape;
+    EXPECT_GT(numberOfLarge, 0) << "shape " << shape;
+    std::printf("shape %d: %d triangles are strongly Delaunay, %d hold 64 points or more\n", shape,
+      numberOfGood, numberOfLarge);
+  }
+}
+
+/** All points lie on one side, and most of them in the smallest sphere. */
+TEST(StronglyDelaunay, TrianglesOfAHullWithLargeSpheres)
+{
+  std::mt19937 random(1);
+  std::vector<Vec3> points = MakePoints(Shape::Cube, 2000, random);
+  // Three points near a line below all others.
+  const auto first = static_cast<Id>(points.size());
+  points.insert(points.end(), { { -3.0, 0.0, -2.0 }, { 0.0, 0.01, -2.0 }, { 3.0, 0.0, -2.0 } });
+  PointOctree octree;
+  octree.Insert(points);
+  const SurfaceDelaunayTest test(points, octree);
+  SurfaceDelaunayTest::Result found;
+  EXPECT_GT(CheckTriangle(points, test, { first, first + 1, first + 2 }, found), 900u);
+  EXPECT_TRUE(found.IsDelaunay);
+  EXPECT_LT(found.InsideSmallestSphere.size(), 200u);
+  EXPECT_GT(CheckTriangle(points, test, { first + 2, first + 1, first }, found), 900u);
+  EXPECT_TRUE(found.IsDelaunay);
+}
