@@ -584,46 +584,48 @@ bool SurfaceRefinement::SplitSegment(Id segment, Id encroaching)
   return false;
 }
 
+/**
+ * Of the segments of a bad triangle the one that is most encroached on, by any point: facets get
+ * points where their outline is fine enough. Those on the sphere count if there is none inside.
+ */
 SurfaceRefinement::EncroachedEdge SurfaceRefinement::FindEncroachedEdge(Id t) const
 {
   EncroachedEdge best;
   double bestDepth = Infinity;
-  const auto consider = [&](Id segment, const std::vector<Id>& points)
+  const auto consider = [&](Id segment, Id point)
   {
     const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
     const Vec3& a = this->Points[ends[0]];
     const Vec3& b = this->Points[ends[1]];
-    const Vec3 middle = 0.5 * (a + b);
-    const double unit = 1.0 / SquaredNorm(b - a);
-    for (Id point : points)
+    const double distance = Distance(this->Points[point], 0.5 * (a + b));
+    const double depth = distance / Distance(a, b);
+    if (point != ends[0] && point != ends[1] && depth < bestDepth &&
+      InDiametralSphere(a, b, this->Points[point]) >= 0)
     {
-      const double depth = unit * SquaredNorm(this->Points[point] - middle);
-      if (point != ends[0] && point != ends[1] && depth < bestDepth &&
-        InDiametralSphere(a, b, this->Points[point]) >= 0)
-      {
-        best = { segment, point, Distance(this->Points[point], middle) };
-        bestDepth = depth;
-      }
+      best = { segment, point, distance };
+      bestDepth = depth;
     }
   };
   for (int i = 0; i < 3; ++i)
   {
     const Id segment = this->Surface->GetSegmentAt(t, i);
-    if (segment != NoId)
+    if (segment == NoId)
     {
-      consider(segment, this->Found.InsideSmallestSphere);
-      consider(segment, this->Found.OnSmallestSphere);
-      consider(segment, this->Found.Cocircular);
+      continue;
     }
-  }
-  if (best.Segment == NoId)
-  {
-    for (int i = 0; i < 3; ++i)
+    DiametralSphereVisitor visitor(this->Points, this->Surface->GetSegment(segment).Points);
+    this->Octree.Visit(visitor, visitor.GetReach());
+    if (visitor.Found != NoId)
     {
-      const Id segment = this->Surface->GetSegmentAt(t, i);
-      if (segment != NoId)
+      consider(segment, visitor.Found);
+      continue;
+    }
+    consider(segment, this->Surface->GetApex(3 * t + i));
+    for (const auto* points : { &this->Found.OnSmallestSphere, &this->Found.Cocircular })
+    {
+      for (Id point : *points)
       {
-        consider(segment, { this->Surface->GetApex(3 * t + i) });
+        consider(segment, point);
       }
     }
   }
@@ -987,9 +989,8 @@ void SurfaceRefinement::Process(Id t, QueueState state)
   // Whatever is done now, t is looked at again: the new point need not have changed it.
   this->IsBad[t] = 0;
   const EncroachedEdge edge = this->FindEncroachedEdge(t);
-  if (edge.Segment != NoId && state == QueueState::First &&
-    this->Options.Criterion != SurfaceCriterion::Delaunay && !this->AreEdgesFirst() &&
-    !this->IsRescuing())
+  if (edge.Segment != NoId && state == QueueState::First && this->IsStrong() &&
+    !this->AreEdgesFirst())
   {
     this->Enqueue(t, QueueState::Edge, edge.Distance);
     return;
