@@ -291,7 +291,7 @@ TEST(ComplexKinds, RectanglesFarFromTheOriginStayFlat)
 /** Chains of ever smaller triangles at a corner: edges before all triangles lead past them. */
 TEST(ComplexKinds, EdgesFirstWhereTrianglesDoNotEnd)
 {
-  for (const std::uint64_t seed : { 5611, 22992 })
+  for (const std::uint64_t seed : { 5611, 11098, 22992 })
   {
     SCOPED_TRACE("seed " + std::to_string(seed));
     BoundaryTriangulatorOutput triangulated;
@@ -393,7 +393,7 @@ TEST(ComplexKinds, StacksAreRefinedFromTheirTriangles)
       bool isFulfilled = false;
       const std::size_t points = MeshComplex(triangulated.Surface, criterion, isFulfilled);
       EXPECT_TRUE(isFulfilled) << "criterion " << static_cast<int>(criterion);
-      EXPECT_LT(points, triangulated.Surface.Triangles.size() == 7 ? 500u : 10000u);
+      EXPECT_LT(points, triangulated.Surface.Triangles.size() == 7 ? 600u : 10000u);
     }
   }
 }
