@@ -29,9 +29,9 @@ enum class Shape : int
   Grid,
   /** z = x^2 + y^2: spheres through narrow triangles hold most points, all of them on one side. */
   Paraboloid,
-  /** A plane but for its thousandth part: needles, and spheres larger than all. */
+  /** A plane but for a millionth: spheres that are almost half spaces. */
   Sheet,
-  /** A sheet, and a few points on its other side. */
+  /** A thicker sheet, and a few points on its other side. */
   TwoSheets,
   NumberOfShapes
 };
@@ -55,7 +55,7 @@ std::vector<Vec3> MakePoints(Shape shape, int count, std::mt19937& random)
         points.insert({ x, y, x * x + y * y });
         break;
       case Shape::Sheet:
-        points.insert({ x, y, 1e-3 * z });
+        points.insert({ x, y, 1e-6 * z });
         break;
       case Shape::TwoSheets:
         points.insert({ x, y, points.size() < 5 ? -0.1 : 1e-3 * z });
@@ -100,6 +100,28 @@ bool IsStronglyDelaunay(const std::vector<Vec3>& points, const TriangleIds& t)
       { return Orientation(a, b, c, q) < 0 && InSphere(a, b, c, points[front], q) >= 0; });
 }
 
+/** A triangle stays strongly Delaunay where the proof says so. Returns whether the proof is flat. */
+bool CheckProof(const std::vector<Vec3>& points, const TriangleIds& t,
+  const SurfaceDelaunayTest::SphereProof& proof, std::mt19937& random)
+{
+  const Vec3& a = points[t[0]];
+  const Vec3& b = points[t[1]];
+  const Vec3& c = points[t[2]];
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  for (const double height : { 1.0, 1e-3, 1e-6, 0.0 })
+  {
+    std::vector<Vec3> more = points;
+    const double x = unit(random);
+    const double y = unit(random);
+    more.push_back(a + x * (b - a) + y * (c - a) + height * unit(random) * Cross(b - a, c - a));
+    const Vec3& q = more.back();
+    const bool isOutside = Distance(q, proof.Center) > proof.Radius ||
+      (proof.IsFlat && Orientation(a, b, c, proof.Point) * InSphere(a, b, c, proof.Point, q) < 0);
+    EXPECT_TRUE(!isOutside || IsStronglyDelaunay(more, t));
+  }
+  return proof.IsFlat;
+}
+
 /** What the test says of one triangle, beside the definition. Returns the points in its sphere. */
 std::size_t CheckTriangle(const std::vector<Vec3>& points, const SurfaceDelaunayTest& test,
   const TriangleIds& t, SurfaceDelaunayTest::Result& found)
@@ -136,6 +158,7 @@ TEST(StronglyDelaunay, IsWhatTheDefinitionSays)
   {
     int numberOfGood = 0;
     int numberOfLarge = 0;
+    int numberOfFlat = 0;
     for (unsigned seed = 1; seed <= 6; ++seed)
     {
       SCOPED_TRACE("shape " + std::to_string(shape) + ", seed " + std::to_string(seed));
@@ -165,12 +188,16 @@ TEST(StronglyDelaunay, IsWhatTheDefinitionSays)
         }
         numberOfLarge += CheckTriangle(points, test, t, found) >= 64 ? 1 : 0;
         numberOfGood += found.IsDelaunay ? 1 : 0;
+        numberOfFlat += found.IsDelaunay && CheckProof(points, t, found.Proof, random) ? 1 : 0;
       }
     }
     EXPECT_GT(numberOfGood, 0) << "shape " << shape;
     EXPECT_GT(numberOfLarge, 0) << "shape " << shape;
-    std::printf("shape %d: %d triangles are strongly Delaunay, %d hold 64 points or more\n", shape,
-      numberOfGood, numberOfLarge);
+    EXPECT_TRUE(numberOfFlat > 0 || shape != static_cast<int>(Shape::Sheet));
+    std::printf(
+      "shape %d: %d triangles are strongly Delaunay, %d by almost a half space, %d hold 64 "
+      "points or more\n",
+      shape, numberOfGood, numberOfFlat, numberOfLarge);
   }
 }
 

@@ -378,7 +378,7 @@ BallIndex ConformingMesher::FindProofs() const
     test.Run(this->Surface.Triangles[t], result);
     if (!result.InsideSmallestSphere.empty())
     {
-      proofs.Set(static_cast<Id>(t), result.ProofCenter, result.ProofRadius);
+      proofs.Set(static_cast<Id>(t), result.Proof.Center, result.Proof.Radius);
     }
   }
   return proofs;

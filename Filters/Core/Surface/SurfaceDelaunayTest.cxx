@@ -16,6 +16,8 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double Epsilon = std::numeric_limits<double>::epsilon();
 
+/** Spheres with radii above this, in edges of the triangle, are almost half spaces. */
+constexpr double FlatRadius = 1e3;
 /** The search in a sphere stops after this many points. */
 constexpr std::size_t EnoughPoints = 64;
 
@@ -312,12 +314,13 @@ void SurfaceDelaunayTest::Run(
   std::sort(result.Cocircular.begin(), result.Cocircular.end());
   // The proof may be a little larger than the empty sphere: that costs a needless test at most.
   constexpr double Inflation = 1.0 + 1e-6;
-  result.ProofCenter = visitor.Center;
-  result.ProofRadius = (visitor.Radius + 2.0 * visitor.Slack) * Inflation;
-  if (!std::isfinite(result.ProofRadius))
+  result.Proof.Center = visitor.Center;
+  result.Proof.Radius = (visitor.Radius + 2.0 * visitor.Slack) * Inflation;
+  if (!std::isfinite(result.Proof.Radius))
   {
-    result.ProofRadius = Infinity;
+    result.Proof.Radius = Infinity;
   }
+  result.Proof.IsFlat = false;
   result.IsDelaunay = !visitor.IsCoplanarInside &&
     !(visitor.IsFrontInside && visitor.IsBackInside) &&
     !(visitor.IsFrontInside && visitor.IsBackOn) && !(visitor.IsFrontOn && visitor.IsBackInside) &&
@@ -366,8 +369,10 @@ void SurfaceDelaunayTest::Run(
   result.IsDelaunay = !otherSide.IsFound;
   if (result.IsDelaunay)
   {
-    result.ProofCenter = std::isfinite(radius) ? center : visitor.Center;
-    result.ProofRadius = std::isfinite(radius) ? radius : Infinity;
+    result.Proof.Center = std::isfinite(radius) ? center : visitor.Center;
+    result.Proof.Radius = std::isfinite(radius) ? radius : Infinity;
+    result.Proof.IsFlat = !(radius < FlatRadius * (Norm(b - a) + Norm(c - a)));
+    result.Proof.Point = this->Points[best];
   }
 }
 } // namespace cdm

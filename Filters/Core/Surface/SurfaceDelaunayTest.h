@@ -28,6 +28,21 @@ namespace cdm
 class SurfaceDelaunayTest
 {
 public:
+  /** An empty sphere through a strongly Delaunay triangle. */
+  struct SphereProof
+  {
+    /** A ball that contains it. The triangle stays Delaunay until a point is added within. */
+    Vec3 Center;
+    double Radius = 0.0;
+    /**
+     * Whether the sphere is almost a half space, so that the ball holds many points that are not in
+     * the sphere; and a fourth point on it. As long as points are added outside of the sphere
+     * through the triangle and this point, the triangle stays Delaunay as well.
+     */
+    bool IsFlat = false;
+    Vec3 Point;
+  };
+
   struct Result
   {
     /** Strongly Delaunay, if the Cocircular points are left aside. */
@@ -41,12 +56,7 @@ public:
     std::vector<Id> OnSmallestSphere;
     /** Points on the circumcircle, ascending. */
     std::vector<Id> Cocircular;
-    /**
-     * A ball that contains an empty sphere through the triangle. The answer stays valid until a
-     * point is added within.
-     */
-    Vec3 ProofCenter;
-    double ProofRadius = 0.0;
+    SphereProof Proof;
     /**
      * Whether the triangle is such a needle that its sphere may hold any point: the search took
      * long.

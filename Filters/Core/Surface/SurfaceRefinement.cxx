@@ -240,7 +240,7 @@ void SurfaceRefinement::MovePoints(const std::vector<std::pair<Id, Vec3>>& moves
   {
     if (isAnyMoved(this->Surface->GetTriangle(t).Points))
     {
-      this->Proofs.Remove(t);
+      this->RemoveProof(t);
       this->Enqueue(t);
     }
   }
@@ -441,7 +441,7 @@ bool SurfaceRefinement::TestAll(const ExecutionContext& context)
   this->AreAllTested = true;
   const auto count = static_cast<std::size_t>(this->Surface->GetNumberOfTriangles());
   std::vector<char> isGood(count, 0);
-  std::vector<std::pair<Vec3, double>> proofs(count);
+  std::vector<SurfaceDelaunayTest::SphereProof> proofs(count);
   const ParallelLoopOptions options{ context.GetNumberOfThreads(), 1024 };
   if (!ParallelLoop(count, options, context, "Testing the surface",
         [&](std::size_t begin, std::size_t end, std::size_t)
@@ -450,7 +450,7 @@ bool SurfaceRefinement::TestAll(const ExecutionContext& context)
           for (std::size_t t = begin; t < end; ++t)
           {
             isGood[t] = this->IsGood(static_cast<Id>(t), found);
-            proofs[t] = { found.ProofCenter, found.ProofRadius };
+            proofs[t] = found.Proof;
           }
         }))
   {
@@ -460,8 +460,7 @@ bool SurfaceRefinement::TestAll(const ExecutionContext& context)
   {
     if (isGood[t] != 0)
     {
-      this->Proofs.Set(static_cast<Id>(t), proofs[t].first, proofs[t].second);
-      this->IsProven[t] = 1;
+      this->SetProof(static_cast<Id>(t), proofs[t]);
     }
   }
   return true;
@@ -529,14 +528,57 @@ Id SurfaceRefinement::AddPoint(
   return point;
 }
 
+/** Remembers that a triangle is good, until a point comes into its sphere. */
+void SurfaceRefinement::SetProof(Id t, const SurfaceDelaunayTest::SphereProof& proof)
+{
+  this->IsProven[t] = 1;
+  this->Proofs.Set(t, proof.Center, proof.Radius);
+  if (proof.IsFlat)
+  {
+    this->FlatProofs[t] = proof.Point;
+  }
+  else
+  {
+    this->FlatProofs.erase(t);
+  }
+}
+
+void SurfaceRefinement::RemoveProof(Id t)
+{
+  this->Proofs.Remove(t);
+  this->FlatProofs.erase(t);
+}
+
+/**
+ * Whether a point within the ball of a proof is certainly outside of the sphere of the proof. A
+ * point of long, thin sheets reaches the balls of some forty triangles, nearly always in vain.
+ */
+bool SurfaceRefinement::IsOutsideOfFlatProof(Id t, const Vec3& position) const
+{
+  const auto proof = this->FlatProofs.find(t);
+  if (proof == this->FlatProofs.end() || this->IsProven[t] == 0)
+  {
+    return false;
+  }
+  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+  const Vec3& a = this->Points[ids[0]];
+  const Vec3& b = this->Points[ids[1]];
+  const Vec3& c = this->Points[ids[2]];
+  const int side = Orientation(a, b, c, proof->second);
+  return side * InSphere(a, b, c, proof->second, position) < 0;
+}
+
 /** Puts triangles and edges on which a new point may encroach into the queues again. */
 void SurfaceRefinement::TestAgainAround(const Vec3& position)
 {
   this->Proofs.Find(position, this->Reached);
   for (Id t : this->Reached)
   {
-    this->Proofs.Remove(t);
-    this->Enqueue(t);
+    if (!this->IsOutsideOfFlatProof(t, position))
+    {
+      this->RemoveProof(t);
+      this->Enqueue(t);
+    }
   }
   if (this->AreEdgesTested())
   {
@@ -586,9 +628,11 @@ bool SurfaceRefinement::SplitSegment(Id segment, Id encroaching)
 
 /**
  * Of the segments of a bad triangle the one that is most encroached on, by any point: facets get
- * points where their outline is fine enough. Those on the sphere count if there is none inside.
+ * points where their outline is fine enough. Points on the sphere of an edge are looked for among
+ * what was found on the triangle's sphere, if that is given.
  */
-SurfaceRefinement::EncroachedEdge SurfaceRefinement::FindEncroachedEdge(Id t) const
+SurfaceRefinement::EncroachedEdge SurfaceRefinement::FindEncroachedEdge(
+  Id t, const SurfaceDelaunayTest::Result* found) const
 {
   EncroachedEdge best;
   double bestDepth = Infinity;
@@ -618,14 +662,16 @@ SurfaceRefinement::EncroachedEdge SurfaceRefinement::FindEncroachedEdge(Id t) co
     if (visitor.Found != NoId)
     {
       consider(segment, visitor.Found);
-      continue;
     }
-    consider(segment, this->Surface->GetApex(3 * t + i));
-    for (const auto* points : { &this->Found.OnSmallestSphere, &this->Found.Cocircular })
+    else if (found != nullptr)
     {
-      for (Id point : *points)
+      consider(segment, this->Surface->GetApex(3 * t + i));
+      for (const auto* points : { &found->OnSmallestSphere, &found->Cocircular })
       {
-        consider(segment, point);
+        for (Id point : *points)
+        {
+          consider(segment, point);
+        }
       }
     }
   }
@@ -947,12 +993,19 @@ void SurfaceRefinement::Process(Id t, QueueState state)
 {
   Id segment = NoId;
   const bool isProven = this->IsProven[t] != 0;
-  if (isProven || this->IsGood(t, this->Found))
+  // Points only come: a triangle that has waited for the split of an edge is bad as long as the
+  // criterion is the same. Tests of needles are long.
+  EncroachedEdge edge;
+  if (state == QueueState::Edge && !this->IsRescuing())
+  {
+    edge = this->FindEncroachedEdge(t, nullptr);
+  }
+  const bool isTested = edge.Segment == NoId;
+  if (isTested && (isProven || this->IsGood(t, this->Found)))
   {
     if (!isProven)
     {
-      this->Proofs.Set(t, this->Found.ProofCenter, this->Found.ProofRadius);
-      this->IsProven[t] = 1;
+      this->SetProof(t, this->Found.Proof);
     }
     if (!this->IsRescuing() && this->FindTooCoarse(t, segment))
     {
@@ -973,8 +1026,8 @@ void SurfaceRefinement::Process(Id t, QueueState state)
     }
     return;
   }
-  this->NumberOfNeedles += !isProven && this->Found.IsNeedle ? 1 : 0;
-  this->Proofs.Remove(t);
+  this->NumberOfNeedles += isTested && this->Found.IsNeedle ? 1 : 0;
+  this->RemoveProof(t);
   this->CollectIncidences();
   if (this->ResolveByFlip(t))
   {
@@ -988,9 +1041,8 @@ void SurfaceRefinement::Process(Id t, QueueState state)
   }
   // Whatever is done now, t is looked at again: the new point need not have changed it.
   this->IsBad[t] = 0;
-  const EncroachedEdge edge = this->FindEncroachedEdge(t);
-  if (edge.Segment != NoId && state == QueueState::First && this->IsStrong() &&
-    !this->AreEdgesFirst())
+  edge = isTested ? this->FindEncroachedEdge(t, &this->Found) : edge;
+  if (edge.Segment != NoId && state == QueueState::First && !this->AreEdgesFirst())
   {
     this->Enqueue(t, QueueState::Edge, edge.Distance);
     return;

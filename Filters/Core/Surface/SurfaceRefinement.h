@@ -29,6 +29,7 @@
 #include "Core/Surface/SurfaceIncidences.h"
 
 #include <memory>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -167,11 +168,9 @@ private:
    * split: what edges need is needed anyway, and points in facets then match those on edges. In
    * thin parts that saves up to 40 % of the points.
    *
-   * Edges of triangles whose smallest spheres have to be empty are split in the order of how close
-   * the encroaching point is to the edge's middle, whatever the order of the triangles. That saves
-   * up to 47 % of the points (2.5 % in the mean), and makes rotated surfaces need as many points
-   * within 5 %. For the Delaunay criterion it would save as much. But then all points in a sphere
-   * have to be searched, and needles, tested after each split, take five times as long.
+   * Edges are split in the order of how close the encroaching point is to the edge's middle,
+   * whatever the order of the triangles. That saves up to 47 % of the points (2.5 % in the mean),
+   * and makes rotated surfaces need as many points within 5 %.
    */
   enum class QueueState : char
   {
@@ -236,7 +235,7 @@ private:
   bool FindTooCoarse(Id t, Id& segment) const;
 
   /** The edge of a bad triangle that is encroached on most, or none. */
-  EncroachedEdge FindEncroachedEdge(Id t) const;
+  EncroachedEdge FindEncroachedEdge(Id t, const SurfaceDelaunayTest::Result* found) const;
 
   // Each returns true if it has changed the surface.
   bool ResolveByFlip(Id t);
@@ -246,6 +245,9 @@ private:
 
   void Legalize(std::vector<Id>& uses);
   Id AddPoint(const Vec3& position, const PointParents& parents, Id facet, Id inputEdge);
+  void SetProof(Id t, const SurfaceDelaunayTest::SphereProof& proof);
+  void RemoveProof(Id t);
+  bool IsOutsideOfFlatProof(Id t, const Vec3& position) const;
   void TestAgainAround(const Vec3& position);
   void Touch(Id t);
   void NoteSegment(Id segment);
@@ -302,6 +304,8 @@ private:
   std::vector<double> ShortestEdges;
   std::vector<char> IsOverrefined;
   BallIndex Proofs;
+  /** The points of flat proofs, see SurfaceDelaunayTest. */
+  std::unordered_map<Id, Vec3> FlatProofs;
   /** Triangles to be tested, as a heap. */
   std::vector<QueueEntry> Queue;
   std::int64_t NumberOfEnqueued = 0;
