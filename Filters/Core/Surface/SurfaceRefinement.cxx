@@ -3,13 +3,11 @@
 
 #include "Core/Basics/IdLimits.h"
 #include "Core/Basics/ParallelLoop.h"
-#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Surface/SurfaceChecks.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
 
@@ -20,28 +18,8 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t ReportInterval = 256;
 
-/**
- * In curved facets, points closer to others than this are too close, in shortest edges of the input
- * triangle.
- */
-constexpr double OverrefinementRatio = 1.0 / 8.0;
-/**
- * If another point is closer to a match than this part of the encroaching point's distance, it is
- * match enough. The triangle is too large then: a match would encroach on what lies between.
- */
-constexpr double CloseMatchRatio = 0.1;
 /** A plan that may give up does so after this part as many needles that are bad as points. */
 constexpr Id NeedlePart = 4;
-/** A segment passes a new point if it is closer above or below than this, in circumradii ... */
-constexpr double PassingRadiusRatio = 0.5;
-/** ... and in lengths of the segment, ... */
-constexpr double PassingLengthRatio = 0.25;
-/** ... and if the sine of its angle with the facet is no larger than this. */
-constexpr double PassingSine = 0.5;
-/** A point matches a corner of a triangle if it is no farther from it than this, in heights. */
-constexpr double MatchRatio = 1.1;
-/** Distances from a corner that are as equal as that count as equal. */
-constexpr double EqualRadii = 1.01;
 } // namespace
 
 SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
@@ -54,7 +32,8 @@ SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
     Flatness(GetFlatness(options.StructuralEdges.FlatnessRatio, surface.Points)),
     MinimumEdge(options.MinimumEdgeRatio * this->Diagonal),
     Test(this->Points, this->Octree), Limits{ options.MaximumEdgeLength, options.MaximumArea,
-      options.MinimumAngle, std::move(sizing) }
+      options.MinimumAngle, std::move(sizing) },
+    Proofs(this->Points)
 {
   this->Points.insert(this->Points.end(), meshPoints.begin(), meshPoints.end());
   // Without a limit of the user's, one that only a runaway refinement reaches: sheets a hair apart.
@@ -240,7 +219,7 @@ void SurfaceRefinement::MovePoints(const std::vector<std::pair<Id, Vec3>>& moves
   {
     if (isAnyMoved(this->Surface->GetTriangle(t).Points))
     {
-      this->RemoveProof(t);
+      this->Proofs.Remove(t);
       this->Enqueue(t);
     }
   }
@@ -532,40 +511,7 @@ Id SurfaceRefinement::AddPoint(
 void SurfaceRefinement::SetProof(Id t, const SurfaceDelaunayTest::SphereProof& proof)
 {
   this->IsProven[t] = 1;
-  this->Proofs.Set(t, proof.Center, proof.Radius);
-  if (proof.IsFlat)
-  {
-    this->FlatProofs[t] = proof.Point;
-  }
-  else
-  {
-    this->FlatProofs.erase(t);
-  }
-}
-
-void SurfaceRefinement::RemoveProof(Id t)
-{
-  this->Proofs.Remove(t);
-  this->FlatProofs.erase(t);
-}
-
-/**
- * Whether a point within the ball of a proof is certainly outside of the sphere of the proof. A
- * point of long, thin sheets reaches the balls of some forty triangles, nearly always in vain.
- */
-bool SurfaceRefinement::IsOutsideOfFlatProof(Id t, const Vec3& position) const
-{
-  const auto proof = this->FlatProofs.find(t);
-  if (proof == this->FlatProofs.end() || this->IsProven[t] == 0)
-  {
-    return false;
-  }
-  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-  const Vec3& a = this->Points[ids[0]];
-  const Vec3& b = this->Points[ids[1]];
-  const Vec3& c = this->Points[ids[2]];
-  const int side = Orientation(a, b, c, proof->second);
-  return side * InSphere(a, b, c, proof->second, position) < 0;
+  this->Proofs.Set(t, this->Surface->GetTriangle(t).Points, proof);
 }
 
 /** Puts triangles and edges on which a new point may encroach into the queues again. */
@@ -574,11 +520,8 @@ void SurfaceRefinement::TestAgainAround(const Vec3& position)
   this->Proofs.Find(position, this->Reached);
   for (Id t : this->Reached)
   {
-    if (!this->IsOutsideOfFlatProof(t, position))
-    {
-      this->RemoveProof(t);
-      this->Enqueue(t);
-    }
+    this->Proofs.Remove(t);
+    this->Enqueue(t);
   }
   if (this->AreEdgesTested())
   {
@@ -589,404 +532,6 @@ void SurfaceRefinement::TestAgainAround(const Vec3& position)
       this->EnqueueEdge(segment);
     }
   }
-}
-
-bool SurfaceRefinement::SplitSegment(Id segment, Id encroaching)
-{
-  const EdgeIds ends = this->Surface->GetSegment(segment).Points;
-  const Vec3 a = this->Points[ends[0]];
-  const Vec3 b = this->Points[ends[1]];
-  const double length = Distance(a, b);
-  Vec3 position = this->Partners->PlaceOnSegment(segment, encroaching);
-  for (int attempt = 0; attempt < 2; ++attempt)
-  {
-    if (std::min(Distance(position, a), Distance(position, b)) >= this->MinimumEdge &&
-      !this->HasPointNear(position, 0.0) && this->Surface->CanSplitSegment(segment, position))
-    {
-      const double weight = Distance(position, a) / length;
-      const PointParents parents{ { ends[0], ends[1], NoId }, { 1.0 - weight, weight, 0.0 } };
-      const Id point =
-        this->AddPoint(position, parents, NoId, this->Surface->GetSegment(segment).InputEdge);
-      ++this->NumberOfEdgePoints;
-      std::vector<Id> uses;
-      this->Surface->SplitSegment(segment, point, uses);
-      this->NoteSegment(segment);
-      this->NoteSegment(this->Surface->GetNumberOfSegments() - 1);
-      if (this->AreEdgesTested())
-      {
-        this->EmptyEdges.Remove(segment);
-        this->EnqueueEdge(segment);
-        this->EnqueueEdge(this->Surface->GetNumberOfSegments() - 1);
-      }
-      this->Legalize(uses);
-      return true;
-    }
-    position = 0.5 * (a + b);
-  }
-  return false;
-}
-
-/**
- * Of the segments of a bad triangle the one that is most encroached on, by any point: facets get
- * points where their outline is fine enough. Points on the sphere of an edge are looked for among
- * what was found on the triangle's sphere, if that is given.
- */
-SurfaceRefinement::EncroachedEdge SurfaceRefinement::FindEncroachedEdge(
-  Id t, const SurfaceDelaunayTest::Result* found) const
-{
-  EncroachedEdge best;
-  double bestDepth = Infinity;
-  const auto consider = [&](Id segment, Id point)
-  {
-    const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
-    const Vec3& a = this->Points[ends[0]];
-    const Vec3& b = this->Points[ends[1]];
-    const double distance = Distance(this->Points[point], 0.5 * (a + b));
-    const double depth = distance / Distance(a, b);
-    if (point != ends[0] && point != ends[1] && depth < bestDepth &&
-      InDiametralSphere(a, b, this->Points[point]) >= 0)
-    {
-      best = { segment, point, distance };
-      bestDepth = depth;
-    }
-  };
-  for (int i = 0; i < 3; ++i)
-  {
-    const Id segment = this->Surface->GetSegmentAt(t, i);
-    if (segment == NoId)
-    {
-      continue;
-    }
-    DiametralSphereVisitor visitor(this->Points, this->Surface->GetSegment(segment).Points);
-    this->Octree.Visit(visitor, visitor.GetReach());
-    if (visitor.Found != NoId)
-    {
-      consider(segment, visitor.Found);
-    }
-    else if (found != nullptr)
-    {
-      consider(segment, this->Surface->GetApex(3 * t + i));
-      for (const auto* points : { &found->OnSmallestSphere, &found->Cocircular })
-      {
-        for (Id point : *points)
-        {
-          consider(segment, point);
-        }
-      }
-    }
-  }
-  return best;
-}
-
-/** Remembers the diametral sphere of a segment if new points in facets have to give way to it. */
-void SurfaceRefinement::NoteSegment(Id segment)
-{
-  if (this->Plan.Rules == MatchingRules::Stacks)
-  {
-    const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
-    const Vec3& a = this->Points[ends[0]];
-    const Vec3& b = this->Points[ends[1]];
-    this->SegmentBalls.Set(segment, 0.5 * (a + b), 0.5 * Distance(a, b));
-  }
-}
-
-/**
- * Of the segments that pass close above or below a new point in a facet, the one on which it would
- * encroach most, or none. What matches the points of that segment would come close to the new one.
- */
-Id SurfaceRefinement::FindPassingSegment(Id t, const Vec3& position)
-{
-  if (this->Plan.Rules != MatchingRules::Stacks)
-  {
-    return NoId;
-  }
-  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-  const Vec3& corner = this->Points[ids[0]];
-  Vec3 normal = Cross(this->Points[ids[1]] - corner, this->Points[ids[2]] - corner);
-  normal = (1.0 / Norm(normal)) * normal;
-  const double radius = Distance(this->FindCircumcenter(t), corner);
-  this->SegmentBalls.Find(position, this->Reached);
-  Id found = NoId;
-  double nearest = Infinity;
-  for (Id segment : this->Reached)
-  {
-    const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
-    const Vec3& a = this->Points[ends[0]];
-    const Vec3& b = this->Points[ends[1]];
-    const double length = Distance(a, b);
-    const Vec3 direction = (1.0 / length) * (b - a);
-    const Vec3 arm = a + Dot(position - a, direction) * direction - position;
-    const double height = std::abs(Dot(arm, normal));
-    const double distance = Norm(arm) / length;
-    if (distance < nearest && height <= PassingRadiusRatio * radius &&
-      height <= PassingLengthRatio * length && std::abs(Dot(direction, normal)) <= PassingSine &&
-      InDiametralSphere(a, b, position) >= 0)
-    {
-      nearest = distance;
-      found = segment;
-    }
-  }
-  return found;
-}
-
-bool SurfaceRefinement::ResolveInFacet(Id t, Id encroaching, const Vec3& target, bool isMirrored)
-{
-  const RefinableSurface& surface = *this->Surface;
-  const TriangleIds start = surface.GetTriangle(t).Points;
-  FacetWalk::Landing landing;
-  if (!this->Walk->Run(t, isMirrored ? encroaching : NoId, target, landing))
-  {
-    return false;
-  }
-  if (landing.Segment != NoId)
-  {
-    const EdgeIds& ends = surface.GetSegment(landing.Segment).Points;
-    const auto isEncroachedBy = [&](const Vec3& p)
-    { return InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], p) >= 0; };
-    const bool isEncroached = encroaching != NoId && isEncroachedBy(this->Points[encroaching]);
-    if (isMirrored && !isEncroached && this->IsMatchedByEnd(landing.Segment, encroaching, target))
-    {
-      return false;
-    }
-    const bool isTargetPartner =
-      this->Plan.Rules != MatchingRules::Usual && isMirrored && isEncroachedBy(target);
-    // On a curved facet the walk may lead to an edge that has nothing to do with the triangle.
-    return (isEncroached || isEncroachedBy(target) ||
-             std::any_of(start.begin(), start.end(),
-               [&](Id p) { return isEncroachedBy(this->Points[p]); })) &&
-      this->SplitSegment(landing.Segment, isEncroached || isTargetPartner ? encroaching : NoId);
-  }
-
-  // A point that does not encroach on the triangle would not remove it (on curved facets).
-  const Vec3& position = landing.Position;
-  if (this->HasPointNear(position, this->MinimumEdge) ||
-    InEquatorialSphere(
-      this->Points[start[0]], this->Points[start[1]], this->Points[start[2]], position) <= 0)
-  {
-    return false;
-  }
-  if (isMirrored && AreForLayers(this->Plan.Rules))
-  {
-    const double reach = CloseMatchRatio * Distance(position, this->Points[encroaching]);
-    NearestPointVisitor visitor(position, encroaching, reach);
-    this->Octree.Visit(visitor, visitor.GetReach());
-    const IdLists::Range facets =
-      visitor.Nearest != NoId ? this->Incidences->GetFacets(visitor.Nearest) : IdLists::Range();
-    if (std::binary_search(facets.begin(), facets.end(), surface.GetTriangle(t).Facet))
-    {
-      return false;
-    }
-  }
-  const Id current = landing.Triangle;
-  if (landing.Edge != NoId && surface.GetSegmentAt(current, landing.Edge) != NoId)
-  {
-    return this->SplitSegment(surface.GetSegmentAt(current, landing.Edge), encroaching);
-  }
-
-  // A point that would encroach on an edge of the facet must not be made: split the edge instead.
-  const Id encroached = this->Walk->FindEncroachedSegment(current, position);
-  if (encroached != NoId)
-  {
-    if (isMirrored && this->IsMatchedByEnd(encroached, encroaching, position))
-    {
-      return false;
-    }
-    return this->SplitSegment(encroached, isMirrored ? encroaching : NoId);
-  }
-  const Id passing = isMirrored ? NoId : this->FindPassingSegment(t, position);
-  if (passing != NoId && this->SplitSegment(passing, NoId))
-  {
-    return true;
-  }
-
-  const TriangleIds ids = surface.GetTriangle(current).Points;
-  const Vec3 weights = GetBarycentricWeights(
-    position, this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]);
-  const PointParents parents{ ids, { weights.X, weights.Y, weights.Z } };
-  const Id point = this->AddPoint(position, parents, surface.GetTriangle(current).Facet, NoId);
-  std::vector<Id> uses;
-  if (landing.Edge == NoId)
-  {
-    this->Surface->SplitTriangle(current, point, uses);
-  }
-  else
-  {
-    this->Surface->SplitSmoothEdge(3 * current + landing.Edge, point, uses);
-  }
-  this->Legalize(uses);
-  return true;
-}
-
-bool SurfaceRefinement::SplitLongestEdge(Id t)
-{
-  const TriangleIds ids = this->Surface->GetTriangle(t).Points;
-  int longest = 0;
-  double length = 0.0;
-  for (int i = 0; i < 3; ++i)
-  {
-    const double candidate = Distance(this->Points[ids[i]], this->Points[ids[(i + 1) % 3]]);
-    if (candidate > length)
-    {
-      longest = i;
-      length = candidate;
-    }
-  }
-  const Id use = 3 * t + longest;
-  const Id segment = this->Surface->GetSegmentAt(t, longest);
-  if (segment != NoId)
-  {
-    return this->SplitSegment(segment, this->Surface->GetApex(use));
-  }
-  const EdgeIds ends{ ids[longest], ids[(longest + 1) % 3] };
-  const Vec3 a = this->Points[ends[0]];
-  const Vec3 edge = this->Points[ends[1]] - a;
-  const double foot = Dot(this->Points[this->Surface->GetApex(use)] - a, edge) / SquaredNorm(edge);
-  for (double weight : { std::min(std::max(foot, 0.25), 0.75), 0.5 })
-  {
-    const Vec3 position = a + weight * edge;
-    if (0.25 * length >= this->MinimumEdge && !this->HasPointNear(position, 0.0) &&
-      this->Surface->CanSplitSmoothEdge(use, position))
-    {
-      const PointParents parents{ { ends[0], ends[1], NoId }, { 1.0 - weight, weight, 0.0 } };
-      const Id point = this->AddPoint(position, parents, this->Surface->GetTriangle(t).Facet, NoId);
-      std::vector<Id> uses;
-      this->Surface->SplitSmoothEdge(use, point, uses);
-      this->Legalize(uses);
-      return true;
-    }
-  }
-  return false;
-}
-
-Vec3 SurfaceRefinement::FindCircumcenter(Id t) const
-{
-  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-  return GetCircumcenter(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]);
-}
-
-/** Segment: a structural edge to split first, or NoId. */
-bool SurfaceRefinement::FindTooCoarse(Id t, Id& segment) const
-{
-  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-  const Id segments[3] = { this->Surface->GetSegmentAt(t, 0), this->Surface->GetSegmentAt(t, 1),
-    this->Surface->GetSegmentAt(t, 2) };
-  Id edge;
-  const bool isTooCoarse =
-    this->Limits.IsTooCoarse({ this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]] },
-      { segments[0] != NoId, segments[1] != NoId, segments[2] != NoId },
-      this->ExcusedTriangles.empty() ||
-        this->ExcusedTriangles[this->Surface->GetTriangle(t).Source] == 0,
-      edge);
-  segment = edge != NoId ? segments[edge] : NoId;
-  return isTooCoarse;
-}
-
-/**
- * Notes where points come too close to each other in a curved facet. There a point that mends one
- * triangle may encroach on its neighbors, which are bent against it, and so on with ever smaller
- * triangles. Points much closer to each other than those of the input are a sign of that.
- */
-void SurfaceRefinement::NoteOverrefinement(Id t, Id newPoint)
-{
-  const RefinableSurface::Triangle& triangle = this->Surface->GetTriangle(t);
-  if (this->ShortestEdges.empty() || newPoint >= static_cast<Id>(this->Points.size()) ||
-    !this->Incidences->IsCurved(triangle.Facet) || !this->Incidences->GetEdges(newPoint).empty())
-  {
-    return;
-  }
-  const double reach = OverrefinementRatio * this->ShortestEdges[triangle.Source];
-  if (this->HasPointNear(this->Points[newPoint], reach, newPoint))
-  {
-    this->IsOverrefined.resize(this->ShortestEdges.size(), 0);
-    this->IsOverrefined[triangle.Source] = 1;
-  }
-}
-
-/**
- * Whether an end of a segment matches the encroaching point as well as the position does. The usual
- * rules do not ask for it.
- */
-bool SurfaceRefinement::IsMatchedByEnd(Id segment, Id encroaching, const Vec3& position) const
-{
-  const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
-  const double nearest =
-    std::min(Distance(position, this->Points[ends[0]]), Distance(position, this->Points[ends[1]]));
-  return this->Plan.Rules != MatchingRules::Usual &&
-    nearest < CloseMatchRatio * Distance(position, this->Points[encroaching]);
-}
-
-/**
- * Whether a triangle with a corner of the input is too long, as seen from there: a point that
- * matches another of its points encroaches on it, as the match is not exact in the direction of the
- * corner.
- */
-bool SurfaceRefinement::IsTooLong(Id t, int corner, Id encroaching) const
-{
-  if (this->Plan.Rules != MatchingRules::Stacks || encroaching == NoId)
-  {
-    return false;
-  }
-  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-  const Vec3& q = this->Points[encroaching];
-  const Vec3 first = this->Points[ids[(corner + 1) % 3]] - this->Points[ids[corner]];
-  const Vec3 second = this->Points[ids[(corner + 2) % 3]] - this->Points[ids[corner]];
-  const Vec3 normal = Cross(first, second);
-  const double height = std::abs(Dot(q - this->Points[ids[corner]], normal)) / Norm(normal);
-  Vec3 outward = (1.0 / Norm(first)) * first + (1.0 / Norm(second)) * second;
-  outward = (1.0 / Norm(outward)) * outward;
-  const Vec3 center = this->FindCircumcenter(t);
-  for (const Id point : { ids[(corner + 1) % 3], ids[(corner + 2) % 3] })
-  {
-    // How much nearer the match is to the circumcenter than the point, along the way and across.
-    const Vec3 offset = q - this->Points[point];
-    const Vec3 arm = center - this->Points[point];
-    const double along = Dot(offset, outward) * Dot(arm, outward);
-    const double across = Dot(offset, arm) - along;
-    if (Norm(offset) < MatchRatio * height && along > 0.0 && along > across)
-    {
-      return true;
-    }
-  }
-  return false;
-}
-
-/**
- * Finds a point on a shell around a corner of the input, to be used instead of the circumcenter of
- * a triangle at that corner. Only with the rules for thin layers. The triangle's other two points
- * have to be about as far from the corner as the nearest points on its edges: then the point midway
- * between them at that distance is taken. If one is farther away, the point at that distance on the
- * way to it is taken. Nearer points would ask for nearer ones in all sheets that meet in the
- * corner, and are made only for a triangle that is too long.
- */
-bool SurfaceRefinement::FindShellPoint(Id t, Id encroaching, Vec3& target) const
-{
-  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-  for (int i = 0; i < 3 && AreForLayers(this->Plan.Rules); ++i)
-  {
-    const Id v = ids[i];
-    if (v >= this->NumberOfSurfacePoints || this->Incidences->GetEdges(v).size() < 2)
-    {
-      continue;
-    }
-    const Vec3& corner = this->Points[v];
-    Vec3 near = this->Points[ids[(i + 1) % 3]] - corner;
-    Vec3 far = this->Points[ids[(i + 2) % 3]] - corner;
-    if (SquaredNorm(near) > SquaredNorm(far))
-    {
-      std::swap(near, far);
-    }
-    const double radius = Norm(near);
-    if (radius <= EqualRadii * this->Incidences->GetInnerRadius(v))
-    {
-      const double farther = Norm(far);
-      const bool isTooLong = this->IsTooLong(t, i, encroaching);
-      const Vec3 direction =
-        farther > EqualRadii * radius && !isTooLong ? far : near + (radius / farther) * far;
-      target = corner + ((isTooLong ? 0.5 : 1.0) * radius / Norm(direction)) * direction;
-      return true;
-    }
-  }
-  return false;
 }
 
 void SurfaceRefinement::Process(Id t, QueueState state)
@@ -1027,7 +572,7 @@ void SurfaceRefinement::Process(Id t, QueueState state)
     return;
   }
   this->NumberOfNeedles += isTested && this->Found.IsNeedle ? 1 : 0;
-  this->RemoveProof(t);
+  this->Proofs.Remove(t);
   this->CollectIncidences();
   if (this->ResolveByFlip(t))
   {

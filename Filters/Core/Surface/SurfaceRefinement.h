@@ -8,6 +8,9 @@
  * and segments may be split; only what such a change concerns is tested again. Triangles and
  * segments keep their index, see RefinableSurface.h.
  *
+ * The queues and the order of work are in SurfaceRefinement.cxx, the splits in
+ * SurfaceRefinementSplits.cxx.
+ *
  * Cost: see DelaunaySurfaceRefiner.h; a split takes about 100 microseconds, whatever the surface's
  * size.
  */
@@ -27,9 +30,9 @@
 #include "Core/Surface/SurfaceDelaunayTest.h"
 #include "Core/Surface/SurfaceFlips.h"
 #include "Core/Surface/SurfaceIncidences.h"
+#include "Core/Surface/TriangleProofs.h"
 
 #include <memory>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -246,8 +249,6 @@ private:
   void Legalize(std::vector<Id>& uses);
   Id AddPoint(const Vec3& position, const PointParents& parents, Id facet, Id inputEdge);
   void SetProof(Id t, const SurfaceDelaunayTest::SphereProof& proof);
-  void RemoveProof(Id t);
-  bool IsOutsideOfFlatProof(Id t, const Vec3& position) const;
   void TestAgainAround(const Vec3& position);
   void Touch(Id t);
   void NoteSegment(Id segment);
@@ -303,9 +304,7 @@ private:
   /** Shortest edge of each triangle of the input; empty if all facets are plane. */
   std::vector<double> ShortestEdges;
   std::vector<char> IsOverrefined;
-  BallIndex Proofs;
-  /** The points of flat proofs, see SurfaceDelaunayTest. */
-  std::unordered_map<Id, Vec3> FlatProofs;
+  TriangleProofs Proofs;
   /** Triangles to be tested, as a heap. */
   std::vector<QueueEntry> Queue;
   std::int64_t NumberOfEnqueued = 0;

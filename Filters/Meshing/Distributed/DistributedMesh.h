@@ -21,6 +21,7 @@
 
 #include <vtkType.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -88,6 +89,7 @@ private:
   std::vector<char> FindUsed() const;
   Cell MakeCell(const cdm::TetrahedronIds& ids, cdm::Id region) const;
   void SortCells(std::ptrdiff_t begin, std::ptrdiff_t end);
+  /** Whether the point with the lowest number is one of this process. */
   template <typename Ids>
   bool OwnsLowest(const Ids& ids) const;
   std::vector<cdm::Id> CompressPoints(
@@ -122,6 +124,14 @@ private:
   vtkIdType NumberOfHaloPoints = 0;
   vtkIdType NumberOfUnusedMeshPoints = 0;
 };
+
+template <typename Ids>
+bool DistributedMesh::OwnsLowest(const Ids& ids) const
+{
+  return *std::min_element(ids.begin(), ids.end(),
+           [this](cdm::Id a, cdm::Id b)
+           { return this->Points[a].Number < this->Points[b].Number; }) < this->NumberOfOwnPoints;
+}
 } // namespace vtkDistributed
 
 #endif
