@@ -320,7 +320,8 @@ void SurfaceDelaunayTest::Run(
   {
     result.Proof.Radius = Infinity;
   }
-  result.Proof.IsFlat = false;
+  result.Proof.IsFlat = visitor.IsNeedle();
+  result.Proof.HasPoint = false;
   result.IsDelaunay = !visitor.IsCoplanarInside &&
     !(visitor.IsFrontInside && visitor.IsBackInside) &&
     !(visitor.IsFrontInside && visitor.IsBackOn) && !(visitor.IsFrontOn && visitor.IsBackInside) &&
@@ -372,6 +373,7 @@ void SurfaceDelaunayTest::Run(
     result.Proof.Center = std::isfinite(radius) ? center : visitor.Center;
     result.Proof.Radius = std::isfinite(radius) ? radius : Infinity;
     result.Proof.IsFlat = !(radius < FlatRadius * (Norm(b - a) + Norm(c - a)));
+    result.Proof.HasPoint = true;
     result.Proof.Point = this->Points[best];
   }
 }

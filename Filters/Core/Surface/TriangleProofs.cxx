@@ -13,7 +13,7 @@ void TriangleProofs::Set(
   this->Balls.Set(triangle, proof.Center, proof.Radius);
   if (proof.IsFlat)
   {
-    this->FlatProofs[triangle] = { points, proof.Point };
+    this->FlatProofs[triangle] = { points, proof.HasPoint, proof.Point };
   }
   else
   {
@@ -45,6 +45,10 @@ bool TriangleProofs::IsOutside(const FlatProof& proof, const Vec3& position) con
   const Vec3& a = this->Points[proof.Triangle[0]];
   const Vec3& b = this->Points[proof.Triangle[1]];
   const Vec3& c = this->Points[proof.Triangle[2]];
+  if (!proof.HasPoint)
+  {
+    return InEquatorialSphere(a, b, c, position) < 0;
+  }
   const int side = Orientation(a, b, c, proof.Point);
   return side * InSphere(a, b, c, proof.Point, position) < 0;
 }

@@ -3,8 +3,8 @@
  * @file TriangleProofs.h
  * @brief Empty spheres that prove triangles to be Delaunay, and which of them a new point is in.
  *
- * Balls in a BallIndex stand for the spheres. A sphere that is almost a half space has a ball that
- * holds far more, as the ball is a little larger: there an exact predicate decides. In thin sheets
+ * Balls in a BallIndex stand for the spheres. A ball is a little larger than its sphere. That of an
+ * almost flat one or of a needle holds far more: there an exact predicate decides. In thin sheets
  * a point is in the balls of some forty such triangles, nearly always in vain.
  *
  * Guarantees: a triangle that is not found stays Delaunay if a point is added at the position.
@@ -36,10 +36,11 @@ public:
   void Find(const Vec3& position, std::vector<Id>& triangles);
 
 private:
-  /** A triangle, and a fourth point on its sphere. */
+  /** A triangle, and a fourth point on its sphere, or none for the smallest sphere. */
   struct FlatProof
   {
     TriangleIds Triangle;
+    bool HasPoint;
     Vec3 Point;
   };
 
