@@ -350,7 +350,7 @@ TEST(SteinerLayers, NeedlesKeepTheirFacets)
   input.Mesh = &mesh.Output.Mesh;
   SteinerPointRefinerOptions options;
   options.MaximumEdgeLength = 0.08;
-  // By default the lid counts as plane.
+  // The lid counts as plane by default.
   options.StructuralEdges.FlatnessRatio = RoundedFlatnessRatio;
   const SteinerPointRefinerOutput output = Refine(input, options);
   // Each triangle is in the plane of one that there was.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Surface/SurfaceDelaunayTest.h"
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Geometry/SphereForm.h"
@@ -26,9 +27,12 @@ class TrianglePlane
 {
 public:
   TrianglePlane(const Vec3& a, const Vec3& b, const Vec3& c)
-    : Origin(a), Normal(Cross(b - a, c - a)), Tolerance(1e-13 * Norm(b - a) * Norm(c - a))
+    : Origin(a), Normal(Cross(b - a, c - a)), Size(Norm(b - a) * Norm(c - a))
   {
   }
+
+  /** One by the sine of the triangle's angle at its first corner: large for needles. */
+  double GetCondition() const { return this->Size / Norm(this->Normal); }
 
   /** False if any point of the box may lie on the plane or behind it. */
   bool IsInFront(const Box& box) const { return this->IsBeyond(box, 1.0); }
@@ -48,13 +52,14 @@ private:
       height += slope * (nearest - this->Origin[axis]);
       size += std::abs(nearest) + std::abs(this->Origin[axis]);
     }
-    return height > this->Tolerance * size;
+    // Far more than rounding leaves of a distance from the plane.
+    return height > 1e-13 * this->Size * size;
   }
 
   Vec3 Origin;
   Vec3 Normal;
-  /** Far more than rounding leaves of a distance from the plane, in units of the normal. */
-  double Tolerance;
+  /** The product of the two edges that the normal is made of. */
+  double Size;
 };
 
 /**
@@ -73,7 +78,7 @@ public:
     this->Radius = Distance(this->Center, this->A);
     const Vec3 u = this->B - this->A;
     const Vec3 v = this->C - this->A;
-    const double condition = Norm(u) * Norm(v) / Norm(Cross(u, v));
+    const double condition = this->Plane.GetCondition();
     // Relative error of center and radius with room to spare.
     const double error = 64.0 * Epsilon * condition * condition;
     const double reach = this->Radius + Norm(u) + Norm(v);
@@ -117,7 +122,7 @@ public:
 
   void Visit(Id id, const Vec3& q)
   {
-    if (id == this->Triangle[0] || id == this->Triangle[1] || id == this->Triangle[2])
+    if (Contains(this->Triangle, id))
     {
       return;
     }
@@ -209,8 +214,7 @@ public:
 
   void Visit(Id id, const Vec3& q)
   {
-    if (id == this->Triangle[0] || id == this->Triangle[1] || id == this->Triangle[2] ||
-      id == this->Best)
+    if (Contains(this->Triangle, id) || id == this->Best)
     {
       return;
     }
@@ -273,8 +277,7 @@ public:
   void Visit(Id id, const Vec3& q)
   {
     if (this->IsFound || (this->IsBall() && SquaredNorm(q - this->Center) > this->SquaredRadius) ||
-      id == this->Triangle[0] || id == this->Triangle[1] || id == this->Triangle[2] ||
-      id == this->Front)
+      Contains(this->Triangle, id) || id == this->Front)
     {
       return;
     }
@@ -320,7 +323,7 @@ void SurfaceDelaunayTest::Run(
   {
     result.Proof.Radius = Infinity;
   }
-  result.Proof.IsFlat = visitor.IsNeedle();
+  result.Proof.IsLoose = visitor.IsNeedle();
   result.Proof.HasPoint = false;
   result.IsDelaunay = !visitor.IsCoplanarInside &&
     !(visitor.IsFrontInside && visitor.IsBackInside) &&
@@ -372,7 +375,7 @@ void SurfaceDelaunayTest::Run(
   {
     result.Proof.Center = std::isfinite(radius) ? center : visitor.Center;
     result.Proof.Radius = std::isfinite(radius) ? radius : Infinity;
-    result.Proof.IsFlat = !(radius < FlatRadius * (Norm(b - a) + Norm(c - a)));
+    result.Proof.IsLoose = !(radius < FlatRadius * (Norm(b - a) + Norm(c - a)));
     result.Proof.HasPoint = true;
     result.Proof.Point = this->Points[best];
   }

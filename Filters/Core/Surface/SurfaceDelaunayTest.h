@@ -35,12 +35,12 @@ public:
     Vec3 Center;
     double Radius = 0.0;
     /**
-     * Whether the ball holds many points that are not in the sphere: it is almost a half space, or
-     * the smallest one through a needle. As long as points are added outside of the sphere through
+     * Whether the ball is loose, and holds many points that are not in the sphere. The sphere is
+     * almost a half space then, or the smallest one through a needle. As long as points are added outside of the sphere through
      * the triangle and a fourth point, if it has one, else outside of the smallest sphere, the
      * triangle stays Delaunay as well.
      */
-    bool IsFlat = false;
+    bool IsLoose = false;
     bool HasPoint = false;
     Vec3 Point;
   };

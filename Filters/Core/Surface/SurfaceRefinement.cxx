@@ -405,9 +405,7 @@ void SurfaceRefinement::JudgeRelaxed()
   this->IsEncroached.resize(this->Surface->GetNumberOfSegments(), 0);
   for (Id s = 0; s < this->Surface->GetNumberOfSegments() && this->AreEdgesTested(); ++s)
   {
-    DiametralSphereVisitor visitor(this->Points, this->Surface->GetSegment(s).Points);
-    this->Octree.Visit(visitor, visitor.GetReach());
-    this->IsEncroached[s] = visitor.Found != NoId ? 1 : 0;
+    this->IsEncroached[s] = this->FindDeepestPoint(this->Surface->GetSegment(s).Points) != NoId;
   }
 }
 
@@ -538,15 +536,7 @@ void SurfaceRefinement::Process(Id t, QueueState state)
 {
   Id segment = NoId;
   const bool isProven = this->IsProven[t] != 0;
-  // Points only come: a triangle that has waited for the split of an edge is bad as long as the
-  // criterion is the same. Tests of needles are long.
-  EncroachedEdge edge;
-  if (state == QueueState::Edge && !this->IsRescuing())
-  {
-    edge = this->FindEncroachedEdge(t, nullptr);
-  }
-  const bool isTested = edge.Segment == NoId;
-  if (isTested && (isProven || this->IsGood(t, this->Found)))
+  if (isProven || this->IsGood(t, this->Found))
   {
     if (!isProven)
     {
@@ -571,7 +561,7 @@ void SurfaceRefinement::Process(Id t, QueueState state)
     }
     return;
   }
-  this->NumberOfNeedles += isTested && this->Found.IsNeedle ? 1 : 0;
+  this->NumberOfNeedles += this->Found.IsNeedle ? 1 : 0;
   this->Proofs.Remove(t);
   this->CollectIncidences();
   if (this->ResolveByFlip(t))
@@ -586,7 +576,7 @@ void SurfaceRefinement::Process(Id t, QueueState state)
   }
   // Whatever is done now, t is looked at again: the new point need not have changed it.
   this->IsBad[t] = 0;
-  edge = isTested ? this->FindEncroachedEdge(t, &this->Found) : edge;
+  const EncroachedEdge edge = this->FindEncroachedEdge(t);
   if (edge.Segment != NoId && state == QueueState::First && !this->AreEdgesFirst())
   {
     this->Enqueue(t, QueueState::Edge, edge.Distance);
@@ -653,15 +643,14 @@ void SurfaceRefinement::ProcessEdge()
     // It has been split since, and both pieces are in the queue.
     return;
   }
-  DiametralSphereVisitor visitor(this->Points, ends);
-  this->Octree.Visit(visitor, visitor.GetReach());
-  if (visitor.Found == NoId)
+  const Id encroaching = this->FindDeepestPoint(ends);
+  if (encroaching == NoId)
   {
     this->EmptyEdges.Set(segment, 0.5 * (a + b), 0.5 * length * (1.0 + 1e-6));
     return;
   }
   this->CollectIncidences();
-  if (!this->SplitSegment(segment, visitor.Found))
+  if (!this->SplitSegment(segment, encroaching))
   {
     this->IsEncroached.resize(this->Surface->GetNumberOfSegments(), 0);
     this->IsEncroached[segment] = 1;

@@ -238,7 +238,7 @@ private:
   bool FindTooCoarse(Id t, Id& segment) const;
 
   /** The edge of a bad triangle that is encroached on most, or none. */
-  EncroachedEdge FindEncroachedEdge(Id t, const SurfaceDelaunayTest::Result* found) const;
+  EncroachedEdge FindEncroachedEdge(Id t) const;
 
   // Each returns true if it has changed the surface.
   bool ResolveByFlip(Id t);
@@ -261,6 +261,13 @@ private:
   void Enqueue(Id t, QueueState state, double order);
   double GetNextNumber() { return static_cast<double>(this->NumberOfEnqueued++); }
   void EnqueueEdge(Id segment);
+  /** The deepest point inside the diametral sphere of an edge, or NoId. */
+  Id FindDeepestPoint(const EdgeIds& edge) const
+  {
+    DiametralSphereVisitor visitor(this->Points, edge);
+    this->Octree.Visit(visitor, visitor.GetReach());
+    return visitor.Found;
+  }
   /** Whether there is a point nearer to the position than a distance, or at the position. */
   bool HasPointNear(const Vec3& position, double distance, Id except = NoId) const
   {

@@ -73,12 +73,10 @@ bool SurfaceRefinement::SplitSegment(Id segment, Id encroaching)
 }
 
 /**
- * Of the segments of a bad triangle the one that is most encroached on, by any point: facets get
- * points where their outline is fine enough. Points on the sphere of an edge are looked for among
- * what was found on the triangle's sphere, if that is given.
+ * Finds the segment of a bad triangle on which any point encroaches most: facets get points where
+ * their outline is fine enough. Points on the sphere of a segment count if none is inside.
  */
-SurfaceRefinement::EncroachedEdge SurfaceRefinement::FindEncroachedEdge(
-  Id t, const SurfaceDelaunayTest::Result* found) const
+SurfaceRefinement::EncroachedEdge SurfaceRefinement::FindEncroachedEdge(Id t) const
 {
   EncroachedEdge best;
   double bestDepth = Infinity;
@@ -103,21 +101,18 @@ SurfaceRefinement::EncroachedEdge SurfaceRefinement::FindEncroachedEdge(
     {
       continue;
     }
-    DiametralSphereVisitor visitor(this->Points, this->Surface->GetSegment(segment).Points);
-    this->Octree.Visit(visitor, visitor.GetReach());
-    if (visitor.Found != NoId)
+    const Id deepest = this->FindDeepestPoint(this->Surface->GetSegment(segment).Points);
+    if (deepest != NoId)
     {
-      consider(segment, visitor.Found);
+      consider(segment, deepest);
+      continue;
     }
-    else if (found != nullptr)
+    consider(segment, this->Surface->GetApex(3 * t + i));
+    for (const auto* points : { &this->Found.OnSmallestSphere, &this->Found.Cocircular })
     {
-      consider(segment, this->Surface->GetApex(3 * t + i));
-      for (const auto* points : { &found->OnSmallestSphere, &found->Cocircular })
+      for (Id point : *points)
       {
-        for (Id point : *points)
-        {
-          consider(segment, point);
-        }
+        consider(segment, point);
       }
     }
   }
@@ -137,8 +132,8 @@ void SurfaceRefinement::NoteSegment(Id segment)
 }
 
 /**
- * Of the segments that pass close above or below a new point in a facet, the one on which it would
- * encroach most, or none. What matches the points of that segment would come close to the new one.
+ * Finds the segment on which a new point in a facet would encroach most, of those that pass close
+ * above or below it, or none. What matches the points of that segment would come close to the new one.
  */
 Id SurfaceRefinement::FindPassingSegment(Id t, const Vec3& position)
 {

@@ -11,20 +11,20 @@ void TriangleProofs::Set(
   Id triangle, const TriangleIds& points, const SurfaceDelaunayTest::SphereProof& proof)
 {
   this->Balls.Set(triangle, proof.Center, proof.Radius);
-  if (proof.IsFlat)
+  if (proof.IsLoose)
   {
-    this->FlatProofs[triangle] = { points, proof.HasPoint, proof.Point };
+    this->LooseProofs[triangle] = { points, proof.HasPoint, proof.Point };
   }
   else
   {
-    this->FlatProofs.erase(triangle);
+    this->LooseProofs.erase(triangle);
   }
 }
 
 void TriangleProofs::Remove(Id triangle)
 {
   this->Balls.Remove(triangle);
-  this->FlatProofs.erase(triangle);
+  this->LooseProofs.erase(triangle);
 }
 
 void TriangleProofs::Find(const Vec3& position, std::vector<Id>& triangles)
@@ -33,14 +33,14 @@ void TriangleProofs::Find(const Vec3& position, std::vector<Id>& triangles)
   triangles.erase(std::remove_if(triangles.begin(), triangles.end(),
                     [&](Id t)
                     {
-                      const auto proof = this->FlatProofs.find(t);
-                      return proof != this->FlatProofs.end() &&
+                      const auto proof = this->LooseProofs.find(t);
+                      return proof != this->LooseProofs.end() &&
                         this->IsOutside(proof->second, position);
                     }),
     triangles.end());
 }
 
-bool TriangleProofs::IsOutside(const FlatProof& proof, const Vec3& position) const
+bool TriangleProofs::IsOutside(const LooseProof& proof, const Vec3& position) const
 {
   const Vec3& a = this->Points[proof.Triangle[0]];
   const Vec3& b = this->Points[proof.Triangle[1]];

@@ -37,18 +37,18 @@ public:
 
 private:
   /** A triangle, and a fourth point on its sphere, or none for the smallest sphere. */
-  struct FlatProof
+  struct LooseProof
   {
     TriangleIds Triangle;
     bool HasPoint;
     Vec3 Point;
   };
 
-  bool IsOutside(const FlatProof& proof, const Vec3& position) const;
+  bool IsOutside(const LooseProof& proof, const Vec3& position) const;
 
   const std::vector<Vec3>& Points;
   BallIndex Balls;
-  std::unordered_map<Id, FlatProof> FlatProofs;
+  std::unordered_map<Id, LooseProof> LooseProofs;
 };
 } // namespace cdm
 
