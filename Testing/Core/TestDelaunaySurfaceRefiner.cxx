@@ -338,6 +338,27 @@ TEST(DelaunaySurfaceRefiner, KeepsItsCountWhenTheDeviceTurns)
   }
 }
 
+/**
+ * A point close below the top of a box. An empty sphere of the top's triangles lies above them. When
+ * the box turns, rounding folds the top along its diagonal: as a valley, it left no empty sphere.
+ */
+TEST(DelaunaySurfaceRefiner, RoundedRectanglesNeedNoPoints)
+{
+  for (int degrees = 0; degrees < 90; degrees += 3)
+  {
+    PolygonSoup soup = MakeBox({ 1.0, 1.0, 1.0 });
+    std::vector<Vec3> meshPoints{ { 0.4, 0.5, 0.95 } };
+    for (std::vector<Vec3>* points : { &soup.Points, &meshPoints })
+    {
+      Rotate(*points, (1.0 / std::sqrt(14.0)) * Vec3{ 1.0, 2.0, 3.0 }, degrees * Pi / 180.0);
+    }
+    DelaunaySurfaceRefinerOptions options;
+    options.Criterion = SurfaceCriterion::Delaunay;
+    const auto refined = Refine(Triangulate(soup), options, meshPoints);
+    EXPECT_TRUE(refined.NewPoints.empty()) << degrees << " degrees";
+  }
+}
+
 TEST(DelaunaySurfaceRefiner, DoesTheSameForAnyScale)
 {
   DelaunaySurfaceRefinerOptions options;

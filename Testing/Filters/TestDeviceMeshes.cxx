@@ -121,26 +121,30 @@ TEST_P(DeviceMeshes, AreCleanWithoutSliversWithEitherCriterion)
   }
 }
 
+/**
+ * No position is special: as it is drawn, a device has decimal coordinates, whose rounding decides
+ * about the many points on common spheres, and does so for all symmetric parts alike.
+ */
 TEST_P(DeviceMeshes, TurnedSurfacesAreAsFine)
 {
   for (const int criterion : { 0, 1, 2 })
   {
-    const auto straight = this->MakeSurface(0.0, criterion);
-    const vtkIdType points = straight->GetNumberOfPoints();
-    const double shortest = GetShortestEdge(straight);
-    std::vector<vtkIdType> turned;
-    for (const double angle : { 1e-3, 10.0, 33.0, 45.0, 66.0, 77.0 })
+    double shortest = 0.0;
+    std::vector<vtkIdType> counts;
+    for (const double angle : { 0.0, 1e-3, 10.0, 33.0, 45.0, 66.0, 77.0 })
     {
       const auto surface = this->MakeSurface(angle, criterion);
-      turned.push_back(surface->GetNumberOfPoints());
+      counts.push_back(surface->GetNumberOfPoints());
+      shortest = angle == 0.0 ? GetShortestEdge(surface) : shortest;
       // A point that rounding puts into a sphere splits nothing close to an end.
-      EXPECT_GT(GetShortestEdge(surface), 0.99 * shortest) << angle;
+      EXPECT_GE(GetShortestEdge(surface), 0.99 * shortest) << angle;
     }
-    std::sort(turned.begin(), turned.end());
-    std::cout << "criterion " << criterion << ": " << points << " points, turned " << turned.front()
-              << " to " << turned.back() << "\n";
-    EXPECT_LE(turned.back(), 1.05 * points);
-    EXPECT_GE(turned.front(), 0.95 * points);
+    std::sort(counts.begin(), counts.end());
+    const vtkIdType median = counts[counts.size() / 2];
+    std::cout << "criterion " << criterion << ": " << counts.front() << " to " << counts.back()
+              << " points, median " << median << "\n";
+    EXPECT_LE(counts.back(), 1.05 * median);
+    EXPECT_GE(counts.front(), 0.95 * median);
   }
 }
 

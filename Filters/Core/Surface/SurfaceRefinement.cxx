@@ -20,6 +20,8 @@ constexpr std::size_t ReportInterval = 256;
 
 /** A plan that may give up does so after this part as many needles that are bad as points. */
 constexpr Id NeedlePart = 4;
+/** A point farther from a circumcenter than this, in circumradii, is certainly not cocircular. */
+constexpr double CocircularRadii = 1.0 + 1e-6;
 } // namespace
 
 SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
@@ -455,7 +457,8 @@ bool SurfaceRefinement::ResolveByFlip(Id t)
     }
   }
   // Nearly cocircular and nearly coplanar points: the local rule may not see what the exact
-  // double sphere sees.
+  // double sphere sees. A ridge along one diagonal, however flat, is a valley along the other: a
+  // valley has the fourth point in front, which may leave no empty sphere there.
   for (Id use : uses)
   {
     const Id other = this->Surface->GetTriangle(t).Adjacent[use % 3];
@@ -468,8 +471,8 @@ bool SurfaceRefinement::ResolveByFlip(Id t)
     const Id b = ids[(use % 3 + 1) % 3];
     const Id c = this->Surface->GetApex(use);
     const Id d = this->Surface->GetApex(other);
-    if (InEquatorialSphere(
-          this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]], this->Points[d]) < 0)
+    const Vec3 center = this->FindCircumcenter(t);
+    if (Distance(center, this->Points[d]) > CocircularRadii * Distance(center, this->Points[a]))
     {
       continue;
     }

@@ -74,26 +74,12 @@ bool SurfaceRefinement::SplitSegment(Id segment, Id encroaching)
 
 /**
  * Finds the segment of a bad triangle on which any point encroaches most: facets get points where
- * their outline is fine enough. Points on the sphere of a segment count if none is inside.
+ * their outline is fine enough.
  */
 SurfaceRefinement::EncroachedEdge SurfaceRefinement::FindEncroachedEdge(Id t) const
 {
   EncroachedEdge best;
   double bestDepth = Infinity;
-  const auto consider = [&](Id segment, Id point)
-  {
-    const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
-    const Vec3& a = this->Points[ends[0]];
-    const Vec3& b = this->Points[ends[1]];
-    const double distance = Distance(this->Points[point], 0.5 * (a + b));
-    const double depth = distance / Distance(a, b);
-    if (point != ends[0] && point != ends[1] && depth < bestDepth &&
-      InDiametralSphere(a, b, this->Points[point]) >= 0)
-    {
-      best = { segment, point, distance };
-      bestDepth = depth;
-    }
-  };
   for (int i = 0; i < 3; ++i)
   {
     const Id segment = this->Surface->GetSegmentAt(t, i);
@@ -101,19 +87,20 @@ SurfaceRefinement::EncroachedEdge SurfaceRefinement::FindEncroachedEdge(Id t) co
     {
       continue;
     }
-    const Id deepest = this->FindDeepestPoint(this->Surface->GetSegment(segment).Points);
-    if (deepest != NoId)
+    const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
+    const Id deepest = this->FindDeepestPoint(ends);
+    if (deepest == NoId)
     {
-      consider(segment, deepest);
       continue;
     }
-    consider(segment, this->Surface->GetApex(3 * t + i));
-    for (const auto* points : { &this->Found.OnSmallestSphere, &this->Found.Cocircular })
+    const Vec3& a = this->Points[ends[0]];
+    const Vec3& b = this->Points[ends[1]];
+    const double distance = Distance(this->Points[deepest], 0.5 * (a + b));
+    const double depth = distance / Distance(a, b);
+    if (depth < bestDepth)
     {
-      for (Id point : *points)
-      {
-        consider(segment, point);
-      }
+      best = { segment, deepest, distance };
+      bestDepth = depth;
     }
   }
   return best;
