@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <numeric>
 #include <random>
@@ -28,6 +29,8 @@ enum class Shape : int
   Cube,
   /** Integer coordinates: many points on spheres, circles and planes. */
   Grid,
+  /** The grid rotated and rounded: planes and circles hold up to the last digits only. */
+  TurnedGrid,
   /** z = x^2 + y^2: spheres through narrow triangles hold most points, all of them on one side. */
   Paraboloid,
   /** A plane but for a millionth: spheres that are almost half spaces. */
@@ -38,6 +41,14 @@ enum class Shape : int
   Line,
   NumberOfShapes
 };
+
+/** By 77 degrees about (1, 2, 3). */
+Vec3 Turn(const Vec3& p)
+{
+  const Vec3 axis = (1.0 / std::sqrt(14.0)) * Vec3{ 1.0, 2.0, 3.0 };
+  return std::cos(1.344) * p + std::sin(1.344) * Cross(axis, p) +
+    (1.0 - std::cos(1.344)) * Dot(axis, p) * axis;
+}
 
 std::vector<Vec3> MakePoints(Shape shape, int count, std::mt19937& random)
 {
@@ -54,6 +65,12 @@ std::vector<Vec3> MakePoints(Shape shape, int count, std::mt19937& random)
       case Shape::Grid:
         points.insert({ step(random), step(random), step(random) });
         break;
+      case Shape::TurnedGrid:
+      {
+        const Vec3 p = Turn({ 1.0 * step(random), 1.0 * step(random), 0.25 * step(random) });
+        points.insert({ p.X, p.Y, p.Z });
+        break;
+      }
       case Shape::Paraboloid:
         points.insert({ x, y, x * x + y * y });
         break;
@@ -226,4 +243,39 @@ TEST(StronglyDelaunay, TrianglesOfAHullWithLargeSpheres)
   EXPECT_LT(found.InsideSmallestSphere.size(), 200u);
   EXPECT_GT(CheckTriangle(points, test, { first + 2, first + 1, first }, found), 900u);
   EXPECT_TRUE(found.IsDelaunay);
+}
+
+/** A quadrilateral that rounding folds: what is in front may only show in the exact predicates. */
+TEST(StronglyDelaunay, FoldedQuadrilaterals)
+{
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  int numberOfGood = 0;
+  for (int sample = 0; sample < 4000; ++sample)
+  {
+    SCOPED_TRACE("sample " + std::to_string(sample));
+    std::vector<Vec3> points;
+    for (int i = 0; i < 4; ++i)
+    {
+      const double angle = 3.0 * unit(random);
+      points.push_back(Turn({ std::cos(angle), std::sin(angle), 0.0 }));
+    }
+    for (int i = 0; i < 6; ++i)
+    {
+      points.push_back(Turn({ 2.0 * unit(random), 2.0 * unit(random), -1.0 + unit(random) }));
+    }
+    PointOctree octree;
+    octree.Insert(points);
+    const SurfaceDelaunayTest test(points, octree);
+    SurfaceDelaunayTest::Result found;
+    CheckTriangle(points, test, { 0, 2, 1 }, found);
+    CheckTriangle(points, test, { 0, 1, 2 }, found);
+    if (found.IsDelaunay)
+    {
+      ++numberOfGood;
+      CheckProof(points, { 0, 1, 2 }, found.Proof, random);
+    }
+  }
+  EXPECT_GT(numberOfGood, 100);
+  EXPECT_LT(numberOfGood, 3900);
 }

@@ -89,6 +89,8 @@ public:
     if (!(this->Slack < 1e-6 * this->Radius))
     {
       this->Form.emplace(this->A, this->B, this->C);
+      // Corners on a line but for less than rounding: any point will do to search boxes from.
+      this->Center = std::isfinite(SumNorm(this->Center)) ? this->Center : this->A;
     }
   }
 
@@ -364,8 +366,8 @@ void SurfaceDelaunayTest::Run(
     std::max(Distance(center, a), Distance(center, this->Points[best])) * Inflation +
     2.0 * visitor.Slack;
   // Rounding moves the center by far less than the inflation, unless the four points are almost in
-  // a plane.
-  const double condition = Norm(b - a) * Norm(c - a) * Norm(arm) / height;
+  // a plane. Then even the sign of the height may be wrong.
+  const double condition = Norm(b - a) * Norm(c - a) * Norm(arm) / std::max(height, 0.0);
   const bool isCertain =
     std::isfinite(radius) && condition < 1e7 && condition * visitor.Slack < 1e-7 * radius;
   OtherSideVisitor otherSide(this->Points, turned, best, center, isCertain ? radius : Infinity);
@@ -373,9 +375,9 @@ void SurfaceDelaunayTest::Run(
   result.IsDelaunay = !otherSide.IsFound;
   if (result.IsDelaunay)
   {
-    result.Proof.Center = std::isfinite(radius) ? center : visitor.Center;
-    result.Proof.Radius = std::isfinite(radius) ? radius : Infinity;
-    result.Proof.IsLoose = !(radius < FlatRadius * (Norm(b - a) + Norm(c - a)));
+    result.Proof.Center = isCertain ? center : visitor.Center;
+    result.Proof.Radius = isCertain ? radius : Infinity;
+    result.Proof.IsLoose = !isCertain || !(radius < FlatRadius * (Norm(b - a) + Norm(c - a)));
     result.Proof.HasPoint = true;
     result.Proof.Point = this->Points[best];
   }
