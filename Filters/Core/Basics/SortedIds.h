@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SortedIds.h
- * @brief Ids in ascending order: those of a list, a simplex or an edge; and whether one is among
- * others.
+ * @brief Ids in ascending order: those of a list, a simplex or an edge; two of them as one number;
+ * and whether one is among others.
  */
 #ifndef cdmSortedIds_h
 #define cdmSortedIds_h
@@ -10,6 +10,7 @@
 #include "Core/Basics/Types.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 namespace cdm
@@ -35,6 +36,26 @@ template <typename Ids>
 bool Contains(const Ids& ids, Id id)
 {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
+}
+
+/**
+ * Two ids as one number, the first of them as the higher half. Such numbers are sorted in about half
+ * the time of pairs, and sort like them if no id is negative.
+ */
+inline std::uint64_t PackIds(Id first, Id second)
+{
+  return static_cast<std::uint64_t>(static_cast<std::uint32_t>(first)) << 32 |
+    static_cast<std::uint32_t>(second);
+}
+
+inline std::uint64_t PackIds(const EdgeIds& ids)
+{
+  return PackIds(ids[0], ids[1]);
+}
+
+inline EdgeIds UnpackIds(std::uint64_t packed)
+{
+  return { static_cast<Id>(packed >> 32), static_cast<Id>(packed & 0xffffffffu) };
 }
 
 /** The ends of an edge in ascending order, so that both directions give the same. */

@@ -8,6 +8,7 @@
 #include "Core/Certificate/FlatTetrahedra.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
+#include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/MeshInvariants.h"
 #include "Core/Meshes/SimplexIncidence.h"
 #include "Core/Meshes/VolumeSums.h"
@@ -71,13 +72,19 @@ struct FacetRecord
     }
     return a.Source < b.Source;
   }
+
+  bool HasPointsOf(const FacetRecord& other) const
+  {
+    return this->Points[0] == other.Points[0] && this->Points[1] == other.Points[1] &&
+      this->Points[2] == other.Points[2];
+  }
 };
 
 template <typename Iterator>
 Iterator FindEndOfGroup(Iterator begin, Iterator end)
 {
   return std::find_if(
-    begin, end, [&](const FacetRecord& other) { return other.Points != begin->Points; });
+    begin, end, [&](const FacetRecord& other) { return !other.HasPointsOf(*begin); });
 }
 
 /** Two facets of one surface that go straight on at their common edge. */
@@ -601,7 +608,7 @@ bool Checker::CheckFacets(const ExecutionContext& context)
       countMissing(*triangle);
     }
     auto triangleEnd = triangle;
-    while (triangleEnd != triangles.cend() && triangleEnd->Points == begin->Points)
+    while (triangleEnd != triangles.cend() && triangleEnd->HasPointsOf(*begin))
     {
       ++triangleEnd;
     }
@@ -695,33 +702,24 @@ bool Checker::CheckSpheres(const SphereCriteria& criteria, const ExecutionContex
 /** Edges of the border facets, and those where they do not go straight on. */
 void Checker::CollectBorderEdges()
 {
-  struct BorderEdge
-  {
-    EdgeIds Points;
-    Id Facet;
-  };
   const std::vector<BorderFacet>& facets = this->Findings.BorderFacets;
-  std::vector<BorderEdge> edges;
-  edges.reserve(3 * facets.size());
-  for (Id facet = 0; facet < static_cast<Id>(facets.size()); ++facet)
+  std::vector<TriangleIds> triangles;
+  triangles.reserve(facets.size());
+  for (const BorderFacet& facet : facets)
   {
-    const TriangleIds& ids = facets[facet].Points;
-    edges.push_back({ { ids[0], ids[1] }, facet });
-    edges.push_back({ { ids[1], ids[2] }, facet });
-    edges.push_back({ { ids[0], ids[2] }, facet });
+    triangles.push_back(facet.Points);
   }
-  std::sort(edges.begin(), edges.end(),
-    [](const BorderEdge& a, const BorderEdge& b)
-    { return a.Points != b.Points ? a.Points < b.Points : a.Facet < b.Facet; });
-  for (auto begin = edges.cbegin(), end = begin; begin != edges.cend(); begin = end)
+  const std::vector<EdgeUse> uses = SortEdgeUses(triangles, this->Mesh.Points.size());
+  for (auto begin = uses.cbegin(), end = begin; begin != uses.cend(); begin = end)
   {
-    end = std::find_if(
-      begin, edges.cend(), [&](const BorderEdge& edge) { return edge.Points != begin->Points; });
-    this->Findings.BorderEdges.push_back(begin->Points);
+    end =
+      std::find_if(begin, uses.cend(), [&](const EdgeUse& use) { return use.Edge != begin->Edge; });
+    const EdgeIds points = begin->GetPoints();
+    this->Findings.BorderEdges.push_back(points);
     if (end - begin != 2 ||
-      !AreSmooth(facets[begin[0].Facet], facets[begin[1].Facet], begin->Points, this->Mesh.Points))
+      !AreSmooth(facets[begin[0].Use / 3], facets[begin[1].Use / 3], points, this->Mesh.Points))
     {
-      this->Findings.StructuralEdges.push_back(begin->Points);
+      this->Findings.StructuralEdges.push_back(points);
     }
   }
   this->Report.BorderFacets = static_cast<Id>(facets.size());

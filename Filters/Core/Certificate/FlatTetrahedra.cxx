@@ -194,26 +194,33 @@ void FlatTetrahedra::FindSharpWedges()
 /** Among a few dozen edges at a point two are that close: no point takes long. */
 void FlatTetrahedra::FindSharpPlaneAngles()
 {
+  if (this->Edges.empty())
+  {
+    return;
+  }
   std::vector<std::pair<Id, Id>> neighbors;
   for (const EdgeIds& edge : this->Edges)
   {
     neighbors.emplace_back(edge[0], edge[1]);
     neighbors.emplace_back(edge[1], edge[0]);
   }
-  std::sort(neighbors.begin(), neighbors.end());
+  const Id count = static_cast<Id>(this->Mesh.Points.size());
+  IdLists pointNeighbors;
+  pointNeighbors.Build(count, neighbors);
   std::vector<Vec3> directions;
-  for (auto begin = neighbors.cbegin(), end = begin; begin != neighbors.cend(); begin = end)
+  for (Id point = 0; point < count; ++point)
   {
-    const Id point = begin->first;
-    end = std::find_if(
-      begin, neighbors.cend(), [&](const auto& other) { return other.first != point; });
     directions.clear();
-    for (auto neighbor = begin; neighbor != end && this->IsSharp[point] == 0; ++neighbor)
+    for (const Id neighbor : pointNeighbors[point])
     {
-      const Vec3 offset = this->Mesh.Points[neighbor->second] - this->Mesh.Points[point];
+      const Vec3 offset = this->Mesh.Points[neighbor] - this->Mesh.Points[point];
       const Vec3 direction = (1.0 / Norm(offset)) * offset;
       this->IsSharp[point] = std::any_of(directions.begin(), directions.end(),
         [&](const Vec3& other) { return Dot(direction, other) > SharpPlaneCosine; });
+      if (this->IsSharp[point] != 0)
+      {
+        break;
+      }
       directions.push_back(direction);
     }
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 
+#include "Core/Basics/SortedIds.h"
+
 #include <algorithm>
 #include <iterator>
 #include <utility>
@@ -89,8 +91,8 @@ void DynamicTetrahedralization::Fill(Id point, const PointCavity& cavity)
     }
     for (int k = 0; k < 3; ++k)
     {
-      const auto [a, b] = std::minmax(facet[(k + 1) % 3], facet[(k + 2) % 3]);
-      this->Facets.emplace_back(static_cast<std::uint64_t>(a) << 32 | b, 4 * t + k);
+      const EdgeIds edge = MakeEdge(facet[(k + 1) % 3], facet[(k + 2) % 3]);
+      this->Facets.emplace_back(PackIds(edge), 4 * t + k);
     }
   }
   std::sort(this->Facets.begin(), this->Facets.end());

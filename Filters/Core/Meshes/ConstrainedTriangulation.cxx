@@ -49,7 +49,7 @@ bool ConstrainedTriangulation::IsAhead(Id from, Id to, Id point) const
 
 Id ConstrainedTriangulation::FindTriangle(Id a, Id b) const
 {
-  const auto found = this->TriangleAt.find(MakeKey(a, b));
+  const auto found = this->TriangleAt.find(PackIds(a, b));
   return found == this->TriangleAt.end() ? NoId : found->second;
 }
 
@@ -73,7 +73,7 @@ void ConstrainedTriangulation::SetTriangle(Id triangle, const TriangleIds& ids)
   this->Triangles[triangle] = ids;
   for (int i = 0; i < 3; ++i)
   {
-    this->TriangleAt[MakeKey(ids[i], ids[(i + 1) % 3])] = triangle;
+    this->TriangleAt[PackIds(ids[i], ids[(i + 1) % 3])] = triangle;
     this->Vertices.insert(ids[i]);
   }
 }
@@ -148,8 +148,8 @@ bool ConstrainedTriangulation::AddPoint(Id point)
       this->Segments.insert(MakeEdgeKey(a, point));
       this->Segments.insert(MakeEdgeKey(point, b));
     }
-    this->TriangleAt.erase(MakeKey(a, b));
-    this->TriangleAt.erase(MakeKey(b, a));
+    this->TriangleAt.erase(PackIds(a, b));
+    this->TriangleAt.erase(PackIds(b, a));
     this->SetTriangle(static_cast<Id>(i), { a, point, c });
     this->SetTriangle(other, { b, point, d });
     this->SetTriangle(size, { point, b, c });
@@ -262,8 +262,8 @@ void ConstrainedTriangulation::Flip(Id a, Id b)
   const Id second = this->FindTriangle(b, a);
   const Id c = this->FindApex(a, b);
   const Id d = this->FindApex(b, a);
-  this->TriangleAt.erase(MakeKey(a, b));
-  this->TriangleAt.erase(MakeKey(b, a));
+  this->TriangleAt.erase(PackIds(a, b));
+  this->TriangleAt.erase(PackIds(b, a));
   this->SetTriangle(first, { a, d, c });
   this->SetTriangle(second, { d, b, c });
 }

@@ -27,6 +27,7 @@
 #ifndef cdmConstrainedTriangulation_h
 #define cdmConstrainedTriangulation_h
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Basics/Types.h"
 #include "Core/Basics/Vec3.h"
 
@@ -59,12 +60,7 @@ public:
   const std::vector<TriangleIds>& GetTriangles() const { return this->Triangles; }
 
 private:
-  static std::uint64_t MakeKey(Id from, Id to)
-  {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(from)) << 32 |
-      static_cast<std::uint32_t>(to);
-  }
-  static std::uint64_t MakeEdgeKey(Id a, Id b) { return a < b ? MakeKey(a, b) : MakeKey(b, a); }
+  static std::uint64_t MakeEdgeKey(Id a, Id b) { return PackIds(MakeEdge(a, b)); }
 
   int Turn(Id a, Id b, Id c) const;
   bool IsAhead(Id from, Id to, Id point) const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Meshes/DuplicateTriangles.h"
 
+#include "Core/Basics/SortedIds.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -31,16 +33,19 @@ std::vector<DuplicateTriangle> FindDuplicateTriangles(const std::vector<Triangle
   {
     order[next[sorted[t][0]]++] = static_cast<Id>(t);
   }
+  // Those of one bin differ in the other two points, here as one number.
+  const auto getOthers = [&sorted](Id t) { return PackIds(sorted[t][1], sorted[t][2]); };
   for (Id i = 0; i < numberOfPoints; ++i)
   {
     std::sort(order.begin() + begin[i], order.begin() + begin[i + 1],
-      [&sorted](Id a, Id b) { return sorted[a] != sorted[b] ? sorted[a] < sorted[b] : a < b; });
+      [&getOthers](Id a, Id b)
+      { return getOthers(a) != getOthers(b) ? getOthers(a) < getOthers(b) : a < b; });
   }
   std::vector<DuplicateTriangle> duplicates;
   Id first = NoId;
   for (const Id t : order)
   {
-    if (first == NoId || sorted[first] != sorted[t])
+    if (first == NoId || sorted[first][0] != sorted[t][0] || getOthers(first) != getOthers(t))
     {
       first = t;
       continue;

@@ -28,9 +28,8 @@ std::vector<EdgeUse> SortEdgeUses(
   {
     for (int i = 0; i < 3; ++i)
     {
-      const std::uint64_t low = std::min(ids[i], ids[(i + 1) % 3]);
-      const std::uint64_t high = std::max(ids[i], ids[(i + 1) % 3]);
-      uses[next[low]++] = { low << 32 | high, use++ };
+      const EdgeIds edge = MakeEdge(ids[i], ids[(i + 1) % 3]);
+      uses[next[edge[0]]++] = { PackIds(edge), use++ };
     }
   }
   for (std::size_t i = 0; i < numberOfPoints; ++i)

@@ -10,23 +10,22 @@
 #ifndef cdmEdgeUses_h
 #define cdmEdgeUses_h
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Basics/Types.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace cdm
 {
 struct EdgeUse
 {
-  /** The two points in one number, of which the smaller id is the higher half. */
+  /** The two points, the smaller id first, as PackIds has them. */
   std::uint64_t Edge;
   Id Use;
 
-  EdgeIds GetPoints() const
-  {
-    return { static_cast<Id>(this->Edge >> 32), static_cast<Id>(this->Edge & 0xffffffffu) };
-  }
+  EdgeIds GetPoints() const { return UnpackIds(this->Edge); }
 };
 
 /** All uses, sorted by edge; the uses of an edge ascend. */

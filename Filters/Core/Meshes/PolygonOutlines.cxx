@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Meshes/PolygonOutlines.h"
 
+#include "Core/Basics/SortedIds.h"
+
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
+#include <utility>
 
 namespace cdm
 {
@@ -36,20 +40,52 @@ std::vector<Id> MakeCanonical(const std::vector<Id>& outline, bool& reversed)
   }
   return best;
 }
+
+/**
+ * Outlines that share their lowest point and the sum of their points with another one, ascending: all
+ * that can have a duplicate. The others, nearly all, need no common form.
+ */
+std::vector<Id> FindCandidates(const PolygonOutlines& outlines)
+{
+  const Id n = outlines.GetSize();
+  std::vector<std::pair<std::uint64_t, Id>> keys;
+  keys.reserve(n);
+  for (Id k = 0; k < n; ++k)
+  {
+    const Id* const begin = outlines.Vertices.data() + outlines.Offsets[k];
+    const Id* const end = outlines.Vertices.data() + outlines.Offsets[k + 1];
+    const std::uint32_t sum = std::accumulate(begin, end, std::uint32_t{ 0 });
+    keys.emplace_back(PackIds(*std::min_element(begin, end), static_cast<Id>(sum)), k);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<Id> candidates;
+  for (auto begin = keys.begin(), end = begin; begin != keys.end(); begin = end)
+  {
+    end =
+      std::find_if(begin, keys.end(), [&](const auto& key) { return key.first != begin->first; });
+    for (auto outline = begin; end - begin > 1 && outline != end; ++outline)
+    {
+      candidates.push_back(outline->second);
+    }
+  }
+  std::sort(candidates.begin(), candidates.end());
+  return candidates;
+}
 } // namespace
 
 std::vector<DuplicateOutline> FindDuplicateOutlines(const PolygonOutlines& outlines)
 {
-  const Id n = outlines.GetSize();
+  const std::vector<Id> candidates = FindCandidates(outlines);
+  const Id n = static_cast<Id>(candidates.size());
   PolygonOutlines cycles;
   std::vector<char> reversed(n);
   std::vector<Id> outline;
-  for (Id k = 0; k < n; ++k)
+  for (Id i = 0; i < n; ++i)
   {
     bool isReversed = false;
-    outlines.Get(k, outline);
-    cycles.Add(k, MakeCanonical(outline, isReversed));
-    reversed[k] = isReversed;
+    outlines.Get(candidates[i], outline);
+    cycles.Add(candidates[i], MakeCanonical(outline, isReversed));
+    reversed[i] = isReversed;
   }
   const auto begin = [&cycles](Id k) { return cycles.Vertices.begin() + cycles.Offsets[k]; };
   std::vector<Id> order(n);
@@ -70,7 +106,8 @@ std::vector<DuplicateOutline> FindDuplicateOutlines(const PolygonOutlines& outli
     const Id copy = order[i];
     if (std::equal(begin(copy), begin(copy + 1), begin(first), begin(first + 1)))
     {
-      duplicates.push_back({ copy, first, reversed[first] != reversed[copy] });
+      duplicates.push_back(
+        { candidates[copy], candidates[first], reversed[first] != reversed[copy] });
     }
     else
     {

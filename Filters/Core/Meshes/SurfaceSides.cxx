@@ -4,6 +4,7 @@
 #include "Core/Basics/DisjointSets.h"
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Predicates.h"
+#include "Core/Meshes/EdgeUses.h"
 
 #include <algorithm>
 
@@ -11,26 +12,6 @@ namespace cdm
 {
 namespace
 {
-std::vector<TriangleAtEdge> CollectEdgeUses(const TriangleMesh& surface)
-{
-  std::vector<TriangleAtEdge> uses;
-  uses.reserve(3 * surface.Triangles.size());
-  for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
-  {
-    const TriangleIds& triangle = surface.Triangles[t];
-    for (int i = 0; i < 3; ++i)
-    {
-      const Id a = triangle[i];
-      const Id b = triangle[(i + 1) % 3];
-      uses.push_back({ MakeEdge(a, b), static_cast<Id>(t), triangle[(i + 2) % 3], a < b });
-    }
-  }
-  std::sort(uses.begin(), uses.end(),
-    [](const TriangleAtEdge& x, const TriangleAtEdge& y)
-    { return x.Edge != y.Edge ? x.Edge < y.Edge : x.Triangle < y.Triangle; });
-  return uses;
-}
-
 /** Sorts the triangles around an edge by their angle from the first one, exactly. */
 class AngleOrder
 {
@@ -92,25 +73,31 @@ SurfaceSides FindSurfaceSides(const TriangleMesh& surface)
   SurfaceSides result;
   DisjointSets sides(2 * surface.Triangles.size());
   DisjointSets components(surface.Triangles.size());
-  std::vector<TriangleAtEdge> uses = CollectEdgeUses(surface);
-  for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end)
+  const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
+  std::vector<TriangleAtEdge> around;
+  for (auto begin = uses.begin(), end = begin; begin != uses.end(); begin = end)
   {
-    while (end < uses.size() && uses[end].Edge == uses[begin].Edge)
+    around.clear();
+    for (; end != uses.end() && end->Edge == begin->Edge; ++end)
     {
-      ++end;
+      const TriangleIds& triangle = surface.Triangles[end->Use / 3];
+      const Id first = triangle[end->Use % 3];
+      const Id second = triangle[(end->Use + 1) % 3];
+      const Id apex = triangle[(end->Use + 2) % 3];
+      around.push_back({ begin->GetPoints(), end->Use / 3, apex, first < second });
     }
-    if (end - begin == 1)
+    if (around.size() == 1)
     {
-      result.OpenTriangles.push_back(uses[begin].Triangle);
+      result.OpenTriangles.push_back(around[0].Triangle);
     }
-    if (end - begin > 2)
+    if (around.size() > 2)
     {
-      SortAroundEdge(surface.Points, uses.data() + begin, uses.data() + end);
+      SortAroundEdge(surface.Points, around.data(), around.data() + around.size());
     }
-    for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t i = 0; i < around.size(); ++i)
     {
-      const TriangleAtEdge& use = uses[i];
-      const TriangleAtEdge& next = uses[i + 1 < end ? i + 1 : begin];
+      const TriangleAtEdge& use = around[i];
+      const TriangleAtEdge& next = around[i + 1 < around.size() ? i + 1 : 0];
       // The side that faces growing angles meets the next triangle's side that faces falling ones.
       sides.Unite(
         2 * use.Triangle + (use.IsForward ? 0 : 1), 2 * next.Triangle + (next.IsForward ? 1 : 0));

@@ -18,11 +18,6 @@ bool HasVertex(const TriangleIds& t, Id id)
   return t[0] == id || t[1] == id || t[2] == id;
 }
 
-std::uint64_t MakeKey(const EdgeIds& edge)
-{
-  return static_cast<std::uint64_t>(edge[0]) << 32 | static_cast<std::uint64_t>(edge[1]);
-}
-
 template <class Value>
 std::vector<Id> GetSortedKeys(const std::unordered_map<Id, Value>& map)
 {
@@ -201,7 +196,7 @@ void CuttingRound::DivideEdge(Id point, Id a, Id b)
     return;
   }
   const EdgeIds edge = MakeEdge(a, b);
-  std::vector<Id>& points = this->OnEdge[MakeKey(edge)];
+  std::vector<Id>& points = this->OnEdge[PackIds(edge)];
   if (Contains(points, point))
   {
     return;
@@ -239,7 +234,7 @@ void CuttingRound::AddPoint(Id point, Id t)
   {
     const Id a = ids[i];
     const Id b = ids[(i + 1) % 3];
-    const auto known = this->OnEdge.find(MakeKey(MakeEdge(a, b)));
+    const auto known = this->OnEdge.find(PackIds(MakeEdge(a, b)));
     if (known != this->OnEdge.end() && Contains(known->second, point))
     {
       isOnEdge = true;
@@ -395,7 +390,7 @@ void CuttingRound::AddOverlap(Id s, Id t)
     {
       const Id a = this->Triangles[own][i];
       const Id b = this->Triangles[own][(i + 1) % 3];
-      const auto divided = this->OnEdge.find(MakeKey(MakeEdge(a, b)));
+      const auto divided = this->OnEdge.find(PackIds(MakeEdge(a, b)));
       std::vector<Id> onEdge;
       for (const Id id : ids)
       {
@@ -475,7 +470,7 @@ void CuttingRound::AttachPoints(Id t)
   }
   for (int i = 0; i < 3; ++i)
   {
-    const auto found = this->OnEdge.find(MakeKey(MakeEdge(ids[i], ids[(i + 1) % 3])));
+    const auto found = this->OnEdge.find(PackIds(MakeEdge(ids[i], ids[(i + 1) % 3])));
     if (found != this->OnEdge.end())
     {
       points.insert(points.end(), found->second.begin(), found->second.end());
@@ -553,7 +548,7 @@ std::vector<std::vector<Id>> CuttingRound::MakeLoops(const TriangleIds& ids) con
   {
     const EdgeIds edge = MakeEdge(ids[i], ids[(i + 1) % 3]);
     outline.push_back(ids[i]);
-    const auto found = this->OnEdge.find(MakeKey(edge));
+    const auto found = this->OnEdge.find(PackIds(edge));
     if (found == this->OnEdge.end())
     {
       continue;

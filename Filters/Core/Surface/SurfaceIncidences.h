@@ -15,6 +15,7 @@
 #define cdmSurfaceIncidences_h
 
 #include "Core/Basics/IdLists.h"
+#include "Core/Basics/SortedIds.h"
 #include "Core/Basics/Types.h"
 #include "Core/Basics/Vec3.h"
 #include "Core/Surface/RefinableSurface.h"
@@ -79,11 +80,7 @@ public:
 
 private:
   /** Two facets in one number, in any order. */
-  static std::uint64_t GetPair(Id a, Id b)
-  {
-    return static_cast<std::uint64_t>(std::min(a, b)) << 32 |
-      static_cast<std::uint64_t>(std::max(a, b));
-  }
+  static std::uint64_t GetPair(Id a, Id b) { return PackIds(MakeEdge(a, b)); }
 
   void CollectFacets();
   void CollectEdges();
