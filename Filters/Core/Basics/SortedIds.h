@@ -15,14 +15,6 @@
 
 namespace cdm
 {
-/** Sorts a list and drops repetitions. Also for edges, pairs and the like. */
-template <typename T>
-void SortUnique(std::vector<T>& ids)
-{
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-}
-
 /** The sorted ids of a triangle or tetrahedron, as a key. */
 template <typename Ids>
 Ids Sorted(Ids ids)
@@ -56,6 +48,31 @@ inline std::uint64_t PackIds(const EdgeIds& ids)
 inline EdgeIds UnpackIds(std::uint64_t packed)
 {
   return { static_cast<Id>(packed >> 32), static_cast<Id>(packed & 0xffffffffu) };
+}
+
+/** Sorts a list and drops repetitions. Also for pairs and the like. */
+template <typename T>
+void SortUnique(std::vector<T>& ids)
+{
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+}
+
+/** The same for edges, as numbers. */
+inline void SortUnique(std::vector<EdgeIds>& edges)
+{
+  std::vector<std::uint64_t> numbers;
+  numbers.reserve(edges.size());
+  for (const EdgeIds& edge : edges)
+  {
+    numbers.push_back(PackIds(edge));
+  }
+  SortUnique(numbers);
+  edges.clear();
+  for (const std::uint64_t number : numbers)
+  {
+    edges.push_back(UnpackIds(number));
+  }
 }
 
 /** The ends of an edge in ascending order, so that both directions give the same. */

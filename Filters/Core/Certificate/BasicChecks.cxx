@@ -8,7 +8,6 @@
 #include "Core/Certificate/FlatTetrahedra.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
-#include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/MeshInvariants.h"
 #include "Core/Meshes/SimplexIncidence.h"
 #include "Core/Meshes/VolumeSums.h"
@@ -16,6 +15,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <limits>
 #include <map>
@@ -703,21 +703,25 @@ bool Checker::CheckSpheres(const SphereCriteria& criteria, const ExecutionContex
 void Checker::CollectBorderEdges()
 {
   const std::vector<BorderFacet>& facets = this->Findings.BorderFacets;
-  std::vector<TriangleIds> triangles;
-  triangles.reserve(facets.size());
-  for (const BorderFacet& facet : facets)
+  // Edges as numbers, with their facets.
+  std::vector<std::pair<std::uint64_t, Id>> edges;
+  edges.reserve(3 * facets.size());
+  for (Id facet = 0; facet < static_cast<Id>(facets.size()); ++facet)
   {
-    triangles.push_back(facet.Points);
+    const TriangleIds& ids = facets[facet].Points;
+    edges.emplace_back(PackIds(ids[0], ids[1]), facet);
+    edges.emplace_back(PackIds(ids[1], ids[2]), facet);
+    edges.emplace_back(PackIds(ids[0], ids[2]), facet);
   }
-  const std::vector<EdgeUse> uses = SortEdgeUses(triangles, this->Mesh.Points.size());
-  for (auto begin = uses.cbegin(), end = begin; begin != uses.cend(); begin = end)
+  std::sort(edges.begin(), edges.end());
+  for (auto begin = edges.cbegin(), end = begin; begin != edges.cend(); begin = end)
   {
-    end =
-      std::find_if(begin, uses.cend(), [&](const EdgeUse& use) { return use.Edge != begin->Edge; });
-    const EdgeIds points = begin->GetPoints();
+    end = std::find_if(
+      begin, edges.cend(), [&](const auto& edge) { return edge.first != begin->first; });
+    const EdgeIds points = UnpackIds(begin->first);
     this->Findings.BorderEdges.push_back(points);
     if (end - begin != 2 ||
-      !AreSmooth(facets[begin[0].Use / 3], facets[begin[1].Use / 3], points, this->Mesh.Points))
+      !AreSmooth(facets[begin[0].second], facets[begin[1].second], points, this->Mesh.Points))
     {
       this->Findings.StructuralEdges.push_back(points);
     }

@@ -6,7 +6,6 @@
 #include "Core/Search/BoxTree.h"
 
 #include <algorithm>
-#include <cstdint>
 
 namespace cdm
 {
@@ -102,34 +101,21 @@ PolygonOutlines InsertVertices(const PolygonOutlines& polygons, const std::vecto
   }
   return result;
 }
-/** The edges of all polygons, ascending. */
-std::vector<EdgeIds> ListEdges(const PolygonOutlines& polygons)
-{
-  std::vector<std::uint64_t> keys;
-  keys.reserve(polygons.Vertices.size());
-  for (Id p = 0; p < polygons.GetSize(); ++p)
-  {
-    for (Id i = polygons.Offsets[p]; i < polygons.Offsets[p + 1]; ++i)
-    {
-      const Id next = i + 1 < polygons.Offsets[p + 1] ? i + 1 : polygons.Offsets[p];
-      keys.push_back(PackIds(MakeEdge(polygons.Vertices[i], polygons.Vertices[next])));
-    }
-  }
-  SortUnique(keys);
-  std::vector<EdgeIds> edges;
-  edges.reserve(keys.size());
-  for (const std::uint64_t key : keys)
-  {
-    edges.push_back(UnpackIds(key));
-  }
-  return edges;
-}
 } // namespace
 
 bool SplitEdgesAtVertices(const std::vector<Vec3>& points, double tolerance,
   const ExecutionContext& context, PolygonOutlines& polygons, std::vector<TJunction>& junctions)
 {
-  const std::vector<EdgeIds> edges = ListEdges(polygons);
+  std::vector<EdgeIds> edges;
+  for (Id p = 0; p < polygons.GetSize(); ++p)
+  {
+    for (Id i = polygons.Offsets[p]; i < polygons.Offsets[p + 1]; ++i)
+    {
+      const Id next = i + 1 < polygons.Offsets[p + 1] ? i + 1 : polygons.Offsets[p];
+      edges.push_back(MakeEdge(polygons.Vertices[i], polygons.Vertices[next]));
+    }
+  }
+  SortUnique(edges);
 
   const Vec3 margin{ tolerance, tolerance, tolerance };
   std::vector<Box> boxes(edges.size());
