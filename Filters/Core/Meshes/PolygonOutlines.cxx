@@ -54,7 +54,11 @@ std::vector<Id> FindCandidates(const PolygonOutlines& outlines)
   {
     const Id* const begin = outlines.Vertices.data() + outlines.Offsets[k];
     const Id* const end = outlines.Vertices.data() + outlines.Offsets[k + 1];
-    const std::uint32_t sum = std::accumulate(begin, end, std::uint32_t{ 0 });
+    std::uint32_t sum = 0;
+    for (const Id* point = begin; point != end; ++point)
+    {
+      sum += static_cast<std::uint32_t>(*point);
+    }
     keys.emplace_back(PackIds(*std::min_element(begin, end), static_cast<Id>(sum)), k);
   }
   std::sort(keys.begin(), keys.end());

@@ -406,6 +406,7 @@ Status SurfaceAttempts::Run()
   Status status;
   const auto isOpen = [&] { return !status.IsAborted() && !this->IsSettled; };
   double& flatness = this->Options.StructuralEdges.FlatnessRatio;
+  const double usualFlatness = flatness;
   if (this->HasRoundedFacets && flatness > RoundedFlatnessRatio)
   {
     flatness = RoundedFlatnessRatio;
@@ -431,9 +432,16 @@ Status SurfaceAttempts::Run()
   }
   if (criterion != SurfaceCriterion::Delaunay && isOpen())
   {
+    // Facets first as the criterion Delaunay has them if it is asked for.
     plan.IsRelaxed = true;
     plan.GivesUp = false;
+    const double lastFlatness = std::exchange(flatness, usualFlatness);
     status = this->RunPlan(plan);
+    if (isOpen() && lastFlatness < usualFlatness)
+    {
+      flatness = lastFlatness;
+      status = this->RunPlan(plan);
+    }
   }
   return status.IsAborted() ? status : this->HasBest ? Status() : first;
 }

@@ -25,7 +25,7 @@
  *  4. test again the triangles whose proving sphere holds the new point;
  *  5. if that does not end within the limits: start again with the rules for corners, with those
  *     for thin layers, with those for stacks (MatchingRules in PartnerPoints.h), with criterion 3.2
- *     if 3.1 was asked for, then with the criterion Delaunay;
+ *     if 3.1 was asked for, then with the criterion Delaunay, which takes facets as they were first;
  *  6. with an accuracy angle surface facets are curved, and points that mend one triangle may
  *     encroach on its neighbors without end. Where new points come much closer to each other than
  *     those of the input, the edges of the input triangles become structural, and the refinement
