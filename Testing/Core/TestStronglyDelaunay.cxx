@@ -6,6 +6,7 @@
 #include "Core/Search/PointOctree.h"
 #include "Core/Surface/SurfaceDelaunayTest.h"
 #include "Core/Surface/TriangleProofs.h"
+#include "RandomComplexes.h"
 
 #include <gtest/gtest.h>
 
@@ -23,6 +24,8 @@ using namespace cdm;
 
 namespace
 {
+constexpr double Pi = 3.14159265358979323846;
+
 /** How the points of a test lie. */
 enum class Shape : int
 {
@@ -42,12 +45,10 @@ enum class Shape : int
   NumberOfShapes
 };
 
-/** By 77 degrees about (1, 2, 3). */
-Vec3 Turn(const Vec3& p)
+/** Rotates points by 77 degrees about (1, 2, 3): what was plane or round is so but for rounding. */
+void Turn(std::vector<Vec3>& points)
 {
-  const Vec3 axis = (1.0 / std::sqrt(14.0)) * Vec3{ 1.0, 2.0, 3.0 };
-  return std::cos(1.344) * p + std::sin(1.344) * Cross(axis, p) +
-    (1.0 - std::cos(1.344)) * Dot(axis, p) * axis;
+  Rotate(points, (1.0 / std::sqrt(14.0)) * Vec3{ 1.0, 2.0, 3.0 }, 77.0 * Pi / 180.0);
 }
 
 std::vector<Vec3> MakePoints(Shape shape, int count, std::mt19937& random)
@@ -66,11 +67,8 @@ std::vector<Vec3> MakePoints(Shape shape, int count, std::mt19937& random)
         points.insert({ step(random), step(random), step(random) });
         break;
       case Shape::TurnedGrid:
-      {
-        const Vec3 p = Turn({ 1.0 * step(random), 1.0 * step(random), 0.25 * step(random) });
-        points.insert({ p.X, p.Y, p.Z });
+        points.insert({ step(random), step(random), 0.25 * step(random) });
         break;
-      }
       case Shape::Paraboloid:
         points.insert({ x, y, x * x + y * y });
         break;
@@ -92,6 +90,10 @@ std::vector<Vec3> MakePoints(Shape shape, int count, std::mt19937& random)
   for (const auto& [x, y, z] : points)
   {
     list.push_back({ x, y, z });
+  }
+  if (shape == Shape::TurnedGrid)
+  {
+    Turn(list);
   }
   std::shuffle(list.begin(), list.end(), random);
   return list;
@@ -258,12 +260,13 @@ TEST(StronglyDelaunay, FoldedQuadrilaterals)
     for (int i = 0; i < 4; ++i)
     {
       const double angle = 3.0 * unit(random);
-      points.push_back(Turn({ std::cos(angle), std::sin(angle), 0.0 }));
+      points.push_back({ std::cos(angle), std::sin(angle), 0.0 });
     }
     for (int i = 0; i < 6; ++i)
     {
-      points.push_back(Turn({ 2.0 * unit(random), 2.0 * unit(random), -1.0 + unit(random) }));
+      points.push_back({ 2.0 * unit(random), 2.0 * unit(random), -1.0 + unit(random) });
     }
+    Turn(points);
     PointOctree octree;
     octree.Insert(points);
     const SurfaceDelaunayTest test(points, octree);
@@ -278,4 +281,37 @@ TEST(StronglyDelaunay, FoldedQuadrilaterals)
   }
   EXPECT_GT(numberOfGood, 100);
   EXPECT_LT(numberOfGood, 3900);
+}
+
+/** Corners on a line but for rounding, whose triangle may have no normal and no center in doubles. */
+TEST(StronglyDelaunay, CornersOnALineButForRounding)
+{
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::uniform_int_distribution<int> step(-3, 3);
+  int numberOfTriangles = 0;
+  for (int sample = 0; sample < 2000; ++sample)
+  {
+    SCOPED_TRACE("sample " + std::to_string(sample));
+    const Vec3 direction{ 4.0 + step(random), 1.0 * step(random), 0.25 * step(random) };
+    std::vector<Vec3> points{ { 0.0, 1.0, 2.0 } };
+    points.push_back(points[0] + direction);
+    points.push_back(points[0] + 3.0 * direction);
+    for (int i = 0; i < 40; ++i)
+    {
+      points.push_back({ 9.0 * unit(random), 9.0 * unit(random), 9.0 * unit(random) });
+    }
+    Turn(points);
+    if (AreCollinear(points[0], points[1], points[2]))
+    {
+      continue;
+    }
+    ++numberOfTriangles;
+    PointOctree octree;
+    octree.Insert(points);
+    const SurfaceDelaunayTest test(points, octree);
+    SurfaceDelaunayTest::Result found;
+    CheckTriangle(points, test, { 0, 1, 2 }, found);
+  }
+  EXPECT_GT(numberOfTriangles, 1000);
 }

@@ -58,7 +58,7 @@ void SortUnique(std::vector<T>& ids)
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
 }
 
-/** The same for edges, as numbers. */
+/** Sorts a list of edges and drops repetitions. Edges are compared as numbers, which is faster. */
 inline void SortUnique(std::vector<EdgeIds>& edges)
 {
   std::vector<std::uint64_t> numbers;

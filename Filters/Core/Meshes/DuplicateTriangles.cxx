@@ -33,7 +33,7 @@ std::vector<DuplicateTriangle> FindDuplicateTriangles(const std::vector<Triangle
   {
     order[next[sorted[t][0]]++] = static_cast<Id>(t);
   }
-  // Those of one bin differ in the other two points, here as one number.
+  // The triangles in one bin differ in their other two points, which are compared as one number.
   const auto getOthers = [&sorted](Id t) { return PackIds(sorted[t][1], sorted[t][2]); };
   for (Id i = 0; i < numberOfPoints; ++i)
   {

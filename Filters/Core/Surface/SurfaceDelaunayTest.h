@@ -36,9 +36,9 @@ public:
     double Radius = 0.0;
     /**
      * Whether the ball is loose, and holds many points that are not in the sphere. The sphere is
-     * almost a half space then, or the smallest one through a needle. As long as points are added outside of the sphere through
-     * the triangle and a fourth point, if it has one, else outside of the smallest sphere, the
-     * triangle stays Delaunay as well.
+     * almost a half space then, or the smallest one through a needle. As long as points are added
+     * outside of the sphere through the triangle and a fourth point, if it has one, else outside of
+     * the smallest sphere, the triangle stays Delaunay as well.
      */
     bool IsLoose = false;
     bool HasPoint = false;

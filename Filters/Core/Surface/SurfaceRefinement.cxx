@@ -459,6 +459,7 @@ bool SurfaceRefinement::ResolveByFlip(Id t)
   // Nearly cocircular and nearly coplanar points: the local rule may not see what the exact
   // double sphere sees. A ridge along one diagonal, however flat, is a valley along the other: a
   // valley has the fourth point in front, which may leave no empty sphere there.
+  const Vec3 center = this->FindCircumcenter(t);
   for (Id use : uses)
   {
     const Id other = this->Surface->GetTriangle(t).Adjacent[use % 3];
@@ -471,7 +472,6 @@ bool SurfaceRefinement::ResolveByFlip(Id t)
     const Id b = ids[(use % 3 + 1) % 3];
     const Id c = this->Surface->GetApex(use);
     const Id d = this->Surface->GetApex(other);
-    const Vec3 center = this->FindCircumcenter(t);
     if (Distance(center, this->Points[d]) > CocircularRadii * Distance(center, this->Points[a]))
     {
       continue;
