@@ -303,6 +303,42 @@ TEST(ComplexKinds, EdgesFirstWhereTrianglesDoNotEnd)
   }
 }
 
+/**
+ * A match landed outside its facet by rounding, next to an edge that nothing encroached on. The edge
+ * was halved towards one end until the limit was reached, again and again for 35 minutes.
+ */
+TEST(ComplexKinds, MatchesOutsideTheirFacetSplitNoEdge)
+{
+  BoundaryTriangulatorOutput triangulated;
+  ASSERT_TRUE(
+    TriangulateBoundary(ComplexMaker(ComplexKind::VoronoiCells, 5418).Make(), {}, {}, triangulated)
+      .IsOk());
+  for (const SurfaceCriterion criterion :
+    { SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
+  {
+    bool isFulfilled = false;
+    EXPECT_LT(MeshComplex(triangulated.Surface, criterion, isFulfilled), 300u);
+    EXPECT_TRUE(isFulfilled);
+  }
+}
+
+/**
+ * Plates 300,000 times as far away as they are large, with edges of 1e-5 of that. Three points of
+ * one edge became a triangle in both facets at it. Two sheets had become one by that, and no mesh
+ * was left.
+ */
+TEST(ComplexKinds, PointsOfOneEdgeAreNoTriangle)
+{
+  BoundaryTriangulatorOutput triangulated;
+  ASSERT_TRUE(MakePlaced(ComplexKind::TiltedPlates, 2657, triangulated));
+  for (const SurfaceCriterion criterion : { SurfaceCriterion::Delaunay,
+         SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
+  {
+    bool isFulfilled = false;
+    EXPECT_LT(MeshComplex(triangulated.Surface, criterion, isFulfilled), 3000u);
+  }
+}
+
 /** Not all fulfil the stronger criteria; all are meshed. */
 TEST(ComplexKinds, Fans)
 {

@@ -16,6 +16,12 @@ namespace
  * rounding may be on either side of it, depending on the axis.
  */
 constexpr double EqualAxes = 1.001;
+
+/** The use of a triangle's edge some steps on from that of another use. */
+Id TurnUse(Id use, int steps)
+{
+  return 3 * (use / 3) + (use + steps) % 3;
+}
 } // namespace
 
 RefinableSurface::RefinableSurface(const TriangleMesh& surface,
@@ -196,6 +202,17 @@ int RefinableSurface::GetProjectionAxis(Id triangle, int& turn) const
   return axis;
 }
 
+/**
+ * Whether the edges of two uses are pieces of one edge of the input. No triangle can have both, as
+ * its corners would lie on one line, whatever rounding makes of them.
+ */
+bool RefinableSurface::AreOnOneInputEdge(Id first, Id second) const
+{
+  const Id s = this->GetSegmentAt(first / 3, first % 3);
+  const Id r = this->GetSegmentAt(second / 3, second % 3);
+  return s != NoId && r != NoId && this->Segments[s].InputEdge == this->Segments[r].InputEdge;
+}
+
 bool RefinableSurface::IsConvex(Id use) const
 {
   const Id other = this->Triangles[use / 3].Adjacent[use % 3];
@@ -204,6 +221,11 @@ bool RefinableSurface::IsConvex(Id use) const
   const Vec3& b = this->Points[ids[(use % 3 + 1) % 3]];
   const Vec3& c = this->Points[this->GetApex(use)];
   const Vec3& d = this->Points[this->GetApex(other)];
+  if (this->AreOnOneInputEdge(TurnUse(use, 1), TurnUse(other, 2)) ||
+    this->AreOnOneInputEdge(TurnUse(use, 2), TurnUse(other, 1)))
+  {
+    return false;
+  }
   // The normal of the larger triangle counts: that of a needle may be noise.
   const bool isOtherLarger = SquaredNorm(Cross(a - b, d - b)) > SquaredNorm(Cross(b - a, c - a));
   int turn = 0;

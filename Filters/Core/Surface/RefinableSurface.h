@@ -79,7 +79,10 @@ public:
   /** Facets that a segment borders on, ascending. */
   std::vector<Id> GetFacets(Id segment) const;
 
-  /** Whether the two triangles at a smooth edge form a strictly convex quadrilateral (exact). */
+  /**
+   * Whether the two triangles at a smooth edge form a strictly convex quadrilateral (exact). No
+   * corner counts as convex at which two pieces of one edge of the input meet.
+   */
   bool IsConvex(Id use) const;
 
   /** Flip the diagonal of the quadrilateral at a smooth edge. */
@@ -118,6 +121,7 @@ private:
   void Connect(Id use, Id adjacent, Id formerUse);
   bool CanSplitUse(Id use, const Vec3& position) const;
   Id SplitUse(Id use, Id point);
+  bool AreOnOneInputEdge(Id first, Id second) const;
   void TurnTriangle(Id t);
   void MakeFacets();
   int GetProjectionAxis(Id triangle, int& turn) const;

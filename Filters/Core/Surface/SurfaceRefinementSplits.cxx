@@ -171,6 +171,10 @@ bool SurfaceRefinement::ResolveInFacet(Id t, Id encroaching, const Vec3& target,
     const EdgeIds& ends = surface.GetSegment(landing.Segment).Points;
     const auto isEncroachedBy = [&](const Vec3& p)
     { return InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], p) >= 0; };
+    // Its own ends do not count: without another reason, a target that lies beyond the segment by
+    // rounding would halve it time and again towards one end.
+    const auto isEncroachedByCorner = [&](Id p)
+    { return p != ends[0] && p != ends[1] && isEncroachedBy(this->Points[p]); };
     const bool isEncroached = encroaching != NoId && isEncroachedBy(this->Points[encroaching]);
     if (isMirrored && !isEncroached && this->IsMatchedByEnd(landing.Segment, encroaching, target))
     {
@@ -180,8 +184,7 @@ bool SurfaceRefinement::ResolveInFacet(Id t, Id encroaching, const Vec3& target,
       this->Plan.Rules != MatchingRules::Usual && isMirrored && isEncroachedBy(target);
     // On a curved facet the walk may lead to an edge that has nothing to do with the triangle.
     return (isEncroached || isEncroachedBy(target) ||
-             std::any_of(start.begin(), start.end(),
-               [&](Id p) { return isEncroachedBy(this->Points[p]); })) &&
+             std::any_of(start.begin(), start.end(), isEncroachedByCorner)) &&
       this->SplitSegment(landing.Segment, isEncroached || isTargetPartner ? encroaching : NoId);
   }
 
