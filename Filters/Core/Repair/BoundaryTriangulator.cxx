@@ -63,17 +63,22 @@ public:
 
   Status Run()
   {
-    using Step = Status (Triangulation::*)();
-    const Step steps[] = { &Triangulation::CheckInput, &Triangulation::MergePoints,
-      &Triangulation::CleanPolygons, &Triangulation::SplitEdges,
-      &Triangulation::DropDuplicatePolygons, &Triangulation::TriangulatePolygons,
-      &Triangulation::DropDuplicateTriangles, &Triangulation::PatchGaps,
-      &Triangulation::FindIntersections, &Triangulation::ResolveIntersections,
-      &Triangulation::CountEdges, &Triangulation::RefuseIntersections, &Triangulation::WriteOutput,
-      &Triangulation::TurnReversedTriangles };
-    for (const Step step : steps)
+    using T = Triangulation;
+    struct Step
     {
-      const Status status = (this->*step)();
+      Status (T::*Run)();
+      /** Whether it has nothing to do once the triangles are known to be conforming. */
+      bool IsForNonconforming = false;
+    };
+    const Step steps[] = { { &T::CheckInput }, { &T::MergePoints }, { &T::CleanPolygons },
+      { &T::TakeTriangles }, { &T::SplitEdges, true }, { &T::DropDuplicatePolygons, true },
+      { &T::TriangulatePolygons, true }, { &T::DropDuplicateTriangles, true }, { &T::PatchGaps },
+      { &T::FindIntersections, true }, { &T::ResolveIntersections, true }, { &T::CountEdges },
+      { &T::RefuseIntersections }, { &T::WriteOutput }, { &T::TurnReversedTriangles } };
+    for (const Step& step : steps)
+    {
+      const Status status =
+        this->IsConforming && step.IsForNonconforming ? Status() : (this->*step.Run)();
       if (!status.IsOk())
       {
         return status;
@@ -236,11 +241,51 @@ private:
       cells);
   }
 
+  /**
+   * Triangles that meet only in whole edges and vertices have no T-junctions and no copies. Most
+   * surfaces are such ones: they are told by the search for intersections, which is needed anyway.
+   */
+  Status TakeTriangles()
+  {
+    const Id n = this->Polygons.GetSize();
+    if (this->Options.MergeTolerance > 0.0 ||
+      static_cast<Id>(this->Polygons.Vertices.size()) != 3 * n)
+    {
+      return {};
+    }
+    for (Id k = 0; k < n; ++k)
+    {
+      const Id* ids = this->Polygons.Vertices.data() + this->Polygons.Offsets[k];
+      this->Triangles.push_back({ ids[0], ids[1], ids[2] });
+    }
+    std::vector<TrianglePair> pairs;
+    if (!FindIntersectingPairs(
+          this->Points, this->Triangles, {}, this->Context.Part(0.1, 0.2), pairs))
+    {
+      return Status::Aborted();
+    }
+    this->IsConforming = pairs.empty();
+    if (!this->IsConforming)
+    {
+      this->Triangles.clear();
+      return {};
+    }
+    this->Sources = this->Polygons.Cells;
+    if (this->HasLabels())
+    {
+      for (const Id cell : this->Sources)
+      {
+        this->TriangleLabels.push_back(this->Input.Labels[cell]);
+      }
+    }
+    return {};
+  }
+
   Status SplitEdges()
   {
     std::vector<TJunction> junctions;
     if (!SplitEdgesAtVertices(this->Points, this->Options.MergeTolerance,
-          this->Context.Part(0.1, 0.3), this->Polygons, junctions))
+          this->Context.Part(0.2, 0.3), this->Polygons, junctions))
     {
       return Status::Aborted();
     }
@@ -411,6 +456,7 @@ private:
     for (const GapPatch& patch : patches)
     {
       ++this->Output.Report.PatchedRings;
+      this->IsConforming = false;
       for (const OpenEdge& edge : patch.Edges)
       {
         this->AddProblem(SurfaceProblemKind::PatchedGap, this->Sources[edge.Triangle], NoId,
@@ -605,6 +651,8 @@ private:
   /** Labels of each input polygon, united with those of its copies. */
   std::vector<RegionPair> Labels;
   std::vector<TriangleIds> Triangles;
+  /** Whether the triangles are known to meet only in whole edges and vertices. */
+  bool IsConforming = false;
   std::vector<Id> Sources;
   std::vector<RegionPair> TriangleLabels;
   /** Points made where triangles intersect, and what they were made from. */

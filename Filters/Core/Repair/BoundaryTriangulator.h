@@ -17,6 +17,8 @@
  *  6. find all pairs of triangles that cross, overlap or touch other than in a common edge or
  *     vertex, exactly (TriangleIntersection.h); as an option split them along their intersections
  *     (IntersectionResolver.h);
+ *     A surface of triangles without a tolerance is searched for them first: if there are none,
+ *     steps 3 and 4 have nothing to do;
  *  7. reverse the triangles whose orientation is wrong, where labels or closure tell
  *     (SurfaceOrientation.h).
  *
