@@ -26,6 +26,8 @@ namespace cdm
 {
 namespace
 {
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+
 /** Tangent of one degree: facets of a border that bend by less go straight on. */
 constexpr double SmoothTangent = 0.017455064928217585;
 
@@ -33,22 +35,52 @@ constexpr std::size_t ContinueInterval = 1 << 12;
 constexpr const char* FacetActivity = "Checking facets";
 constexpr std::size_t MaximumNumberOfExamples = 10;
 
-/** Sort the points of a triangle; true if its normal keeps its direction. */
-bool SortPoints(TriangleIds& triangle)
+/** Of a tetrahedron at an edge, as two sides of a right triangle: compared without arctangents. */
+class DihedralAngle
 {
-  bool isEven = true;
-  const auto order = [&](int i, int j)
+public:
+  /** @param opposite not negative */
+  DihedralAngle(double opposite, double adjacent)
+    : Opposite(opposite), Adjacent(adjacent), Cotangent(opposite > 0.0 ? adjacent / opposite
+                                                  : adjacent < 0.0     ? -Infinity
+                                                                       : Infinity)
   {
-    if (triangle[i] > triangle[j])
+  }
+  bool operator<(const DihedralAngle& other) const { return this->Cotangent > other.Cotangent; }
+  double GetDegrees() const
+  {
+    return DegreesPerRadian * std::atan2(this->Opposite, this->Adjacent);
+  }
+
+private:
+  double Opposite;
+  double Adjacent;
+  double Cotangent;
+};
+
+/** With the six angles of a tetrahedron: makes the smallest and the largest one so far theirs. */
+void CompareDihedralAngles(
+  const std::array<Vec3, 4>& p, double sixVolumes, DihedralAngle& smallest, DihedralAngle& largest)
+{
+  std::array<Vec3, 4> normals;
+  for (int facet = 0; facet < 4; ++facet)
+  {
+    const int* ids = FacetVertices[facet];
+    normals[facet] = Cross(p[ids[1]] - p[ids[0]], p[ids[2]] - p[ids[0]]);
+  }
+  for (int j = 0; j < 4; ++j)
+  {
+    for (int k = j + 1; k < 4; ++k)
     {
-      std::swap(triangle[i], triangle[j]);
-      isEven = !isEven;
+      // Facets j and k meet in the edge of the other two vertices; n x m is the edge times the
+      // determinant.
+      const int other = j == 0 ? (k == 1 ? 2 : 1) : 0;
+      const double edge = Distance(p[other], p[6 - j - k - other]);
+      const DihedralAngle angle(edge * sixVolumes, -Dot(normals[j], normals[k]));
+      smallest = std::min(smallest, angle);
+      largest = std::max(largest, angle);
     }
-  };
-  order(0, 1);
-  order(1, 2);
-  order(0, 1);
-  return isEven;
+  }
 }
 
 /** A facet of a tetrahedron, or a triangle of the boundary, found by its sorted points. */
@@ -291,7 +323,7 @@ bool Checker::CheckTetrahedra(const ExecutionContext& context)
 {
   const std::size_t count = this->Mesh.Tetrahedra.size();
   const ParallelLoopOptions options{ this->NumberOfThreads, ContinueInterval };
-  std::vector<double> largest(GetNumberOfBlocks(count, options), 0.0);
+  std::vector<DihedralAngle> largest(GetNumberOfBlocks(count, options), DihedralAngle(0.0, 1.0));
   this->SmallestAngles.resize(count);
   this->Findings.Orientations.resize(count);
   std::vector<long double> volumes(count);
@@ -307,29 +339,10 @@ bool Checker::CheckTetrahedra(const ExecutionContext& context)
       const long double determinant = GetSixVolumes(p[0], p[1], p[2], p[3]);
       volumes[i] = determinant / 6.0L;
 
-      double smallest = 180.0;
-      std::array<Vec3, 4> normals;
-      for (int facet = 0; facet < 4; ++facet)
-      {
-        const int* ids = FacetVertices[facet];
-        normals[facet] = Cross(p[ids[1]] - p[ids[0]], p[ids[2]] - p[ids[0]]);
-      }
-      for (int j = 0; j < 4; ++j)
-      {
-        for (int k = j + 1; k < 4; ++k)
-        {
-          // Facets j and k meet in the edge of the other two vertices; n x m is the edge times the
-          // determinant.
-          const int other = j == 0 ? (k == 1 ? 2 : 1) : 0;
-          const double edge = Distance(p[other], p[6 - j - k - other]);
-          const double angle = DegreesPerRadian *
-            std::atan2(
-              edge * static_cast<double>(std::abs(determinant)), -Dot(normals[j], normals[k]));
-          smallest = std::min(smallest, angle);
-          largest[block] = std::max(largest[block], angle);
-        }
-      }
-      this->SmallestAngles[i] = smallest;
+      DihedralAngle smallest(0.0, -1.0);
+      CompareDihedralAngles(
+        p, static_cast<double>(std::abs(determinant)), smallest, largest[block]);
+      this->SmallestAngles[i] = smallest.GetDegrees();
     }
   };
   if (!ParallelLoop(count, options, context, "Checking tetrahedra", check))
@@ -340,9 +353,10 @@ bool Checker::CheckTetrahedra(const ExecutionContext& context)
   {
     this->Report.SmallestDihedralAngle = std::min(this->Report.SmallestDihedralAngle, angle);
   }
-  for (const double angle : largest)
+  for (const DihedralAngle& angle : largest)
   {
-    this->Report.LargestDihedralAngle = std::max(this->Report.LargestDihedralAngle, angle);
+    this->Report.LargestDihedralAngle =
+      std::max(this->Report.LargestDihedralAngle, angle.GetDegrees());
   }
   for (std::size_t i = 0; i < count; ++i)
   {
@@ -412,21 +426,13 @@ bool Checker::IsInner(const std::vector<FacetRecord>& facets) const
 }
 
 /**
- * Sorted; without inner facets, but for those at the lowest points of boundary triangles. Most
- * facets are such ones: a list of all took as much memory as two meshes.
+ * Sorted; without inner facets, but for those that are boundary triangles. Most facets are inner
+ * ones: a list of all took as much memory as two meshes.
  */
 bool Checker::CollectFacets(const ExecutionContext& context,
   const std::vector<FacetRecord>& triangles, std::vector<FacetRecord>& facets) const
 {
   const std::size_t count = this->Mesh.Points.size();
-  std::vector<char> hasTriangle(count, 0);
-  for (const FacetRecord& triangle : triangles)
-  {
-    if (triangle.Points[0] != NoId)
-    {
-      hasTriangle[triangle.Points[0]] = 1;
-    }
-  }
   const SimplexIncidence incidence(this->Mesh, this->NumberOfThreads);
   const ParallelLoopOptions options{ this->NumberOfThreads, ContinueInterval };
   std::vector<std::vector<FacetRecord>> found(GetNumberOfBlocks(count, options));
@@ -434,19 +440,29 @@ bool Checker::CollectFacets(const ExecutionContext& context,
   {
     std::vector<SimplexIncidence::Record> scratch;
     std::vector<FacetRecord> group;
+    // Both the facets and the triangles ascend.
+    auto triangle = std::lower_bound(triangles.begin(), triangles.end(),
+      FacetRecord{ { static_cast<Id>(begin), NoId, NoId }, NoId, true });
     for (std::size_t point = begin; point < end; ++point)
     {
       incidence.ForEachFacet(static_cast<Id>(point), scratch,
-        [&](const TriangleIds&, auto first, auto last)
+        [&](const TriangleIds& points, auto first, auto last)
         {
           group.clear();
           for (; first != last; ++first)
           {
             const Id facet = first->Simplex;
-            group.push_back({ GetFacet(this->Mesh.Tetrahedra[facet / 4], facet % 4), facet, true });
-            group.back().IsEven = SortPoints(group.back().Points);
+            group.push_back(
+              { points, facet, IsEven(GetFacet(this->Mesh.Tetrahedra[facet / 4], facet % 4)) });
           }
-          if (hasTriangle[point] != 0 || !this->IsInner(group))
+          while (triangle != triangles.end() && *triangle < group.front() &&
+            !triangle->HasPointsOf(group.front()))
+          {
+            ++triangle;
+          }
+          const bool isOnBoundary =
+            triangle != triangles.end() && triangle->HasPointsOf(group.front());
+          if (isOnBoundary || !this->IsInner(group))
           {
             found[block].insert(found[block].end(), group.begin(), group.end());
           }
@@ -476,10 +492,10 @@ std::vector<FacetRecord> Checker::CollectBoundary()
   for (std::size_t i = 0; i < this->Boundary->Triangles.size(); ++i)
   {
     const TriangleIds& ids = this->Boundary->Triangles[i];
-    FacetRecord triangle{ { meshPoints[ids[0]], meshPoints[ids[1]], meshPoints[ids[2]] },
-      static_cast<Id>(i), true };
-    triangle.IsEven = SortPoints(triangle.Points);
-    triangles.push_back(triangle);
+    TriangleIds points{ meshPoints[ids[0]], meshPoints[ids[1]], meshPoints[ids[2]] };
+    const bool isEven = IsEven(points);
+    std::sort(points.begin(), points.end());
+    triangles.push_back({ points, static_cast<Id>(i), isEven });
   }
   std::sort(triangles.begin(), triangles.end());
   return triangles;

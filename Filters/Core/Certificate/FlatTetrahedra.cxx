@@ -5,6 +5,7 @@
 #include "Core/Geometry/Measures.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace cdm
@@ -59,7 +60,10 @@ private:
   void FindSharpWedges();
   void FindSharpPlaneAngles();
 
-  /** The wedge of a region at an edge of the list: the angles of its tetrahedra there, summed. */
+  /**
+   * The wedge of a region at an edge of the list: the angles of its tetrahedra there, summed until
+   * it is not sharp any more.
+   */
   struct Wedge
   {
     Id Edge;
@@ -76,8 +80,8 @@ private:
   /** Structural edges with an end that a flat tetrahedron has, ascending; their ends. */
   std::vector<EdgeIds> Edges;
   std::vector<char> IsEnd;
-  /** For each point the numbers of these edges that begin at it. */
-  IdLists PointEdges;
+  /** For each point the number of the first of these edges that does not begin at a lower one. */
+  std::vector<Id> FirstEdges;
   /** One for each point: whether two structural edges meet there at a sharp angle. */
   std::vector<char> IsSharp;
   /** Points of sharp wedges with the region of the wedge, ascending. */
@@ -112,20 +116,17 @@ void FlatTetrahedra::MarkPoints(
 
 void FlatTetrahedra::ListEdges(const std::vector<EdgeIds>& structuralEdges)
 {
-  std::vector<std::pair<Id, Id>> pointEdges;
+  this->FirstEdges.assign(this->Mesh.Points.size() + 1, 0);
   for (const EdgeIds& edge : structuralEdges)
   {
     if (this->IsOfFlat[edge[0]] != 0 || this->IsOfFlat[edge[1]] != 0)
     {
-      pointEdges.emplace_back(edge[0], static_cast<Id>(this->Edges.size()));
       this->Edges.push_back(edge);
+      ++this->FirstEdges[edge[0] + 1];
       this->IsEnd[edge[0]] = this->IsEnd[edge[1]] = 1;
     }
   }
-  if (!this->Edges.empty())
-  {
-    this->PointEdges.Build(static_cast<Id>(this->Mesh.Points.size()), pointEdges);
-  }
+  std::partial_sum(this->FirstEdges.begin(), this->FirstEdges.end(), this->FirstEdges.begin());
 }
 
 /** The number of an edge in the list, or NoId. */
@@ -134,7 +135,7 @@ Id FlatTetrahedra::FindEdge(Id a, Id b) const
   if (this->IsEnd[a] != 0 && this->IsEnd[b] != 0)
   {
     const auto [first, last] = std::minmax(a, b);
-    for (const Id edge : this->PointEdges[first])
+    for (Id edge = this->FirstEdges[first]; edge < this->FirstEdges[first + 1]; ++edge)
     {
       if (this->Edges[edge][1] == last)
       {
@@ -174,8 +175,11 @@ void FlatTetrahedra::FindSharpWedges()
         wedge = static_cast<Id>(wedges.size());
         wedges.push_back({ number, region, 0.0, std::exchange(firstWedges[number], wedge) });
       }
-      const auto [a, b, c, d] = GetCorners(this->Mesh.Points, ids);
-      wedges[wedge].Angle += GetDihedralAngle(a, b, c, d, edge);
+      if (wedges[wedge].Angle < SharpWedge)
+      {
+        const auto [a, b, c, d] = GetCorners(this->Mesh.Points, ids);
+        wedges[wedge].Angle += GetDihedralAngle(a, b, c, d, edge);
+      }
     }
   }
   for (const Wedge& wedge : wedges)

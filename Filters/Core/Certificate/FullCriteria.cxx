@@ -66,8 +66,8 @@ private:
   using RecordIterator = Records::const_iterator;
   void EvaluateFacet(const SphereCriteria& criteria, const TriangleIds& points,
     RecordIterator begin, RecordIterator end, BlockResult& result) const;
-  void EvaluateEdge(
-    const EdgeIds& edge, RecordIterator begin, RecordIterator end, BlockResult& result) const;
+  void EvaluateEdge(const EdgeIds& edge, bool isBorder, RecordIterator begin, RecordIterator end,
+    BlockResult& result) const;
   /** Crit. 3.1 of an outer or interface facet, by its ascending points. */
   bool HasEmptySphere(const TriangleIds& points) const
   {
@@ -183,12 +183,8 @@ void Evaluator::EvaluateFacet(const SphereCriteria& criteria, const TriangleIds&
       (this->Findings.Orientations[tetrahedron] != 0 && this->Findings.IsDelaunay[tetrahedron]);
     isBorder =
       isBorder || this->Mesh.Regions[tetrahedron] != this->Mesh.Regions[begin->Simplex / 4];
-    // The parity of the permutation that sorts the facet's points tells the side.
     const TriangleIds facet = GetFacet(this->Mesh.Tetrahedra[tetrahedron], record->Simplex % 4);
-    const bool isEven = facet == TriangleIds{ points[0], points[1], points[2] } ||
-      facet == TriangleIds{ points[1], points[2], points[0] } ||
-      facet == TriangleIds{ points[2], points[0], points[1] };
-    ++sides[isEven == (this->Findings.Orientations[tetrahedron] >= 0)];
+    ++sides[IsEven(facet) == (this->Findings.Orientations[tetrahedron] >= 0)];
   }
   if (sides[0] > 1 || sides[1] > 1)
   {
@@ -266,25 +262,17 @@ bool Evaluator::HasNegativeCotangentSum(RecordIterator begin, RecordIterator end
     const int edge = record->Simplex % 6;
     const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
     const std::vector<Vec3>& points = this->Mesh.Points;
-    const auto getNormal = [&](int facet)
-    {
-      const TriangleIds triangle = GetFacet(ids, facet);
-      const Vec3& origin = points[triangle[0]];
-      return Cross(points[triangle[1]] - origin, points[triangle[2]] - origin);
-    };
-    const int* ends = TetrahedronEdges[edge];
-    const Vec3 first = getNormal(ends[0]);
-    const Vec3 apex = points[ids[ends[0]]];
-    const Vec3 foot = points[ids[ends[1]]];
-    const double sixVolumes = std::abs(Dot(first, apex - foot));
-    const double term = -Dot(first, getNormal(ends[1])) / sixVolumes;
-    const double length = Distance(
-      points[ids[TetrahedronEdges[5 - edge][0]]], points[ids[TetrahedronEdges[5 - edge][1]]]);
-    double extent = 0.0;
-    for (const int* pair : TetrahedronEdges)
-    {
-      extent = std::max(extent, SquaredNorm(points[ids[pair[0]]] - points[ids[pair[1]]]));
-    }
+    const Vec3& origin = points[ids[TetrahedronEdges[5 - edge][0]]];
+    const Vec3 opposite = points[ids[TetrahedronEdges[5 - edge][1]]] - origin;
+    const Vec3 first = points[ids[TetrahedronEdges[edge][0]]] - origin;
+    const Vec3 second = points[ids[TetrahedronEdges[edge][1]]] - origin;
+    const Vec3 normal = Cross(opposite, first);
+    const double sixVolumes = std::abs(Dot(normal, second));
+    const double term = Dot(normal, Cross(opposite, second)) / sixVolumes;
+    const double length = Norm(opposite);
+    // No edge is longer than twice the longest of three.
+    const double extent =
+      4.0 * std::max({ length * length, SquaredNorm(first), SquaredNorm(second) });
     sum += term;
     lengths += std::max(length, std::abs(term));
     error += ProductError * extent * (std::sqrt(extent) * std::abs(term) + extent) / sixVolumes;
@@ -315,8 +303,8 @@ bool Evaluator::HasNegativeCotangentSum(RecordIterator begin, RecordIterator end
   return accurateSum.High < -SumTolerance * lengths;
 }
 
-void Evaluator::EvaluateEdge(
-  const EdgeIds& edge, RecordIterator begin, RecordIterator end, BlockResult& result) const
+void Evaluator::EvaluateEdge(const EdgeIds& edge, bool isBorder, RecordIterator begin,
+  RecordIterator end, BlockResult& result) const
 {
   const auto add = [&](MeshFault fault, Id region, Id tetrahedron) {
     result.Violations.push_back({ fault, { edge[0], edge[1], NoId, NoId }, tetrahedron, region });
@@ -328,8 +316,7 @@ void Evaluator::EvaluateEdge(
   }
   const auto getRegion = [&](const SimplexIncidence::Record& record)
   { return this->Mesh.Regions[record.Simplex / 6]; };
-  const bool isConvex = !std::binary_search(this->Findings.BorderEdges.begin(),
-                          this->Findings.BorderEdges.end(), edge) &&
+  const bool isConvex = !isBorder &&
     std::all_of(begin, end,
       [&](const auto& record)
       {
@@ -359,11 +346,22 @@ bool Evaluator::EvaluateEdges(const ExecutionContext& context)
   const auto evaluate = [&](std::size_t begin, std::size_t end, std::size_t block)
   {
     Records scratch;
+    // Both the edges of the mesh and those of its border ascend.
+    const std::vector<EdgeIds>& borderEdges = this->Findings.BorderEdges;
+    auto border = std::lower_bound(
+      borderEdges.begin(), borderEdges.end(), EdgeIds{ static_cast<Id>(begin), NoId });
     for (std::size_t point = begin; point < end; ++point)
     {
       this->Incidence.ForEachEdge(static_cast<Id>(point), scratch,
-        [&](const TriangleIds& points, RecordIterator first, RecordIterator last) {
-          this->EvaluateEdge({ points[0], points[1] }, first, last, results[block]);
+        [&](const TriangleIds& points, RecordIterator first, RecordIterator last)
+        {
+          const EdgeIds edge{ points[0], points[1] };
+          while (border != borderEdges.end() && PackIds(*border) < PackIds(edge))
+          {
+            ++border;
+          }
+          const bool isBorder = border != borderEdges.end() && *border == edge;
+          this->EvaluateEdge(edge, isBorder, first, last, results[block]);
         });
     }
   };

@@ -69,22 +69,20 @@ public:
     this->ForEachTetrahedron(point,
       [&](Id tetrahedron, int vertex)
       {
-        for (int facet = 0; facet < 4; ++facet)
+        const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
+        const int* others = FacetVertices[vertex];
+        const bool isLower[3] = { this->IsLower(tetrahedron, others[0], vertex),
+          this->IsLower(tetrahedron, others[1], vertex),
+          this->IsLower(tetrahedron, others[2], vertex) };
+        // Without lower vertices it is the lowest point of three facets, with one of one facet.
+        const int numberOfLower = isLower[0] + isLower[1] + isLower[2];
+        for (int i = 0; i < 3 && numberOfLower < 2; ++i)
         {
-          const int* others = FacetVertices[facet];
-          if (facet == vertex)
+          if (numberOfLower == 0 || isLower[i])
           {
-            continue;
-          }
-          // The other two vertices of the facet.
-          const int i = others[0] == vertex ? 1 : 0;
-          const int j = others[2] == vertex ? 1 : 2;
-          if (this->IsLower(tetrahedron, vertex, others[i]) &&
-            this->IsLower(tetrahedron, vertex, others[j]))
-          {
-            const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
-            const auto [second, third] = std::minmax(ids[others[i]], ids[others[j]]);
-            scratch.push_back({ second, third, 4 * tetrahedron + facet });
+            const auto [second, third] =
+              std::minmax(ids[others[(i + 1) % 3]], ids[others[(i + 2) % 3]]);
+            scratch.push_back({ second, third, 4 * tetrahedron + others[i] });
           }
         }
       });

@@ -50,6 +50,13 @@ inline TriangleIds GetFacet(const TetrahedronIds& tetrahedron, int facet)
     tetrahedron[FacetVertices[facet][2]] };
 }
 
+/** Whether the normal of a triangle keeps its direction when its three points are sorted. */
+inline bool IsEven(const TriangleIds& ids)
+{
+  // Two steps up around it, and not two steps down.
+  return (ids[0] < ids[1]) + (ids[1] < ids[2]) + (ids[2] < ids[0]) == 2;
+}
+
 /** The positions of the vertices. */
 inline std::array<Vec3, 4> GetCorners(
   const std::vector<Vec3>& points, const TetrahedronIds& tetrahedron)
