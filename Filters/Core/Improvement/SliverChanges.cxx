@@ -5,6 +5,7 @@
 #include "Core/Geometry/Measures.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -14,7 +15,20 @@ namespace
 {
 /** First step of the search for a new point's position, in radii of the sphere that it destroys. */
 constexpr double FirstInsertion = 0.3;
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+
+double GetTangent2(double degrees)
+{
+  const double tangent = std::tan(degrees / DegreesPerRadian);
+  return degrees < 90.0 ? tangent * tangent : Infinity;
+}
 } // namespace
+
+SliverChanges::SliverChanges(const SliverAim& aim, const RefinedMesh& mesh, bool isRecording)
+  : Goal(aim), Mesh(mesh), Search(mesh.GetTetrahedra().MakeSearch(isRecording))
+{
+  this->Bounds.Target = GetTangent2(aim.Target);
+}
 
 /**
  * Includes an angle in what the change is to improve, or in the rest. Angles over the target always
@@ -43,24 +57,38 @@ double SliverChanges::GetFloor(const SmallestAngles& before) const
                             : std::min(before.Aimed, before.Other);
 }
 
+/**
+ * Sets what the tetrahedra have to be that would fill a cavity.
+ * @param floor degrees that tetrahedra which are not aimed at have to keep; 0: not known yet
+ * @param required degrees that the others have to surpass
+ */
+void SliverChanges::SetBounds(double floor, double required)
+{
+  if (this->Bounds.Floor.first != floor)
+  {
+    // Rounding must not make a tetrahedron fail that stays as it is.
+    this->Bounds.Floor = { floor, (1.0 - 1e-14) * GetTangent2(floor) };
+  }
+  if (this->Bounds.Required.first != required)
+  {
+    this->Bounds.Required = { required, GetTangent2(required) };
+  }
+}
+
 /** Whether the change is to improve the tetrahedron of a facet of the cavity and the new point. */
-bool SliverChanges::IsAimed(const TriangleIds& facet, double angle) const
+bool SliverChanges::IsAimed(const TriangleIds& facet, double tangent2) const
 {
   constexpr Id inside = std::numeric_limits<Id>::max();
-  return angle >= this->Goal.Target ||
+  return tangent2 >= this->Bounds.Target ||
     this->Mesh.GetShape().Sharp.IsAcross(
       { facet[0], facet[1], facet[2], inside }, SharpAngleUse::Sliver) == this->Goal.IsSharp;
 }
 
-/**
- * Whether the tetrahedron of a facet of the cavity and the new point is not too flat.
- * @param floor the angle that tetrahedra which are not aimed at have to keep; 0: not known yet
- * @param required the angle that the others have to surpass
- */
-bool SliverChanges::IsEnough(
-  double angle, const TriangleIds& facet, double floor, double required) const
+/** Whether the tetrahedron of a facet of the cavity and the new point is not too flat. */
+bool SliverChanges::IsEnough(double tangent2, const TriangleIds& facet) const
 {
-  return angle > required || (angle >= floor && !this->IsAimed(facet, angle));
+  return tangent2 > this->Bounds.Required.second ||
+    (tangent2 >= this->Bounds.Floor.second && !this->IsAimed(facet, tangent2));
 }
 
 /** Forgets what was wrong with positions before: a search of positions begins. */
@@ -80,7 +108,7 @@ void SliverChanges::NoteSpoiler(Id facet, bool isByLimit)
  * Whether a position is no good for the same reason as one before. That holds for three quarters of
  * them, and takes a tenth of the time of a search for the cavity.
  */
-bool SliverChanges::IsSpoiled(const Vec3& position, Id number, double floor, double required)
+bool SliverChanges::IsSpoiled(const Vec3& position, Id number)
 {
   const DynamicTetrahedralization& mesh = this->Mesh.GetTetrahedra();
   const auto isNoGood = [&](const Spoiler& spoiler)
@@ -88,9 +116,9 @@ bool SliverChanges::IsSpoiled(const Vec3& position, Id number, double floor, dou
     const auto [a, c, b] = GetFacet(this->Search.GetIds(spoiler.Facet / 4), spoiler.Facet % 4);
     const TriangleIds facet{ a, b, c };
     return spoiler.IsByLimit ? this->Mesh.BreaksLimit(facet, position)
-                             : !this->IsEnough(GetSmallestDihedralAngle(mesh.GetPoint(a),
+                             : !this->IsEnough(GetSmallestDihedralTangent2(mesh.GetPoint(a),
                                                  mesh.GetPoint(b), mesh.GetPoint(c), position),
-                                 facet, floor, required);
+                                 facet);
   };
   return this->Mesh.GetShape().Spheres.IsOnOneOf(this->EncroachedBefore, position) ||
     std::any_of(this->Spoilers.begin(), this->Spoilers.end(),
@@ -105,18 +133,17 @@ bool SliverChanges::IsSpoiled(const Vec3& position, Id number, double floor, dou
  * Finds a cavity. False as soon as a tetrahedron that would fill it is too flat: most positions
  * fail by one of the first, and the search is what rating them takes long for.
  */
-bool SliverChanges::FindCavity(
-  const Vec3& position, Id first, Id number, double floor, double required)
+bool SliverChanges::FindCavity(const Vec3& position, Id first, Id number)
 {
   const DynamicTetrahedralization& mesh = this->Mesh.GetTetrahedra();
-  this->Angles.clear();
+  this->Tangents2.clear();
   return this->Search.FindCavity(position, number, first, this->Found,
     [&]
     {
       const TriangleIds& facet = this->Found.Facets.back();
-      this->Angles.push_back(GetSmallestDihedralAngle(
+      this->Tangents2.push_back(GetSmallestDihedralTangent2(
         mesh.GetPoint(facet[0]), mesh.GetPoint(facet[1]), mesh.GetPoint(facet[2]), position));
-      const bool isEnough = this->IsEnough(this->Angles.back(), facet, floor, required);
+      const bool isEnough = this->IsEnough(this->Tangents2.back(), facet);
       if (!isEnough)
       {
         this->NoteSpoiler(this->Found.Inner.back(), false);
@@ -151,20 +178,20 @@ bool SliverChanges::IsAllowed(const Vec3& position, bool mayBreakLimits)
  * Smallest angle among the tetrahedra aimed at if the cavity that was found were filled. 0 if
  * another tetrahedron falls below the floor, or if the angle is not larger than required.
  */
-double SliverChanges::RateCavity(double floor, double required) const
+double SliverChanges::RateCavity() const
 {
-  double smallest = 180.0;
+  double smallest = Infinity;
   for (std::size_t i = 0; i < this->Found.Facets.size(); ++i)
   {
-    const double angle = this->Angles[i];
-    const bool isAimed = this->IsAimed(this->Found.Facets[i], angle);
-    if (isAimed ? angle <= required : angle < floor)
+    const double tangent2 = this->Tangents2[i];
+    const bool isAimed = this->IsAimed(this->Found.Facets[i], tangent2);
+    if (isAimed ? tangent2 <= this->Bounds.Required.second : tangent2 < this->Bounds.Floor.second)
     {
       return 0.0;
     }
-    smallest = isAimed ? std::min(smallest, angle) : smallest;
+    smallest = isAimed ? std::min(smallest, tangent2) : smallest;
   }
-  return smallest;
+  return smallest < Infinity ? DegreesPerRadian * std::atan(std::sqrt(smallest)) : 180.0;
 }
 
 void SliverChanges::MeasureStar(Id point)
@@ -172,7 +199,7 @@ void SliverChanges::MeasureStar(Id point)
   const DynamicTetrahedralization& mesh = this->Mesh.GetTetrahedra();
   const Vec3& position = mesh.GetPoint(point);
   this->Before = {};
-  this->Before.Nearest = std::numeric_limits<double>::infinity();
+  this->Before.Nearest = Infinity;
   Vec3 sum;
   double count = 0.0;
   for (const Id t : this->Search.GetStar())
@@ -235,13 +262,13 @@ bool SliverChanges::LeavesFlatter(Id point, const Vec3& position, double require
 
 double SliverChanges::RateMove(Id point, const Vec3& position, double floor, double required)
 {
-  if (this->LeavesFlatter(point, position, required) ||
-    this->IsSpoiled(position, point, floor, required))
+  this->SetBounds(floor, required);
+  if (this->LeavesFlatter(point, position, required) || this->IsSpoiled(position, point))
   {
     return 0.0;
   }
   const Id first = this->Search.Locate(position, this->Search.GetFirstCell());
-  if (first == NoId || !this->FindCavity(position, first, point, floor, required))
+  if (first == NoId || !this->FindCavity(position, first, point))
   {
     return 0.0;
   }
@@ -259,7 +286,7 @@ double SliverChanges::RateMove(Id point, const Vec3& position, double floor, dou
       ++broken;
     }
   }
-  const double angle = this->RateCavity(floor, required);
+  const double angle = this->RateCavity();
   return angle > required && (this->Before.Broken > 0 || broken == 0) &&
       this->IsAllowed(position, this->Before.Broken > 0)
     ? angle
@@ -309,8 +336,8 @@ bool SliverChanges::FindMove(Id point, SliverChange& change)
 double SliverChanges::RateInsertion(Id tetrahedron, const Vec3& position, double required)
 {
   const Id number = this->Mesh.GetTetrahedra().GetNumberOfPoints();
-  if (this->IsSpoiled(position, number, 0.0, required) ||
-    !this->FindCavity(position, tetrahedron, number, 0.0, required))
+  this->SetBounds(0.0, required);
+  if (this->IsSpoiled(position, number) || !this->FindCavity(position, tetrahedron, number))
   {
     return 0.0;
   }
@@ -319,7 +346,8 @@ double SliverChanges::RateInsertion(Id tetrahedron, const Vec3& position, double
   {
     this->IncludeTetrahedron(t, before);
   }
-  const double angle = this->RateCavity(this->GetFloor(before), required);
+  this->SetBounds(this->GetFloor(before), required);
+  const double angle = this->RateCavity();
   return angle > required && this->IsAllowed(position, false) ? angle : 0.0;
 }
 

@@ -27,6 +27,7 @@
 #include "Core/Improvement/SliverMemory.h"
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace cdm
@@ -71,10 +72,7 @@ public:
    * The mesh has to outlive the object.
    * @param isRecording whether GetVisited() is needed
    */
-  SliverChanges(const SliverAim& aim, const RefinedMesh& mesh, bool isRecording = false)
-    : Goal(aim), Mesh(mesh), Search(mesh.GetTetrahedra().MakeSearch(isRecording))
-  {
-  }
+  SliverChanges(const SliverAim& aim, const RefinedMesh& mesh, bool isRecording = false);
 
   /** @param last attempts up to this one are made */
   SliverChange Find(Id tetrahedron, SliverAttempt last);
@@ -110,6 +108,17 @@ private:
     double Nearest = 0.0;
     Vec3 Mean;
   };
+  /**
+   * Bounds of the angles of tetrahedra that would fill a cavity, as squared tangents: most of them
+   * are looked at once, and an arctangent of each took a fifteenth of the search.
+   */
+  struct AngleBounds
+  {
+    /** Degrees, and the bound. */
+    std::pair<double, double> Floor{ 0.0, 0.0 };
+    std::pair<double, double> Required{ 0.0, 0.0 };
+    double Target;
+  };
   /** A facet of a cavity whose tetrahedron is why a position is no good. */
   struct Spoiler
   {
@@ -122,12 +131,13 @@ private:
   void Include(double angle, IsSharp&& isSharp, SmallestAngles& smallest) const;
   void IncludeTetrahedron(Id tetrahedron, SmallestAngles& smallest) const;
   double GetFloor(const SmallestAngles& before) const;
-  bool IsAimed(const TriangleIds& facet, double angle) const;
-  bool IsEnough(double angle, const TriangleIds& facet, double floor, double required) const;
-  bool IsSpoiled(const Vec3& position, Id number, double floor, double required);
+  void SetBounds(double floor, double required);
+  bool IsAimed(const TriangleIds& facet, double tangent2) const;
+  bool IsEnough(double tangent2, const TriangleIds& facet) const;
+  bool IsSpoiled(const Vec3& position, Id number);
   void NoteSpoiler(Id facet, bool isByLimit);
-  bool FindCavity(const Vec3& position, Id first, Id number, double floor, double required);
-  double RateCavity(double floor, double required) const;
+  bool FindCavity(const Vec3& position, Id first, Id number);
+  double RateCavity() const;
   void MeasureStar(Id point);
   void MeasureCells(double floor);
   bool LeavesFlatter(Id point, const Vec3& position, double required) const;
@@ -142,8 +152,9 @@ private:
   const RefinedMesh& Mesh;
   CavitySearch Search;
   PointCavity Found;
-  /** Smallest angles of the tetrahedra that would fill the cavity, facet by facet. */
-  std::vector<double> Angles;
+  /** Of the tetrahedra that would fill the cavity, facet by facet. */
+  std::vector<double> Tangents2;
+  AngleBounds Bounds;
   std::array<Spoiler, 3> Spoilers;
   BoundarySpheres::Encroached EncroachedBefore;
   Around Before;

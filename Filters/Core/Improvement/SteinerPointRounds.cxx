@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/SteinerPointRounds.h"
 
+#include "Core/Basics/ParallelLoop.h"
 #include "Core/Basics/SortedIds.h"
 #include "Core/Delaunay/LocalDelaunay.h"
 #include "Core/Geometry/Measures.h"
@@ -509,10 +510,15 @@ std::size_t SteinerPointRounds::CollectSurfaceSizes()
   }
   this->SurfaceSizes.resize(this->Surface.Points.size(), -1.0);
   this->SpreadSurfaceSizes();
-  for (std::size_t p = first; p < this->SurfaceSizes.size(); ++p)
+  const auto find = [&](std::size_t begin, std::size_t end, std::size_t)
   {
-    this->SurfaceSizes[p] = this->Features->Find(this->Surface.Points[p], this->SurfaceSizes[p]);
-  }
+    for (std::size_t p = first + begin; p < first + end; ++p)
+    {
+      this->SurfaceSizes[p] = this->Features->Find(this->Surface.Points[p], this->SurfaceSizes[p]);
+    }
+  };
+  ParallelLoop(
+    this->SurfaceSizes.size() - first, { this->Context.GetNumberOfThreads(), 64 }, {}, "", find);
   return first;
 }
 
