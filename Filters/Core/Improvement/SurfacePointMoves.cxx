@@ -230,10 +230,12 @@ double SurfacePointMoves::MeasureStar(Id point, double& nearest) const
         nearest = std::min(nearest, Distance(mesh.Points[id], mesh.Points[point]));
       }
     }
-    if (this->Given.HasAngle(ids, mesh.Regions[t]))
+    const auto [a, b, c, d] = GetCorners(mesh.Points, ids);
+    const double angle = GetSmallestDihedralAngle(a, b, c, d);
+    // In that order: whether an angle counts takes longer than the angle.
+    if (angle < smallest && this->Given.HasAngle(ids, mesh.Regions[t]))
     {
-      const auto [a, b, c, d] = GetCorners(mesh.Points, ids);
-      smallest = std::min(smallest, GetSmallestDihedralAngle(a, b, c, d));
+      smallest = angle;
     }
   }
   return smallest;
@@ -322,6 +324,11 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
       const TriangleIds facet = GetFacet(ids, i);
       const Id neighbor = mesh.Neighbors[t][i];
       const bool isInside = neighbor != NoId && this->Marks[neighbor / 4] == inside;
+      if (isInside && neighbor / 4 < t)
+      {
+        // Was looked at from the other side.
+        continue;
+      }
       const bool isTriangle = this->IsOnSurface(facet);
       if (!isInside && !isTriangle &&
         (neighbor == NoId || mesh.Regions[neighbor / 4] != mesh.Regions[t]))
@@ -335,7 +342,7 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
         cavity.Regions.push_back(mesh.Regions[t]);
         this->Outer.push_back(neighbor);
       }
-      else if ((!isInside || neighbor / 4 > t) && isTriangle)
+      else if (isTriangle)
       {
         cavity.Walls.push_back(facet);
       }
@@ -432,10 +439,11 @@ double SurfacePointMoves::Rate(Id point, const Vec3& position, double required)
   double smallest = 180.0;
   const auto isLarger = [&](const TetrahedronIds& ids, Id region)
   {
-    if (this->Given.HasAngle(ids, region))
+    const auto [a, b, c, d] = getVertices(ids);
+    const double angle = GetSmallestDihedralAngle(a, b, c, d);
+    if (angle < smallest && this->Given.HasAngle(ids, region))
     {
-      const auto [a, b, c, d] = getVertices(ids);
-      smallest = std::min(smallest, GetSmallestDihedralAngle(a, b, c, d));
+      smallest = angle;
     }
     return smallest > required;
   };
