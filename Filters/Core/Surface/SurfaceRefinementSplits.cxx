@@ -2,6 +2,7 @@
 // Splits of segments and triangles: which one is split for a bad triangle, and where.
 #include "Core/Surface/SurfaceRefinement.h"
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 
@@ -171,10 +172,10 @@ bool SurfaceRefinement::ResolveInFacet(Id t, Id encroaching, const Vec3& target,
     const EdgeIds& ends = surface.GetSegment(landing.Segment).Points;
     const auto isEncroachedBy = [&](const Vec3& p)
     { return InDiametralSphere(this->Points[ends[0]], this->Points[ends[1]], p) >= 0; };
-    // Its own ends do not count: without another reason, a target that lies beyond the segment by
-    // rounding would halve it time and again towards one end.
+    // For a match, the segment's own ends do not count: a match that rounding puts beyond the segment
+    // would halve it time and again towards one end.
     const auto isEncroachedByCorner = [&](Id p)
-    { return p != ends[0] && p != ends[1] && isEncroachedBy(this->Points[p]); };
+    { return !(isMirrored && Contains(ends, p)) && isEncroachedBy(this->Points[p]); };
     const bool isEncroached = encroaching != NoId && isEncroachedBy(this->Points[encroaching]);
     if (isMirrored && !isEncroached && this->IsMatchedByEnd(landing.Segment, encroaching, target))
     {
