@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -311,7 +312,20 @@ public:
   Status Run();
 
 private:
-  Status RunPlan(const SurfaceRefinementPlan& plan);
+  void RunPlan(const SurfaceRefinementPlan& plan);
+  void RunInTurn(SurfaceRefinementPlan plan);
+  bool HasSizes() const
+  {
+    return this->Options.MaximumEdgeLength > 0.0 || this->Options.MaximumArea > 0.0 ||
+      this->Options.MinimumAngle > 0.0 || this->Input.Sizing;
+  }
+  /** Whether to try again. What was too fine for the user's limit would be so again. */
+  bool IsOpen() const
+  {
+    const bool isTooFine = this->HasSizes() && this->HasBest &&
+      this->Best.NonDelaunayTriangles.empty() && this->IsStoppedByUser(this->Best);
+    return !this->IsAborted && !this->IsSettled && !isTooFine;
+  }
   void Keep(DelaunaySurfaceRefinerOutput&& output);
   bool IsStoppedByUser(const DelaunaySurfaceRefinerOutput& output) const
   {
@@ -326,6 +340,9 @@ private:
   const ExecutionContext& Context;
   DelaunaySurfaceRefinerOutput& Best;
   bool HasBest = false;
+  /** Status of the first attempt. */
+  std::optional<Status> First;
+  bool IsAborted = false;
   /** Whether the last attempt came to its end, see SurfaceRefiner. */
   bool IsSettled = false;
   /** Whether its facets were plane but for rounding. */
@@ -345,7 +362,7 @@ ExecutionContext SurfaceAttempts::GetNextPart()
  * Refines by one plan. If curved facets or flips keep it from ending, the edges there become
  * structural, and it is tried again.
  */
-Status SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
+void SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
 {
   for (int attempt = 0;; ++attempt)
   {
@@ -353,17 +370,18 @@ Status SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
     const ExecutionContext part = this->GetNextPart();
     SurfaceRefiner refiner(this->Input, this->Options, plan, part, output);
     const Status status = refiner.Run();
-    if (status.IsAborted() || this->IsStoppedByUser(output) ||
+    this->IsAborted = status.IsAborted();
+    if (this->IsAborted || this->IsStoppedByUser(output) ||
       !refiner.FindOverrefined(this->Options.StructuralEdges.IsExact))
     {
-      if (!status.IsOk())
+      this->First = this->First ? this->First : status;
+      if (status.IsOk())
       {
-        return status;
+        this->IsSettled = refiner.IsSettled();
+        this->HasRoundedFacets = output.Report.HasRoundedFacets;
+        this->Keep(std::move(output));
       }
-      this->IsSettled = refiner.IsSettled();
-      this->HasRoundedFacets = output.Report.HasRoundedFacets;
-      this->Keep(std::move(output));
-      return status;
+      return;
     }
     if (attempt == LargestNumberOfAttempts)
     {
@@ -387,63 +405,58 @@ void SurfaceAttempts::Keep(DelaunaySurfaceRefinerOutput&& output)
   }
 }
 
-Status SurfaceAttempts::Run()
+/**
+ * Refines by a plan, then with facets that are plane in double precision only, and with the other
+ * rules, until an attempt ends. Only the first attempt may be a trial. The flatness stays as the
+ * last attempt had it.
+ */
+void SurfaceAttempts::RunInTurn(SurfaceRefinementPlan plan)
 {
-  // Where sizes are asked for, they are what most of the points are for.
-  const bool hasSizes = this->Options.MaximumEdgeLength > 0.0 || this->Options.MaximumArea > 0.0 ||
-    this->Options.MinimumAngle > 0.0 || this->Input.Sizing;
-  SurfaceRefinementPlan plan;
-  plan.GivesUp = !hasSizes;
-  plan.IsTrial = true;
-  const Status first = this->RunPlan(plan);
+  this->RunPlan(plan);
   plan.IsTrial = false;
-  if (first.IsAborted() || this->IsSettled ||
-    (hasSizes && this->HasBest && this->Best.NonDelaunayTriangles.empty() &&
-      this->IsStoppedByUser(this->Best)))
-  {
-    return first;
-  }
-  Status status;
-  const auto isOpen = [&] { return !status.IsAborted() && !this->IsSettled; };
   double& flatness = this->Options.StructuralEdges.FlatnessRatio;
-  const double usualFlatness = flatness;
-  if (this->HasRoundedFacets && flatness > RoundedFlatnessRatio)
+  if (this->IsOpen() && this->HasRoundedFacets && flatness > RoundedFlatnessRatio)
   {
     flatness = RoundedFlatnessRatio;
-    status = this->RunPlan(plan);
+    this->RunPlan(plan);
   }
   for (const MatchingRules rules :
     { MatchingRules::Corners, MatchingRules::ThinLayers, MatchingRules::Stacks })
   {
-    if (isOpen())
+    if (this->IsOpen())
     {
       plan.Rules = rules;
-      status = this->RunPlan(plan);
+      this->RunPlan(plan);
     }
   }
-  plan.Rules = MatchingRules::Usual;
+}
+
+Status SurfaceAttempts::Run()
+{
+  SurfaceRefinementPlan plan;
+  // Where sizes are asked for, they are what most of the points are for.
+  plan.GivesUp = !this->HasSizes();
+  plan.IsTrial = true;
+  const double flatness = this->Options.StructuralEdges.FlatnessRatio;
+  this->RunInTurn(plan);
+  plan.IsTrial = false;
   const SurfaceCriterion criterion = this->Options.Criterion;
-  if (criterion == SurfaceCriterion::SmallestSphere && isOpen())
+  if (criterion == SurfaceCriterion::SmallestSphere && this->IsOpen())
   {
     // The stronger criterion takes another way, edges before all triangles, and implies this one.
     this->Options.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
-    status = this->RunPlan(plan);
+    this->RunPlan(plan);
     this->Options.Criterion = criterion;
   }
-  if (criterion != SurfaceCriterion::Delaunay && isOpen())
+  if (criterion != SurfaceCriterion::Delaunay && this->IsOpen())
   {
-    // Facets first as the criterion Delaunay has them if it is asked for.
+    // As the criterion Delaunay does if it is asked for.
     plan.IsRelaxed = true;
     plan.GivesUp = false;
-    const double lastFlatness = std::exchange(flatness, usualFlatness);
-    status = this->RunPlan(plan);
-    if (isOpen() && lastFlatness < usualFlatness)
-    {
-      flatness = lastFlatness;
-      status = this->RunPlan(plan);
-    }
+    this->Options.StructuralEdges.FlatnessRatio = flatness;
+    this->RunInTurn(plan);
   }
-  return status.IsAborted() ? status : this->HasBest ? Status() : first;
+  return this->IsAborted ? Status::Aborted() : this->HasBest ? Status() : *this->First;
 }
 
 /** What the result does not fulfil, with the triangles of the input that it comes from. */

@@ -215,10 +215,14 @@ private:
   {
     return this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges;
   }
-  /** Whether all edges are made fine enough before the first triangle is. */
+  /**
+   * Whether all edges are made fine enough before the first triangle is. A relaxed plan goes as the
+   * criterion Delaunay does, which ends.
+   */
   bool AreEdgesFirst() const
   {
-    return this->AreEdgesTested() && this->Plan.Rules != MatchingRules::Stacks;
+    return this->AreEdgesTested() && !this->Plan.IsRelaxed &&
+      this->Plan.Rules != MatchingRules::Stacks;
   }
   bool IsGood(Id t, SurfaceDelaunayTest::Result& found) const
   {
