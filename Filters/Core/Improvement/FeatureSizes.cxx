@@ -107,7 +107,7 @@ bool FeatureSizes::AreDisjoint(Id a, Id b) const
 double FeatureSizes::Find(const Vec3& position, double limit) const
 {
   std::vector<std::pair<double, Id>> near;
-  // Features found before, whose parts need not be looked at any more: half of the search's time.
+  // Features found so far: their other parts are farther away.
   std::vector<Id> nearer;
   for (double radius = FirstRadius * limit;; radius = std::min(4.0 * radius, limit))
   {

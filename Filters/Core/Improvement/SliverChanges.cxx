@@ -27,7 +27,7 @@ double GetTangent2(double degrees)
 SliverChanges::SliverChanges(const SliverAim& aim, const RefinedMesh& mesh, bool isRecording)
   : Goal(aim), Mesh(mesh), Search(mesh.GetTetrahedra().MakeSearch(isRecording))
 {
-  this->Bounds.Target = GetTangent2(aim.Target);
+  this->Target = { aim.Target, GetTangent2(aim.Target) };
 }
 
 /**
@@ -64,14 +64,14 @@ double SliverChanges::GetFloor(const SmallestAngles& before) const
  */
 void SliverChanges::SetBounds(double floor, double required)
 {
-  if (this->Bounds.Floor.first != floor)
+  if (this->Floor.Degrees != floor)
   {
     // Rounding must not make a tetrahedron fail that stays as it is.
-    this->Bounds.Floor = { floor, (1.0 - 1e-14) * GetTangent2(floor) };
+    this->Floor = { floor, (1.0 - 1e-14) * GetTangent2(floor) };
   }
-  if (this->Bounds.Required.first != required)
+  if (this->Required.Degrees != required)
   {
-    this->Bounds.Required = { required, GetTangent2(required) };
+    this->Required = { required, GetTangent2(required) };
   }
 }
 
@@ -79,7 +79,7 @@ void SliverChanges::SetBounds(double floor, double required)
 bool SliverChanges::IsAimed(const TriangleIds& facet, double tangent2) const
 {
   constexpr Id inside = std::numeric_limits<Id>::max();
-  return tangent2 >= this->Bounds.Target ||
+  return tangent2 >= this->Target.Tangent2 ||
     this->Mesh.GetShape().Sharp.IsAcross(
       { facet[0], facet[1], facet[2], inside }, SharpAngleUse::Sliver) == this->Goal.IsSharp;
 }
@@ -87,8 +87,8 @@ bool SliverChanges::IsAimed(const TriangleIds& facet, double tangent2) const
 /** Whether the tetrahedron of a facet of the cavity and the new point is not too flat. */
 bool SliverChanges::IsEnough(double tangent2, const TriangleIds& facet) const
 {
-  return tangent2 > this->Bounds.Required.second ||
-    (tangent2 >= this->Bounds.Floor.second && !this->IsAimed(facet, tangent2));
+  return tangent2 > this->Required.Tangent2 ||
+    (tangent2 >= this->Floor.Tangent2 && !this->IsAimed(facet, tangent2));
 }
 
 /** Forgets what was wrong with positions before: a search of positions begins. */
@@ -185,7 +185,7 @@ double SliverChanges::RateCavity() const
   {
     const double tangent2 = this->Tangents2[i];
     const bool isAimed = this->IsAimed(this->Found.Facets[i], tangent2);
-    if (isAimed ? tangent2 <= this->Bounds.Required.second : tangent2 < this->Bounds.Floor.second)
+    if (isAimed ? tangent2 <= this->Required.Tangent2 : tangent2 < this->Floor.Tangent2)
     {
       return 0.0;
     }

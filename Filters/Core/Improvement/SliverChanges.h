@@ -27,7 +27,6 @@
 #include "Core/Improvement/SliverMemory.h"
 
 #include <array>
-#include <utility>
 #include <vector>
 
 namespace cdm
@@ -108,16 +107,11 @@ private:
     double Nearest = 0.0;
     Vec3 Mean;
   };
-  /**
-   * Bounds of the angles of tetrahedra that would fill a cavity, as squared tangents: most of them
-   * are looked at once, and an arctangent of each took a fifteenth of the search.
-   */
-  struct AngleBounds
+  /** An angle that tetrahedra are compared with by the squares of tangents. */
+  struct AngleBound
   {
-    /** Degrees, and the bound. */
-    std::pair<double, double> Floor{ 0.0, 0.0 };
-    std::pair<double, double> Required{ 0.0, 0.0 };
-    double Target;
+    double Degrees = 0.0;
+    double Tangent2 = 0.0;
   };
   /** A facet of a cavity whose tetrahedron is why a position is no good. */
   struct Spoiler
@@ -152,9 +146,15 @@ private:
   const RefinedMesh& Mesh;
   CavitySearch Search;
   PointCavity Found;
-  /** Of the tetrahedra that would fill the cavity, facet by facet. */
+  /**
+   * Smallest angles of the tetrahedra that would fill the cavity, facet by facet. Most of them are
+   * looked at once: an arctangent of each took a fifteenth of the search.
+   */
   std::vector<double> Tangents2;
-  AngleBounds Bounds;
+  /** What these tetrahedra have to keep, or to surpass, and when they are good enough. */
+  AngleBound Floor;
+  AngleBound Required;
+  AngleBound Target;
   std::array<Spoiler, 3> Spoilers;
   BoundarySpheres::Encroached EncroachedBefore;
   Around Before;
