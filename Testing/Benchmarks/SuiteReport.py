@@ -276,7 +276,7 @@ def DrawGrowth(results, path):
     """Processor time by tetrahedra, both axes logarithmic."""
     charts = [(title, [result for result in results if result["kind"] == kind])
               for kind, title in (("growth", "Delaunay mesh of random points"),
-                                  ("device growth", "Via plug, smaller and smaller tetrahedra"))]
+                                  ("device-growth", "Via plug, smaller and smaller tetrahedra"))]
     view = vtkContextView()
     view.GetRenderer().SetBackground(1.0, 1.0, 1.0)
     window = view.GetRenderWindow()
