@@ -80,6 +80,25 @@ std::size_t MeshComplex(const TriangleMesh& surface, SurfaceCriterion criterion,
   return refined.Surface.Points.size();
 }
 
+/** Both stronger criteria have to be fulfilled with fewer points than the bound. */
+void ExpectStrongerFulfilled(const TriangleMesh& surface, std::size_t pointBound)
+{
+  for (const SurfaceCriterion criterion :
+    { SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
+  {
+    SCOPED_TRACE("criterion " + std::to_string(static_cast<int>(criterion)));
+    bool isFulfilled = false;
+    EXPECT_LT(MeshComplex(surface, criterion, isFulfilled), pointBound);
+    EXPECT_TRUE(isFulfilled);
+  }
+}
+
+/** A complex as it is made, neither rotated nor moved nor scaled; whether it is one. */
+bool MakeUnplaced(ComplexKind kind, std::uint64_t seed, BoundaryTriangulatorOutput& triangulated)
+{
+  return TriangulateBoundary(ComplexMaker(kind, seed).Make(), {}, {}, triangulated).IsOk();
+}
+
 /** A complex, rotated, moved and scaled; whether it is one. */
 bool MakePlaced(ComplexKind kind, std::uint64_t seed, BoundaryTriangulatorOutput& triangulated)
 {
@@ -310,16 +329,8 @@ TEST(ComplexKinds, EdgesFirstWhereTrianglesDoNotEnd)
 TEST(ComplexKinds, MatchesOutsideTheirFacetSplitNoEdge)
 {
   BoundaryTriangulatorOutput triangulated;
-  ASSERT_TRUE(
-    TriangulateBoundary(ComplexMaker(ComplexKind::VoronoiCells, 5418).Make(), {}, {}, triangulated)
-      .IsOk());
-  for (const SurfaceCriterion criterion :
-    { SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
-  {
-    bool isFulfilled = false;
-    EXPECT_LT(MeshComplex(triangulated.Surface, criterion, isFulfilled), 300u);
-    EXPECT_TRUE(isFulfilled);
-  }
+  ASSERT_TRUE(MakeUnplaced(ComplexKind::VoronoiCells, 5418, triangulated));
+  ExpectStrongerFulfilled(triangulated.Surface, 300u);
 }
 
 /**
@@ -373,13 +384,7 @@ TEST(ComplexKinds, WalksAroundCorners)
 {
   BoundaryTriangulatorOutput triangulated;
   ASSERT_TRUE(MakePlaced(ComplexKind::Fan, 57, triangulated));
-  for (const SurfaceCriterion criterion :
-    { SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
-  {
-    bool isFulfilled = false;
-    EXPECT_LT(MeshComplex(triangulated.Surface, criterion, isFulfilled), 600u);
-    EXPECT_TRUE(isFulfilled);
-  }
+  ExpectStrongerFulfilled(triangulated.Surface, 600u);
 }
 
 TEST(ComplexKinds, TiltedPlates)
@@ -416,17 +421,10 @@ INSTANTIATE_TEST_SUITE_P(ComplexKinds, SteinerPointsInComplexes,
 /** Five points in a slab of 4e-5: edges that pass each other were halved towards that place. */
 TEST(ComplexKinds, EdgesThatPassEachOtherAreSplitThere)
 {
-  ComplexMaker maker(ComplexKind::SlabTetrahedra, 15);
   BoundaryTriangulatorOutput triangulated;
-  ASSERT_TRUE(TriangulateBoundary(maker.Make(), {}, {}, triangulated).IsOk());
+  ASSERT_TRUE(MakeUnplaced(ComplexKind::SlabTetrahedra, 15, triangulated));
   ASSERT_EQ(triangulated.Surface.Points.size(), 5u);
-  for (const SurfaceCriterion criterion :
-    { SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
-  {
-    bool isFulfilled = false;
-    EXPECT_LT(MeshComplex(triangulated.Surface, criterion, isFulfilled), 300u);
-    EXPECT_TRUE(isFulfilled);
-  }
+  ExpectStrongerFulfilled(triangulated.Surface, 300u);
 }
 
 /**
@@ -440,16 +438,8 @@ TEST(ComplexKinds, StacksAreRefinedFromTheirTriangles)
   {
     SCOPED_TRACE("seed " + std::to_string(seed));
     BoundaryTriangulatorOutput triangulated;
-    ASSERT_TRUE(
-      TriangulateBoundary(ComplexMaker(ComplexKind::SmallSlabs, seed).Make(), {}, {}, triangulated)
-        .IsOk());
-    for (const SurfaceCriterion criterion :
-      { SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
-    {
-      bool isFulfilled = false;
-      const std::size_t points = MeshComplex(triangulated.Surface, criterion, isFulfilled);
-      EXPECT_TRUE(isFulfilled) << "criterion " << static_cast<int>(criterion);
-      EXPECT_LT(points, triangulated.Surface.Triangles.size() == 7 ? 600u : 10000u);
-    }
+    ASSERT_TRUE(MakeUnplaced(ComplexKind::SmallSlabs, seed, triangulated));
+    ExpectStrongerFulfilled(
+      triangulated.Surface, triangulated.Surface.Triangles.size() == 7 ? 600u : 10000u);
   }
 }

@@ -35,7 +35,10 @@ constexpr std::size_t ContinueInterval = 1 << 12;
 constexpr const char* FacetActivity = "Checking facets";
 constexpr std::size_t MaximumNumberOfExamples = 10;
 
-/** Of a tetrahedron at an edge, as two sides of a right triangle: compared without arctangents. */
+/**
+ * A dihedral angle, kept as two sides of a right triangle. Angles are compared by their cotangents,
+ * which are quicker than arctangents.
+ */
 class DihedralAngle
 {
 public:
@@ -58,7 +61,10 @@ private:
   double Cotangent;
 };
 
-/** With the six angles of a tetrahedron: makes the smallest and the largest one so far theirs. */
+/**
+ * The six dihedral angles of a tetrahedron take the place of the smallest and the largest one so far
+ * where they go beyond.
+ */
 void CompareDihedralAngles(
   const std::array<Vec3, 4>& p, double sixVolumes, DihedralAngle& smallest, DihedralAngle& largest)
 {
@@ -92,17 +98,25 @@ struct FacetRecord
   /** Whether the normal of the sorted points is the source's. */
   bool IsEven;
 
-  /** Number by number: comparing arrays by their own operators took half of the sort's time. */
   friend bool operator<(const FacetRecord& a, const FacetRecord& b)
   {
-    for (int i = 0; i < 3; ++i)
+    return a.HasPointsOf(b) ? a.Source < b.Source : a.HasLowerPoints(b);
+  }
+
+  /**
+   * Whether the points come first in lexicographic order. They are compared number by number:
+   * comparing arrays by their own operators took half of the sort's time.
+   */
+  bool HasLowerPoints(const FacetRecord& other) const
+  {
+    for (int i = 0; i < 2; ++i)
     {
-      if (a.Points[i] != b.Points[i])
+      if (this->Points[i] != other.Points[i])
       {
-        return a.Points[i] < b.Points[i];
+        return this->Points[i] < other.Points[i];
       }
     }
-    return a.Source < b.Source;
+    return this->Points[2] < other.Points[2];
   }
 
   bool HasPointsOf(const FacetRecord& other) const
@@ -455,8 +469,7 @@ bool Checker::CollectFacets(const ExecutionContext& context,
             group.push_back(
               { points, facet, IsEven(GetFacet(this->Mesh.Tetrahedra[facet / 4], facet % 4)) });
           }
-          while (triangle != triangles.end() && *triangle < group.front() &&
-            !triangle->HasPointsOf(group.front()))
+          while (triangle != triangles.end() && triangle->HasLowerPoints(group.front()))
           {
             ++triangle;
           }
@@ -619,7 +632,7 @@ bool Checker::CheckFacets(const ExecutionContext& context)
       }
     }
     end = FindEndOfGroup(begin, facets.cend());
-    for (; triangle != triangles.cend() && triangle->Points < begin->Points; ++triangle)
+    for (; triangle != triangles.cend() && triangle->HasLowerPoints(*begin); ++triangle)
     {
       countMissing(*triangle);
     }

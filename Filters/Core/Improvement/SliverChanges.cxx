@@ -25,9 +25,9 @@ double GetTangent2(double degrees)
 } // namespace
 
 SliverChanges::SliverChanges(const SliverAim& aim, const RefinedMesh& mesh, bool isRecording)
-  : Goal(aim), Mesh(mesh), Search(mesh.GetTetrahedra().MakeSearch(isRecording))
+  : Goal(aim), Mesh(mesh), Search(mesh.GetTetrahedra().MakeSearch(isRecording)),
+    TargetTangent2(GetTangent2(aim.Target))
 {
-  this->Target = { aim.Target, GetTangent2(aim.Target) };
 }
 
 /**
@@ -79,7 +79,7 @@ void SliverChanges::SetBounds(double floor, double required)
 bool SliverChanges::IsAimed(const TriangleIds& facet, double tangent2) const
 {
   constexpr Id inside = std::numeric_limits<Id>::max();
-  return tangent2 >= this->Target.Tangent2 ||
+  return tangent2 >= this->TargetTangent2 ||
     this->Mesh.GetShape().Sharp.IsAcross(
       { facet[0], facet[1], facet[2], inside }, SharpAngleUse::Sliver) == this->Goal.IsSharp;
 }

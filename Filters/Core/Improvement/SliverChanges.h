@@ -154,7 +154,7 @@ private:
   /** What these tetrahedra have to keep, or to surpass, and when they are good enough. */
   AngleBound Floor;
   AngleBound Required;
-  AngleBound Target;
+  const double TargetTangent2;
   std::array<Spoiler, 3> Spoilers;
   BoundarySpheres::Encroached EncroachedBefore;
   Around Before;

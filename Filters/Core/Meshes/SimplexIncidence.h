@@ -74,7 +74,8 @@ public:
         const bool isLower[3] = { this->IsLower(tetrahedron, others[0], vertex),
           this->IsLower(tetrahedron, others[1], vertex),
           this->IsLower(tetrahedron, others[2], vertex) };
-        // Without lower vertices it is the lowest point of three facets, with one of one facet.
+        // The vertex is the lowest point of three facets if no other one is lower, and of one facet
+        // if one other is.
         const int numberOfLower = isLower[0] + isLower[1] + isLower[2];
         for (int i = 0; i < 3 && numberOfLower < 2; ++i)
         {

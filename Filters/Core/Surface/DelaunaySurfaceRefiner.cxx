@@ -450,7 +450,7 @@ Status SurfaceAttempts::Run()
   }
   if (criterion != SurfaceCriterion::Delaunay && this->IsOpen())
   {
-    // As the criterion Delaunay does if it is asked for.
+    // The surface is refined as if the criterion Delaunay were asked for.
     plan.IsRelaxed = true;
     plan.GivesUp = false;
     this->Options.StructuralEdges.FlatnessRatio = flatness;

@@ -260,10 +260,10 @@ void RefinableSurface::Flip(Id use)
   const Id b = this->Triangles[t].Points[(i + 1) % 3];
   const Id c = this->GetApex(use);
   const Id d = this->GetApex(other);
-  const Id useBC = 3 * t + (i + 1) % 3;
-  const Id useCA = 3 * t + (i + 2) % 3;
-  const Id useAD = 3 * u + (j + 1) % 3;
-  const Id useDB = 3 * u + (j + 2) % 3;
+  const Id useBC = TurnUse(use, 1);
+  const Id useCA = TurnUse(use, 2);
+  const Id useAD = TurnUse(other, 1);
+  const Id useDB = TurnUse(other, 2);
   const Id beyondBC = this->Triangles[t].Adjacent[(i + 1) % 3];
   const Id beyondCA = this->Triangles[t].Adjacent[(i + 2) % 3];
   const Id beyondAD = this->Triangles[u].Adjacent[(j + 1) % 3];
@@ -359,7 +359,7 @@ void RefinableSurface::SplitSegment(Id segment, Id point, std::vector<Id>& uses)
     this->Triangles[near / 3].Adjacent[near % 3] = -1 - segment;
     this->Triangles[far / 3].Adjacent[far % 3] = -1 - added;
     // Opposite to the point: c-a of the old triangle, b-c of the new one.
-    uses.push_back(3 * (use / 3) + (use % 3 + 2) % 3);
+    uses.push_back(TurnUse(use, 2));
     uses.push_back(restUse + 1);
   }
 }
@@ -413,8 +413,7 @@ void RefinableSurface::SplitSmoothEdge(Id use, Id point, std::vector<Id>& uses)
   const Id restOfOther = this->SplitUse(other, point);
   this->Connect(use, restOfOther, NoId);
   this->Connect(other, restOfUse, NoId);
-  uses = { 3 * (use / 3) + (use % 3 + 2) % 3, restOfUse + 1, 3 * (other / 3) + (other % 3 + 2) % 3,
-    restOfOther + 1 };
+  uses = { TurnUse(use, 2), restOfUse + 1, TurnUse(other, 2), restOfOther + 1 };
 }
 
 void RefinableSurface::Export(TriangleMesh& surface) const
