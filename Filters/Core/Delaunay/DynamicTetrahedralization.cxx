@@ -77,8 +77,7 @@ void DynamicTetrahedralization::Fill(Id point, const PointCavity& cavity)
     this->Kill(*t);
   }
   this->Changed.clear();
-  // New tetrahedra meet in the facets through the point and an edge of the cavity.
-  this->Facets.clear();
+  this->Facets.Start(3 * cavity.Facets.size() / 2);
   for (std::size_t i = 0; i < cavity.Facets.size(); ++i)
   {
     const TriangleIds& facet = cavity.Facets[i];
@@ -91,18 +90,40 @@ void DynamicTetrahedralization::Fill(Id point, const PointCavity& cavity)
     }
     for (int k = 0; k < 3; ++k)
     {
-      const EdgeIds edge = MakeEdge(facet[(k + 1) % 3], facet[(k + 2) % 3]);
-      this->Facets.emplace_back(PackIds(edge), 4 * t + k);
+      const Id one = 4 * t + k;
+      const Id other = this->Facets.Match(MakeEdge(facet[(k + 1) % 3], facet[(k + 2) % 3]), one);
+      if (other != NoId)
+      {
+        this->Mesh.Neighbors[t][k] = other;
+        this->Mesh.Neighbors[other / 4][other % 4] = one;
+      }
     }
   }
-  std::sort(this->Facets.begin(), this->Facets.end());
-  for (std::size_t i = 0; i + 1 < this->Facets.size(); i += 2)
+}
+
+void DynamicTetrahedralization::FacetsAtEdges::Start(std::size_t numberOfEdges)
+{
+  // At most half of the places are used.
+  std::size_t size = 64;
+  while (size < 2 * numberOfEdges)
   {
-    const Id one = this->Facets[i].second;
-    const Id other = this->Facets[i + 1].second;
-    this->Mesh.Neighbors[one / 4][one % 4] = other;
-    this->Mesh.Neighbors[other / 4][other % 4] = one;
+    size *= 2;
   }
+  this->Places.assign(size, { NoEdge, NoId });
+}
+
+Id DynamicTetrahedralization::FacetsAtEdges::Match(const EdgeIds& edge, Id facet)
+{
+  const std::uint64_t key = PackIds(edge);
+  const std::size_t mask = this->Places.size() - 1;
+  std::size_t place = (key * 0x9E3779B97F4A7C15ULL >> 32) & mask;
+  while (this->Places[place].first != NoEdge && this->Places[place].first != key)
+  {
+    place = (place + 1) & mask;
+  }
+  const Id other = this->Places[place].second;
+  this->Places[place] = { key, facet };
+  return other;
 }
 
 void DynamicTetrahedralization::ReservePoints(Id first, Id count)

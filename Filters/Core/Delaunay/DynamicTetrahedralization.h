@@ -189,8 +189,23 @@ private:
   Id RemovedRegion = NoId;
   /** Number of free slots before the last removal. */
   std::size_t FormerlyFree = 0;
-  /** Facets at a new point, by their edges in the cavity: smaller id * 2^32 + larger one. */
-  std::vector<std::pair<std::uint64_t, Id>> Facets;
+  /**
+   * The facets through a new point and an edge of its cavity, where two new tetrahedra meet: a hash
+   * table by open addressing.
+   */
+  class FacetsAtEdges
+  {
+  public:
+    /** Forgets all facets. */
+    void Start(std::size_t numberOfEdges);
+    /** The facet that was given for the edge before, or NoId. */
+    Id Match(const EdgeIds& edge, Id facet);
+
+  private:
+    static constexpr std::uint64_t NoEdge = ~std::uint64_t{ 0 };
+    std::vector<std::pair<std::uint64_t, Id>> Places;
+  };
+  FacetsAtEdges Facets;
 };
 } // namespace cdm
 

@@ -12,7 +12,7 @@ namespace cdm
 namespace
 {
 /** The first radius of a search, in units of the limit; each next one is four times as large. */
-constexpr double FirstRadius = 1.0 / 64.0;
+constexpr double FirstRadius = 1.0 / 4.0;
 /**
  * Smallest size, in units of the limit. Features closer to each other bound a strip or a layer that
  * nobody fills with well shaped elements.
@@ -112,7 +112,7 @@ double FeatureSizes::Find(const Vec3& position, double limit) const
   for (double radius = FirstRadius * limit;; radius = std::min(4.0 * radius, limit))
   {
     near.clear();
-    this->Tree.VisitOverlaps(Box::MakeAround(position, radius),
+    this->Tree.VisitNear(position, radius,
       [&](Id part)
       {
         const Id feature = this->GetFeature(part);

@@ -198,6 +198,9 @@ public:
   /** The sorted names of a tetrahedron's points, under which SliverMemory keeps failed attempts. */
   TetrahedronIds GetNames(const TetrahedronIds& ids) const;
   SliverMemory& GetMemory() { return this->Memory; }
+  /** Whether a point is immovable, see SliverMemory. */
+  bool IsImmovable(Id point) const { return this->Memory.IsImmovable(this->Points[point].Name); }
+  void SetImmovable(Id point) { this->Memory.SetImmovable(this->Points[point].Name); }
 
   /**
    * Finds the cavity of a point, see CavitySearch::FindCavity(). Insert() and Restore() fill it.

@@ -373,14 +373,35 @@ void SliverChanges::FindInsertion(Id tetrahedron, SliverChange& change)
   }
 }
 
+/** What improves tetrahedra at sharp angles is not what was searched for others. */
+bool SliverChanges::IsImmovable(Id point)
+{
+  const bool isImmovable = !this->Goal.IsSharp && this->Mesh.IsImmovable(point);
+  if (isImmovable)
+  {
+    // For the record: the answer depends on the tetrahedra at the point.
+    this->Search.FindStar(point, this->Star);
+  }
+  return isImmovable;
+}
+
 SliverChange SliverChanges::Find(Id tetrahedron, SliverAttempt last)
 {
   this->Search.StartRecord();
-  const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[tetrahedron];
   SliverChange change;
-  const bool isMoved = std::any_of(ids.begin(), ids.end(),
-    [&](Id id) { return this->Mesh.IsFree(id) && this->FindMove(id, change); });
-  if (!isMoved && last == SliverAttempt::Insertion)
+  for (const Id id : this->Mesh.GetMesh().Tetrahedra[tetrahedron])
+  {
+    if (!this->Mesh.IsFree(id) || this->IsImmovable(id))
+    {
+      continue;
+    }
+    if (this->FindMove(id, change))
+    {
+      return change;
+    }
+    change.Immovable.push_back(id);
+  }
+  if (last == SliverAttempt::Insertion)
   {
     this->FindInsertion(tetrahedron, change);
   }

@@ -10,7 +10,8 @@
  *
  * Three quarters of the positions are no good for the same reason as one shortly before: the same
  * facet of the cavity makes too flat a tetrahedron, or one that breaks a limit, or the same part of
- * the boundary is encroached on. These are asked first, before a cavity is searched.
+ * the boundary is encroached on. These are asked first, before a cavity is searched. Points that are
+ * known to be immovable (SliverMemory.h) are not searched again.
  *
  * Deterministic. Several threads may look at one frozen mesh, each with an object of its own.
  * Cost: about 100 microseconds for each point that is tried.
@@ -62,6 +63,8 @@ struct SliverChange
   /** The tetrahedra around the point, and what fills their place: see CavitySearch. */
   std::vector<Id> Star;
   std::vector<CavityCell> Cells;
+  /** Points of the sliver for which no better position was found. */
+  std::vector<Id> Immovable;
 };
 
 class SliverChanges
@@ -139,6 +142,7 @@ private:
   double RateInsertion(Id tetrahedron, const Vec3& position, double required);
   bool IsAllowed(const Vec3& position, bool mayBreakLimits);
   void StartSearch();
+  bool IsImmovable(Id point);
   bool FindMove(Id point, SliverChange& change);
   void FindInsertion(Id tetrahedron, SliverChange& change);
 
@@ -160,6 +164,7 @@ private:
   Around Before;
   Filled Cells;
   BoundarySpheres::Encroached Encroached;
+  std::vector<Id> Star;
 };
 } // namespace cdm
 

@@ -5,29 +5,33 @@
 
 namespace cdm
 {
+SliverMemory::Times SliverMemory::Get(Id name) const
+{
+  const bool isInside = name >= FirstName;
+  const std::vector<Times>& times = isInside ? this->Inside : this->OnSurface;
+  const std::size_t place = isInside ? name - FirstName : name;
+  return place < times.size() ? times[place] : Times();
+}
+
+SliverMemory::Times& SliverMemory::Get(Id name)
+{
+  const bool isInside = name >= FirstName;
+  std::vector<Times>& times = isInside ? this->Inside : this->OnSurface;
+  const std::size_t place = isInside ? name - FirstName : name;
+  if (place >= times.size())
+  {
+    times.resize(place + 1);
+  }
+  return times[place];
+}
+
 void SliverMemory::SetChanged(const TetrahedronIds& names)
 {
   ++this->Time;
   for (Id name : names)
   {
-    const bool isInside = name >= FirstName;
-    std::vector<std::int64_t>& changes = isInside ? this->InsideChanges : this->SurfaceChanges;
-    const std::size_t place = isInside ? name - FirstName : name;
-    if (place >= changes.size())
-    {
-      changes.resize(place + 1, 0);
-    }
-    changes[place] = this->Time;
+    this->Get(name).Change = this->Time;
   }
-}
-
-/** Time at which a point has last got other neighbors; 0: never. */
-std::int64_t SliverMemory::GetChange(Id name) const
-{
-  const bool isInside = name >= FirstName;
-  const std::vector<std::int64_t>& changes = isInside ? this->InsideChanges : this->SurfaceChanges;
-  const std::size_t place = isInside ? name - FirstName : name;
-  return place < changes.size() ? changes[place] : 0;
 }
 
 void SliverMemory::SetHopeless(const TetrahedronIds& names, SliverAttempt last)
@@ -40,6 +44,17 @@ bool SliverMemory::IsHopeless(const TetrahedronIds& names, SliverAttempt last) c
   const auto failure = this->Failures.find(names);
   return failure != this->Failures.end() && failure->second.Last >= last &&
     std::none_of(names.begin(), names.end(),
-      [&](Id name) { return this->GetChange(name) > failure->second.Time; });
+      [&](Id name) { return this->Get(name).Change > failure->second.Time; });
+}
+
+void SliverMemory::SetImmovable(Id name)
+{
+  this->Get(name).Search = this->Time;
+}
+
+bool SliverMemory::IsImmovable(Id name) const
+{
+  const Times times = this->Get(name);
+  return times.Search > 0 && times.Search >= times.Change;
 }
 } // namespace cdm

@@ -114,6 +114,10 @@ bool Perturbation::Mend(std::size_t i)
     return false;
   }
   const SliverChange change = this->Find(i);
+  for (const Id point : change.Immovable)
+  {
+    this->Mesh.SetImmovable(point);
+  }
   if (change.What == SliverChange::Kind::None)
   {
     SetHopeless(sliver, this->GetLast(sliver), this->Mesh);

@@ -83,8 +83,7 @@ SurfacePointMoves::SurfacePointMoves(const DynamicTetrahedralization& mesh,
   const std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges,
   Rules rules, bool isRecording)
   : Mesh(mesh), Surface(surface), Points(points), PointTriangles(pointTriangles), Edges(edges),
-    KeptEdges(keptEdges), Given(std::move(rules)), SearchedAt(surface.Points.size(), NoId),
-    IsRecording(isRecording)
+    KeptEdges(keptEdges), Given(std::move(rules)), IsRecording(isRecording)
 {
   Box box;
   for (const Vec3& point : surface.Points)
@@ -464,8 +463,7 @@ double SurfacePointMoves::Rate(Id point, const Vec3& position, double required)
   return broken > 0 ? 0.0 : smallest;
 }
 
-bool SurfacePointMoves::Find(
-  Id point, const TetrahedronIds& sliver, double target, Id numberOfMoves, Vec3& position)
+bool SurfacePointMoves::Find(Id point, const TetrahedronIds& sliver, double target, Vec3& position)
 {
   Support support;
   if (!this->FindSupport(point, support) || !this->CollectStar(point))
@@ -484,18 +482,12 @@ bool SurfacePointMoves::Find(
       TryPlace(Project(this->Mesh.GetPoint(other), old, support.Axis, support.IsLine), rate, best);
     }
   }
-  // A point of many slivers would be searched in vain, at the same positions, for each of them.
-  if (best.IsFound || this->SearchedAt[point] != numberOfMoves)
+  if (best.IsFound || !this->Given.IsImmovable(point))
   {
     SearchPlace(old, FirstMove * nearest, support.Directions, target, rate, best, SliverEffort);
   }
-  if (!best.IsFound)
-  {
-    this->SearchedAt[point] = numberOfMoves;
-    return false;
-  }
   position = best.Position;
-  return true;
+  return best.IsFound;
 }
 
 void SurfacePointMoves::Make(Id point, const Vec3& position, DynamicTetrahedralization& mesh)
@@ -514,6 +506,8 @@ struct SurfaceMove
 {
   Id Point = NoId;
   Vec3 Position;
+  /** Points of the sliver for which no better position was found. */
+  std::vector<Id> Immovable;
 };
 
 /** Moves points of slivers, one sliver after the other; threads look ahead. */
@@ -546,7 +540,6 @@ private:
   std::vector<SurfacePointMoves> Searches;
   std::vector<Sliver> Slivers;
   LookAhead<SurfaceMove> Ahead;
-  Id NumberOfMoves = 0;
 };
 
 SliverSurfaceMoves::SliverSurfaceMoves(double target, const std::vector<char>& isFree,
@@ -563,6 +556,7 @@ SliverSurfaceMoves::SliverSurfaceMoves(double target, const std::vector<char>& i
   rules.BreaksLimit = [&mesh](const TetrahedronIds& ids, const std::array<Vec3, 4>& corners)
   { return mesh.BreaksLimit(ids, corners); };
   rules.GetClearance = [&mesh](Id point) { return mesh.GetClearance(point); };
+  rules.IsImmovable = [&mesh](Id point) { return mesh.IsImmovable(point); };
   const RefinedBoundary& boundary = mesh.GetBoundary();
   for (int i = 0; i < numberOfThreads; ++i)
   {
@@ -582,12 +576,16 @@ SurfaceMove SliverSurfaceMoves::Find(std::size_t i)
     search.StartRecord();
     for (const Id id : ids)
     {
-      if (!this->Mesh.IsInside(id) && this->IsFree[id] != 0 &&
-        search.Find(id, ids, MoveRatio * this->Target, this->NumberOfMoves, move.Position))
+      if (this->Mesh.IsInside(id) || this->IsFree[id] == 0)
+      {
+        continue;
+      }
+      if (search.Find(id, ids, MoveRatio * this->Target, move.Position))
       {
         move.Point = id;
         break;
       }
+      move.Immovable.push_back(id);
     }
     return LookAhead<SurfaceMove>::Found{ move, search.TakeVisited() };
   };
@@ -605,6 +603,10 @@ bool SliverSurfaceMoves::Mend(std::size_t i)
     return false;
   }
   const SurfaceMove move = this->Find(i);
+  for (const Id point : move.Immovable)
+  {
+    this->Mesh.SetImmovable(point);
+  }
   if (move.Point == NoId)
   {
     SetHopeless(sliver, SliverAttempt::SurfaceMove, this->Mesh);
@@ -612,7 +614,6 @@ bool SliverSurfaceMoves::Mend(std::size_t i)
   }
   this->Searches.front().Make(move.Point, move.Position, this->Mesh.GetTetrahedra());
   this->Points[move.Point] = move.Position;
-  ++this->NumberOfMoves;
   this->Mesh.NoteSurfaceMove();
   return true;
 }

@@ -51,6 +51,8 @@ public:
     std::function<bool(const TetrahedronIds&, const std::array<Vec3, 4>&)> BreaksLimit;
     /** How close another point may come to this one. */
     std::function<double(Id point)> GetClearance;
+    /** Whether a point is immovable, see SliverMemory. */
+    std::function<bool(Id point)> IsImmovable;
   };
 
   /**
@@ -69,12 +71,10 @@ public:
 
   /**
    * Finds the best position for a point of a sliver; false if none increases the smallest angle.
+   * The neighborhood of an immovable point is not searched again: it may be one of many slivers.
    * @param target an angle that is large enough, in degrees
-   * @param numberOfMoves moves that were made: as long as there are no more, what was searched in
-   *   vain is not searched again
    */
-  bool Find(
-    Id point, const TetrahedronIds& sliver, double target, Id numberOfMoves, Vec3& position);
+  bool Find(Id point, const TetrahedronIds& sliver, double target, Vec3& position);
   /** Moves a point in the mesh, which is the one of this object, to a position that was found. */
   void Make(Id point, const Vec3& position, DynamicTetrahedralization& mesh);
 
@@ -110,8 +110,6 @@ private:
   const Rules Given;
   /** Triangles count as coplanar if they deviate by less than this. Model units. */
   double Flatness = 0.0;
-  /** For each point how many moves there were when a search for it was in vain; NoId: none was. */
-  std::vector<Id> SearchedAt;
   /** Tetrahedra at the point that is moved. */
   std::vector<Id> Star;
   /** Work space for one position: the tetrahedra that it changes, and the facets around these. */

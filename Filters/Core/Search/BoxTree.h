@@ -31,7 +31,18 @@ public:
 
   /** Calls visit(id) for each box that overlaps the given one. */
   template <class Function>
-  void VisitOverlaps(const Box& box, Function&& visit) const;
+  void VisitOverlaps(const Box& box, Function&& visit) const
+  {
+    this->Visit([&box](const Box& bounds) { return bounds.Overlaps(box); }, visit);
+  }
+  /** Calls visit(id) for each box nearer to the point than the distance. */
+  template <class Function>
+  void VisitNear(const Vec3& point, double distance, Function&& visit) const
+  {
+    this->Visit([&point, square = distance * distance](const Box& bounds)
+      { return bounds.GetSquaredDistance(point) < square; },
+      visit);
+  }
 
   /**
    * The smallest getDistance(id) of what is in the boxes, or the limit if that is smaller. No
@@ -53,6 +64,8 @@ private:
   };
 
   void Build(const std::vector<Box>& boxes, Id begin, Id end);
+  template <class Condition, class Function>
+  void Visit(const Condition& isWanted, Function&& visit) const;
 
   std::vector<Id> Order;
   /** The boxes in that order. */
@@ -60,8 +73,9 @@ private:
   std::vector<Node> Nodes;
 };
 
-template <class Function>
-void BoxTree::VisitOverlaps(const Box& box, Function&& visit) const
+/** Calls visit(id) for each box that is wanted; then all boxes that contain it are. */
+template <class Condition, class Function>
+void BoxTree::Visit(const Condition& isWanted, Function&& visit) const
 {
   // The depth of a tree split at medians is below the number of bits of an Id.
   Id stack[64];
@@ -74,7 +88,7 @@ void BoxTree::VisitOverlaps(const Box& box, Function&& visit) const
     {
       for (Id i = node.Begin; i < node.End; ++i)
       {
-        if (this->Boxes[i].Overlaps(box))
+        if (isWanted(this->Boxes[i]))
         {
           visit(this->Order[i]);
         }
@@ -83,8 +97,8 @@ void BoxTree::VisitOverlaps(const Box& box, Function&& visit) const
     else
     {
       // Both children at once: a node that comes from the stack need not be tested any more.
-      const bool isLeft = this->Nodes[index + 1].Bounds.Overlaps(box);
-      const bool isRight = this->Nodes[node.Right].Bounds.Overlaps(box);
+      const bool isLeft = isWanted(this->Nodes[index + 1].Bounds);
+      const bool isRight = isWanted(this->Nodes[node.Right].Bounds);
       if (isLeft && isRight)
       {
         stack[size++] = node.Right;
