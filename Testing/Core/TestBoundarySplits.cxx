@@ -15,6 +15,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <random>
 #include <string>
 #include <utility>
@@ -151,7 +152,13 @@ public:
     {
       sourceTriangles[this->Surface.SourceCells[t]] = static_cast<Id>(t);
     }
-    EXPECT_TRUE(this->Splits->Run(triangles, edges, {}).IsOk());
+    // Any of them may have changed.
+    ChangedPoints changed;
+    changed.OnSurface.resize(this->Surface.Points.size());
+    std::iota(changed.OnSurface.begin(), changed.OnSurface.end(), 0);
+    changed.Inside.resize(this->Mesh->GetNumberOfPoints() - this->FirstInside);
+    std::iota(changed.Inside.begin(), changed.Inside.end(), this->FirstInside);
+    EXPECT_TRUE(this->Splits->Run(changed, triangles, edges, {}).IsOk());
     BoundaryChange change{ this->Splits->GetChangedTriangles(), {}, this->Splits->GetChangedEdges(),
       this->Splits->GetSegments() };
     for (Id t : change.Triangles)

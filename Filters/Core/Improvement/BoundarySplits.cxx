@@ -41,6 +41,7 @@ BoundarySplits::BoundarySplits(DynamicTetrahedralization& mesh, Id firstInside,
 {
   this->SurfacePoints.resize(surface.Points.size());
   std::iota(this->SurfacePoints.begin(), this->SurfacePoints.end(), 0);
+  this->RefinementSurfacePoints = this->SurfacePoints;
   for (Id p = firstInside; p < mesh.GetNumberOfPoints(); ++p)
   {
     const bool isThere = mesh.GetTetrahedronAt(p) != NoId;
@@ -52,31 +53,33 @@ BoundarySplits::BoundarySplits(DynamicTetrahedralization& mesh, Id firstInside,
   }
   this->Segments.resize(edges.size());
   std::iota(this->Segments.begin(), this->Segments.end(), 0);
+  for (const StructuralEdge& edge : edges)
+  {
+    this->SegmentEdges.push_back(edge.Points);
+  }
 }
 
 /** Tells the refinement which points have come, moved or gone since the last run. */
-Status BoundarySplits::FollowPoints(const ExecutionContext& context)
+Status BoundarySplits::FollowPoints(const ChangedPoints& changed, const ExecutionContext& context)
 {
   const std::vector<Vec3>& points = this->Refinement.GetPoints();
   std::vector<std::pair<Id, Vec3>> moves;
-  for (std::size_t p = 0; p < points.size(); ++p)
-  {
-    const Id point = this->SurfacePoints[p];
-    if (point != NoId && points[p] != this->Surface.Points[point])
-    {
-      moves.emplace_back(static_cast<Id>(p), this->Surface.Points[point]);
-    }
-  }
   this->Moved.clear();
-  for (Id point = 0; point < static_cast<Id>(this->Surface.Points.size()); ++point)
+  for (Id point : changed.OnSurface)
   {
-    if (this->Mesh.GetPoint(point) != this->Surface.Points[point])
+    const Vec3& position = this->Surface.Points[point];
+    const Id known = this->RefinementSurfacePoints[point];
+    if (points[known] != position)
+    {
+      moves.emplace_back(known, position);
+    }
+    if (this->Mesh.GetPoint(point) != position)
     {
       this->Moved.push_back(point);
     }
   }
   this->RefinementPoints.resize(this->Mesh.GetNumberOfPoints() - this->FirstInside, NoId);
-  for (Id p = this->FirstInside; p < this->Mesh.GetNumberOfPoints(); ++p)
+  for (Id p : changed.Inside)
   {
     Id& known = this->RefinementPoints[p - this->FirstInside];
     const bool isThere = this->Mesh.GetTetrahedronAt(p) != NoId;
@@ -105,12 +108,12 @@ Id BoundarySplits::FindSegment(const EdgeIds& edge) const
   return found != nullptr ? this->Segments[found - this->Edges.data()] : NoId;
 }
 
-Status BoundarySplits::Run(
-  std::vector<Id>& triangles, std::vector<EdgeIds>& edges, const ExecutionContext& context)
+Status BoundarySplits::Run(const ChangedPoints& changed, std::vector<Id>& triangles,
+  std::vector<EdgeIds>& edges, const ExecutionContext& context)
 {
   this->Changed.clear();
   this->ChangedTriangles.clear();
-  Status status = this->IsUsable() ? this->FollowPoints(context) : Status();
+  Status status = this->IsUsable() ? this->FollowPoints(changed, context) : Status();
   this->CanGoOn = this->CanGoOn && status.IsOk() && this->Update();
   const Id numberOfPoints = static_cast<Id>(this->Surface.Points.size());
   // Segments by then: their edges are listed anew at the end.
@@ -178,6 +181,7 @@ bool BoundarySplits::Update()
   Id next = static_cast<Id>(this->Surface.Points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
   {
+    this->RefinementSurfacePoints.push_back(static_cast<Id>(this->SurfacePoints.size()));
     this->SurfacePoints.push_back(next++);
   }
   std::vector<Id> touched = this->Refinement.TakeTouched();
@@ -557,67 +561,84 @@ void BoundarySplits::Adopt(const std::vector<Vec3>& points)
   }
 }
 
-/** Brings the pieces of segments that were split into the sorted list of structural edges. */
-void BoundarySplits::UpdateEdges()
+/** Segments that are new or have got another end, by their edges now; ascending. */
+std::vector<std::pair<EdgeIds, Id>> BoundarySplits::FindChangedSegments()
 {
   const RefinableSurface& refined = this->Refinement.GetSurface();
-  const Id count = refined.GetNumberOfSegments();
-  std::vector<Id> edges(count, NoId);
-  for (std::size_t e = 0; e < this->Segments.size(); ++e)
+  std::vector<Id> touched;
+  for (Id t : this->ChangedTriangles)
   {
-    edges[this->Segments[e]] = static_cast<Id>(e);
-  }
-  std::vector<std::pair<EdgeIds, Id>> changed;
-  for (Id s = 0; s < count; ++s)
-  {
-    const EdgeIds& ends = refined.GetSegment(s).Points;
-    const EdgeIds edge = MakeEdge(this->SurfacePoints[ends[0]], this->SurfacePoints[ends[1]]);
-    // The comparison of arrays is a call of memcmp, which took half of the time here.
-    const auto isEdge = [&](const EdgeIds& other)
-    { return other[0] == edge[0] && other[1] == edge[1]; };
-    if (edges[s] == NoId || !isEdge(this->Edges[edges[s]].Points))
+    for (int i = 0; i < 3; ++i)
     {
-      changed.emplace_back(edge, s);
-      if (edges[s] != NoId)
+      const Id segment = refined.GetSegmentAt(t, i);
+      if (segment != NoId)
       {
-        this->Segments[edges[s]] = NoId;
+        touched.push_back(segment);
       }
     }
   }
+  SortUnique(touched);
+  std::vector<std::pair<EdgeIds, Id>> changed;
+  this->SegmentEdges.resize(refined.GetNumberOfSegments(), { NoId, NoId });
+  for (Id s : touched)
+  {
+    const EdgeIds& ends = refined.GetSegment(s).Points;
+    const EdgeIds edge = MakeEdge(this->SurfacePoints[ends[0]], this->SurfacePoints[ends[1]]);
+    if (this->SegmentEdges[s] != edge)
+    {
+      this->SegmentEdges[s] = edge;
+      changed.emplace_back(edge, s);
+    }
+  }
+  std::sort(changed.begin(), changed.end());
+  return changed;
+}
+
+/** Brings the pieces of segments that were split into the sorted list of structural edges. */
+void BoundarySplits::UpdateEdges()
+{
   this->ChangedEdges.clear();
+  const std::vector<std::pair<EdgeIds, Id>> changed = this->FindChangedSegments();
   if (changed.empty())
   {
     return;
   }
-  std::sort(changed.begin(), changed.end());
-  const std::vector<StructuralEdge> before = std::exchange(this->Edges, {});
-  const std::vector<Id> segments = std::exchange(this->Segments, {});
-  this->Edges.reserve(count);
-  this->Segments.reserve(count);
+  this->IsChangedSegment.resize(this->SegmentEdges.size(), 0);
+  for (const auto& [edge, segment] : changed)
+  {
+    this->IsChangedSegment[segment] = 1;
+  }
+  // The lists change places, and keep their memory.
+  std::swap(this->Edges, this->FormerEdges);
+  std::swap(this->Segments, this->FormerSegments);
+  this->Edges.clear();
+  this->Segments.clear();
   auto next = changed.begin();
-  const auto addChanged = [&]
+  const auto addChangedBefore = [&](const EdgeIds* end)
   {
-    const RefinableSurface::Segment& segment = refined.GetSegment(next->second);
-    this->ChangedEdges.push_back(static_cast<Id>(this->Edges.size()));
-    this->Edges.push_back({ next->first, segment.Kind, segment.Chain, segment.DihedralAngle });
-    this->Segments.push_back(next->second);
-    ++next;
-  };
-  for (std::size_t e = 0; e < before.size(); ++e)
-  {
-    if (segments[e] != NoId)
+    for (; next != changed.end() && (end == nullptr || next->first < *end); ++next)
     {
-      while (next != changed.end() && next->first < before[e].Points)
-      {
-        addChanged();
-      }
-      this->Edges.push_back(before[e]);
-      this->Segments.push_back(segments[e]);
+      const RefinableSurface::Segment& segment =
+        this->Refinement.GetSurface().GetSegment(next->second);
+      this->ChangedEdges.push_back(static_cast<Id>(this->Edges.size()));
+      this->Edges.push_back({ next->first, segment.Kind, segment.Chain, segment.DihedralAngle });
+      this->Segments.push_back(next->second);
+    }
+  };
+  for (std::size_t e = 0; e < this->FormerEdges.size(); ++e)
+  {
+    const Id segment = this->FormerSegments[e];
+    if (this->IsChangedSegment[segment] == 0)
+    {
+      addChangedBefore(&this->FormerEdges[e].Points);
+      this->Edges.push_back(this->FormerEdges[e]);
+      this->Segments.push_back(segment);
     }
   }
-  while (next != changed.end())
+  addChangedBefore(nullptr);
+  for (const auto& [edge, segment] : changed)
   {
-    addChanged();
+    this->IsChangedSegment[segment] = 0;
   }
 }
 } // namespace cdm

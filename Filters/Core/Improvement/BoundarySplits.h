@@ -28,6 +28,13 @@
 
 namespace cdm
 {
+/** Points that may have come, gone or moved since the last splits; ascending. */
+struct ChangedPoints
+{
+  std::vector<Id> OnSurface;
+  std::vector<Id> Inside;
+};
+
 class BoundarySplits
 {
 public:
@@ -45,15 +52,15 @@ public:
     const SizingField& sizing);
 
   /**
-   * Splits the given triangles and edges. First the mesh follows points that have changed since the
-   * last run: interior points that have come or gone, and points of the surface that were moved, in
-   * the surface or in both. Triangles that have got a new point at them by then, and edges that are
+   * Splits the given triangles and edges. First the mesh follows the points that have changed since
+   * the object was made, or the last run: interior points that have come or gone, and points of the
+   * surface that were moved, in the surface or in both. Triangles that have got a new point at them by then, and edges that are
    * split already, are left out. If the mesh has to be made anew, the lists keep what is left,
    * beginning with the split that failed. That happens when no reserved id is left, or when
    * rounding has made something that does not fit. The object cannot be used any more then.
    */
-  Status Run(
-    std::vector<Id>& triangles, std::vector<EdgeIds>& edges, const ExecutionContext& context);
+  Status Run(const ChangedPoints& changed, std::vector<Id>& triangles, std::vector<EdgeIds>& edges,
+    const ExecutionContext& context);
   bool IsUsable() const { return this->CanGoOn; }
   /** Interior points have got higher ids: DynamicTetrahedralization::ReservePoints(). */
   void SetFirstInside(Id firstInside) { this->FirstInside = firstInside; }
@@ -77,7 +84,7 @@ private:
     Id Source;
   };
 
-  Status FollowPoints(const ExecutionContext& context);
+  Status FollowPoints(const ChangedPoints& changed, const ExecutionContext& context);
   Id FindSegment(const EdgeIds& edge) const;
   TriangleIds Translate(const TriangleIds& refined) const;
   bool Update();
@@ -89,6 +96,7 @@ private:
   bool FindSides(const TriangleIds& ids);
   void Visit(Id tetrahedron, Id point, const Vec3& position);
   void Adopt(const std::vector<Vec3>& points);
+  std::vector<std::pair<EdgeIds, Id>> FindChangedSegments();
   void UpdateEdges();
 
   DynamicTetrahedralization& Mesh;
@@ -101,7 +109,10 @@ private:
   const std::vector<Id> SourceCells;
   /** For each structural edge its segment in the refinement. */
   std::vector<Id> Segments;
-  /** Point of the refinement for each point inside, or NoId. */
+  /** For each segment its edge, as it is listed. */
+  std::vector<EdgeIds> SegmentEdges;
+  /** Point of the refinement for each point of the surface, and for each point inside, or NoId. */
+  std::vector<Id> RefinementSurfacePoints;
   std::vector<Id> RefinementPoints;
   /** Point of the surface for each point of the refinement, or NoId. */
   std::vector<Id> SurfacePoints;
@@ -135,6 +146,10 @@ private:
   std::vector<std::pair<TriangleIds, Id>> WallRegions;
   std::vector<std::pair<TriangleIds, Id>> FoundRegions;
   CavityFilling Filling;
+  /** Marks changed segments; edges and segments as they were before. */
+  std::vector<char> IsChangedSegment;
+  std::vector<StructuralEdge> FormerEdges;
+  std::vector<Id> FormerSegments;
 };
 } // namespace cdm
 

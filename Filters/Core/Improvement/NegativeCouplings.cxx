@@ -105,6 +105,16 @@ bool HasNegativeCouplingInAnyRegion(
     { return HasNegativeCoupling(mesh, edge, records.begin(), records.end(), region); });
 }
 
+/** Whether a coupling is negative, given all tetrahedra at the edge. */
+bool HasNegative(
+  const TetMesh& mesh, const EdgeIds& edge, const std::vector<SimplexIncidence::Record>& records)
+{
+  return std::any_of(records.begin(), records.end(),
+           [&](const SimplexIncidence::Record& record)
+           { return IsSphereFilled(mesh, record.Simplex / 6, record.Simplex % 6); }) &&
+    HasNegativeCouplingInAnyRegion(mesh, edge, records);
+}
+
 /** Those of the edges with a negative coupling, ascending. */
 std::vector<EdgeIds> FindNegative(
   const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfPoints)
@@ -150,11 +160,14 @@ int FindEdge(const TetrahedronIds& ids, const EdgeIds& points)
   return edge;
 }
 
-/** The tetrahedra of one region around an edge, in both directions, as in SimplexIncidence. */
+/**
+ * The tetrahedra around an edge, in both directions, as in SimplexIncidence.
+ * @param isEnd (tetrahedron, facet): whether the walk ends at a facet, at the latest at the outside
+ */
+template <typename Condition>
 std::vector<SimplexIncidence::Record> FindAroundEdge(
-  const DynamicTetrahedralization& mesh, Id tetrahedron, int edge)
+  const TetMesh& tetrahedra, Id tetrahedron, int edge, Condition&& isEnd)
 {
-  const TetMesh& tetrahedra = mesh.GetMesh();
   const TetrahedronIds& firstIds = tetrahedra.Tetrahedra[tetrahedron];
   const EdgeIds points =
     MakeEdge(firstIds[TetrahedronEdges[edge][0]], firstIds[TetrahedronEdges[edge][1]]);
@@ -164,7 +177,7 @@ std::vector<SimplexIncidence::Record> FindAroundEdge(
     Id t = tetrahedron;
     int facet = TetrahedronEdges[5 - edge][direction];
     Id next = firstIds[TetrahedronEdges[5 - edge][1 - direction]];
-    while (!mesh.IsBoundary(t, facet))
+    while (!isEnd(t, facet))
     {
       const Id entered = tetrahedra.Neighbors[t][facet];
       t = entered / 4;
@@ -181,90 +194,149 @@ std::vector<SimplexIncidence::Record> FindAroundEdge(
   return records;
 }
 
-void AddEdges(const TriangleIds& ids, std::vector<EdgeIds>& edges)
+/** How many triangles of the boundary have the edge. */
+std::ptrdiff_t CountTriangles(
+  const TriangleMesh& boundary, const IdLists& pointTriangles, const EdgeIds& edge)
+{
+  const IdLists::Range triangles = pointTriangles[edge[0]];
+  return std::count_if(triangles.begin(), triangles.end(),
+    [&](Id t) { return Contains(boundary.Triangles[t], edge[1]); });
+}
+
+/** The tetrahedra around an edge, and how many boundary facets were passed on the way. */
+struct Around
+{
+  std::vector<SimplexIncidence::Record> Records;
+  std::ptrdiff_t NumberOfFacets = 0;
+};
+
+/** @param simplex as in SimplexIncidence */
+Around WalkAround(const TetMesh& mesh, Id simplex)
+{
+  Around around;
+  around.Records = FindAroundEdge(mesh, simplex / 6, simplex % 6,
+    [&](Id t, int facet)
+    {
+      const Id neighbor = mesh.Neighbors[t][facet];
+      const bool isOuter = neighbor == NoId;
+      around.NumberOfFacets += isOuter || mesh.Regions[neighbor / 4] != mesh.Regions[t] ? 1 : 0;
+      return isOuter;
+    });
+  return around;
+}
+} // namespace
+
+void NegativeCouplings::Note(const TriangleIds& ids)
 {
   for (int i = 0; i < 3; ++i)
   {
-    edges.push_back(MakeEdge(ids[i], ids[(i + 1) % 3]));
+    this->Changed.push_back({ PackIds(MakeEdge(ids[i], ids[(i + 1) % 3])), NoId });
   }
 }
-} // namespace
 
 void NegativeCouplings::NoteTriangles(
   const TriangleMesh& boundary, const std::vector<Id>& triangles)
 {
   for (Id t : triangles)
   {
-    AddEdges(boundary.Triangles[t], this->Noted);
+    this->Note(boundary.Triangles[t]);
   }
 }
 
-/** Pairs of points of the boundary that may have got another coupling, ascending. */
-std::vector<EdgeIds> NegativeCouplings::TakeChanged(
+/** Adds the pairs of points of the boundary at new tetrahedra, or all edges of the boundary. */
+void NegativeCouplings::CollectChanged(
   const DynamicTetrahedralization& mesh, const TriangleMesh& boundary)
 {
-  std::vector<EdgeIds> changed = std::exchange(this->Noted, {});
-  if (this->NextStamp == 0)
+  const std::int64_t numberOfNew = mesh.CountMade() - this->NumberMade;
+  if (this->NextStamp == 0 || numberOfNew > static_cast<std::int64_t>(boundary.Triangles.size()))
   {
-    for (const TriangleIds& ids : boundary.Triangles)
-    {
-      AddEdges(ids, changed);
-    }
+    std::for_each(boundary.Triangles.begin(), boundary.Triangles.end(),
+      [this](const TriangleIds& ids) { this->Note(ids); });
   }
-  const auto visit = [&](Id t)
+  else
   {
-    if (mesh.GetStamp(t) >= this->NextStamp && !mesh.IsDead(t))
-    {
-      ForEachBoundaryPair(mesh.GetMesh().Tetrahedra[t], static_cast<Id>(boundary.Points.size()),
-        [&changed](int, const EdgeIds& edge) { changed.push_back(edge); });
-    }
-  };
-  if (this->NextStamp > 0)
-  {
-    mesh.VisitMadeSince(this->NumberMade, this->New, visit);
+    const Id numberOfPoints = static_cast<Id>(boundary.Points.size());
+    mesh.VisitMadeSince(this->NumberMade, this->New,
+      [&](Id t)
+      {
+        if (mesh.GetStamp(t) >= this->NextStamp && !mesh.IsDead(t))
+        {
+          ForEachBoundaryPair(mesh.GetMesh().Tetrahedra[t], numberOfPoints,
+            [&](int i, const EdgeIds& edge) {
+              this->Changed.push_back({ PackIds(edge), 6 * t + i });
+            });
+        }
+      });
   }
   this->NumberMade = mesh.CountMade();
   this->NextStamp = mesh.GetNextStamp();
-  SortUnique(changed);
-  return changed;
+  // Of each edge one is kept, with a tetrahedron if there is one.
+  std::sort(this->Changed.begin(), this->Changed.end(),
+    [](const Candidate& a, const Candidate& b)
+    { return a.Edge != b.Edge ? a.Edge < b.Edge : a.Simplex > b.Simplex; });
+  this->Changed.erase(std::unique(this->Changed.begin(), this->Changed.end(),
+                        [](const Candidate& a, const Candidate& b) { return a.Edge == b.Edge; }),
+    this->Changed.end());
 }
 
 const std::vector<EdgeIds>& NegativeCouplings::Update(const DynamicTetrahedralization& mesh,
   const TriangleMesh& boundary, const IdLists& pointTriangles)
 {
-  const auto isNoEdge = [&](const EdgeIds& edge)
-  { return !IsBoundaryEdge(boundary, pointTriangles, edge); };
-  std::vector<EdgeIds> changed = this->TakeChanged(mesh, boundary);
-  this->Negative.erase(
-    std::remove_if(this->Negative.begin(), this->Negative.end(),
-      [&](const EdgeIds& edge)
-      { return isNoEdge(edge) || std::binary_search(changed.begin(), changed.end(), edge); }),
-    this->Negative.end());
-  changed.erase(std::remove_if(changed.begin(), changed.end(), isNoEdge), changed.end());
-  this->NumberOfTests += static_cast<std::int64_t>(changed.size());
-
+  this->CollectChanged(mesh, boundary);
+  std::vector<EdgeIds> found;
+  for (const EdgeIds& edge : this->Negative)
+  {
+    const auto changed = std::lower_bound(this->Changed.begin(), this->Changed.end(), PackIds(edge),
+      [](const Candidate& candidate, std::uint64_t key) { return candidate.Edge < key; });
+    const bool isChanged = changed != this->Changed.end() && changed->Edge == PackIds(edge);
+    if (!isChanged && IsBoundaryEdge(boundary, pointTriangles, edge))
+    {
+      found.push_back(edge);
+    }
+  }
+  // Edges at which bodies touch have tetrahedra beyond the outside, which no walk finds.
+  std::vector<EdgeIds> others;
+  for (const Candidate& candidate : this->Changed)
+  {
+    const EdgeIds edge{ static_cast<Id>(candidate.Edge >> 32),
+      static_cast<Id>(candidate.Edge & 0xFFFFFFFFU) };
+    const std::ptrdiff_t triangles = CountTriangles(boundary, pointTriangles, edge);
+    this->NumberOfTests += triangles > 0 ? 1 : 0;
+    Around around;
+    if (triangles > 0 && candidate.Simplex != NoId)
+    {
+      around = WalkAround(mesh.GetMesh(), candidate.Simplex);
+    }
+    if (around.NumberOfFacets != triangles)
+    {
+      others.push_back(edge);
+    }
+    else if (triangles > 0 && HasNegative(mesh.GetMesh(), edge, around.Records))
+    {
+      found.push_back(edge);
+    }
+  }
+  this->Changed.clear();
   const Id numberOfPoints = static_cast<Id>(boundary.Points.size());
-  const std::vector<EdgeIds> filled = FindFilledEdges(mesh.GetMesh(), changed, numberOfPoints);
-  const std::vector<EdgeIds> found = FindNegative(mesh.GetMesh(), filled, numberOfPoints);
-  std::vector<EdgeIds> both;
-  std::merge(this->Negative.begin(), this->Negative.end(), found.begin(), found.end(),
-    std::back_inserter(both));
-  this->Negative = std::move(both);
+  const std::vector<EdgeIds> filled = FindFilledEdges(mesh.GetMesh(), others, numberOfPoints);
+  const std::vector<EdgeIds> negative = FindNegative(mesh.GetMesh(), filled, numberOfPoints);
+  found.insert(found.end(), negative.begin(), negative.end());
+  std::sort(found.begin(), found.end());
+  this->Negative = std::move(found);
   return this->Negative;
 }
 
 bool IsBoundaryEdge(
   const TriangleMesh& boundary, const IdLists& pointTriangles, const EdgeIds& edge)
 {
-  const IdLists::Range triangles = pointTriangles[edge[0]];
-  return std::any_of(triangles.begin(), triangles.end(),
-    [&](Id t) { return Contains(boundary.Triangles[t], edge[1]); });
+  return CountTriangles(boundary, pointTriangles, edge) > 0;
 }
 
 bool HasNegativeCoupling(const DynamicTetrahedralization& mesh, Id tetrahedron, int edge)
 {
-  const std::vector<SimplexIncidence::Record> records = FindAroundEdge(mesh, tetrahedron, edge);
   const TetMesh& tetrahedra = mesh.GetMesh();
+  const std::vector<SimplexIncidence::Record> records = FindAroundEdge(
+    tetrahedra, tetrahedron, edge, [&mesh](Id t, int facet) { return mesh.IsBoundary(t, facet); });
   const TetrahedronIds& ids = tetrahedra.Tetrahedra[tetrahedron];
   return std::any_of(records.begin(), records.end(),
            [&](const SimplexIncidence::Record& record)

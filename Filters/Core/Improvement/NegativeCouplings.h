@@ -10,10 +10,12 @@
  * edges; Crit. 3.1 excludes it for edges within surface facets.
  *
  * Method: only edges whose smallest spheres are not empty are looked at. After the first time only
- * those at tetrahedra that are new, and at triangles that have changed.
+ * those at tetrahedra that are new, and at triangles that have changed: walks around these edges
+ * find their tetrahedra. Where the walk misses some, as bodies touch at the edge, or where none
+ * is known, all tetrahedra are looked through.
  *
- * Deterministic. Cost: O(n) for n tetrahedra, twice through all of them; a few nanoseconds for each
- * one far from all changes.
+ * Deterministic. Cost: O(m log m) for m new tetrahedra; O(n) for n in all at first, twice through
+ * all of them, and wherever bodies touch.
  * Reference: P. Fleischmann, thesis, 3.1.
  */
 #ifndef cdmNegativeCouplings_h
@@ -46,12 +48,20 @@ public:
   std::int64_t GetNumberOfTests() const { return this->NumberOfTests; }
 
 private:
-  std::vector<EdgeIds> TakeChanged(
-    const DynamicTetrahedralization& mesh, const TriangleMesh& boundary);
+  /** An edge that may have got another coupling. */
+  struct Candidate
+  {
+    /** Smaller id * 2^32 + larger one. */
+    std::uint64_t Edge;
+    /** A tetrahedron at the edge * 6 + its number there, or NoId if none is known. */
+    Id Simplex;
+  };
+  void Note(const TriangleIds& ids);
+  void CollectChanged(const DynamicTetrahedralization& mesh, const TriangleMesh& boundary);
 
   std::vector<EdgeIds> Negative;
-  /** Edges of triangles that have changed since the last update. */
-  std::vector<EdgeIds> Noted;
+  /** Edges of triangles that have changed since the last update, then all that may have. */
+  std::vector<Candidate> Changed;
   /** Tetrahedra with this stamp or a later one are new. */
   std::int64_t NextStamp = 0;
   /** How many tetrahedra the mesh had made by then. */

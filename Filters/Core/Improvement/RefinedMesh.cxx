@@ -222,6 +222,10 @@ void RefinedMesh::ReservePoints()
   const Id count = static_cast<Id>(wanted + onSurface / 2);
   this->Mesh.ReservePoints(this->FirstInside, count);
   this->Points.insert(this->Points.begin() + this->FirstInside, count, InteriorPoint());
+  for (Id& point : this->ChangedInside)
+  {
+    point += count;
+  }
   this->FirstInside += count;
   if (this->Splits)
   {
@@ -229,10 +233,16 @@ void RefinedMesh::ReservePoints()
   }
 }
 
-bool RefinedMesh::SplitBoundary(const DelaunaySurfaceRefinerOptions& options,
+bool RefinedMesh::SplitBoundary(std::vector<Id> moved, const DelaunaySurfaceRefinerOptions& options,
   const SizingField& sizing, const ExecutionContext& context, Status& status)
 {
   this->ReservePoints();
+  for (Id p : moved)
+  {
+    this->Points[p].Position = this->Boundary.Surface.Points[p];
+  }
+  ChangedPoints changed{ std::move(moved), std::exchange(this->ChangedInside, {}) };
+  SortUnique(changed.Inside);
   if (!this->Splits)
   {
     this->Splits = std::make_unique<BoundarySplits>(
@@ -240,8 +250,7 @@ bool RefinedMesh::SplitBoundary(const DelaunaySurfaceRefinerOptions& options,
   }
   const Id first = static_cast<Id>(this->Boundary.Surface.Points.size());
   const std::vector<Id> sourceTriangles = ListSourceTriangles(this->Boundary.Surface);
-  const std::vector<Id> moved = this->TakeMovedSurfacePoints();
-  status = this->Splits->Run(this->Requests.Triangles, this->Requests.Edges, context);
+  status = this->Splits->Run(changed, this->Requests.Triangles, this->Requests.Edges, context);
   const Id end = static_cast<Id>(this->Boundary.Surface.Points.size());
   for (Id p = first; p < end; ++p)
   {
@@ -259,25 +268,9 @@ bool RefinedMesh::SplitBoundary(const DelaunaySurfaceRefinerOptions& options,
   {
     return false;
   }
-  this->FollowBoundary(moved, sourceTriangles);
+  this->FollowBoundary(changed.OnSurface, sourceTriangles);
   this->Requests.Clear();
   return true;
-}
-
-/** Points of the surface that have been moved since the last call, ascending. */
-std::vector<Id> RefinedMesh::TakeMovedSurfacePoints()
-{
-  std::vector<Id> moved;
-  const std::vector<Vec3>& positions = this->Boundary.Surface.Points;
-  for (std::size_t p = 0; p < positions.size(); ++p)
-  {
-    if (this->Points[p].Position != positions[p])
-    {
-      this->Points[p].Position = positions[p];
-      moved.push_back(static_cast<Id>(p));
-    }
-  }
-  return moved;
 }
 
 /**
@@ -524,7 +517,7 @@ void RefinedMesh::Insert(const Vec3& position)
       size = std::min(size, this->Points[id].Size + Distance(position, this->Mesh.GetPoint(id)));
     }
   }
-  this->Mesh.Insert(position, this->FoundCavity);
+  this->ChangedInside.push_back(this->Mesh.Insert(position, this->FoundCavity));
   this->Points.push_back({ position, size, true, NoId, this->Memory.MakeName() });
   this->NoteChanges();
   ++this->Report.InsertedPoints;
@@ -541,11 +534,13 @@ void RefinedMesh::NoteMove(Id point)
   this->Points[point].Position = this->Mesh.GetPoint(point);
   this->Points[point].Source = NoId;
   ++this->Report.MovedPoints;
+  this->ChangedInside.push_back(point);
   this->NoteChanges();
 }
 
-void RefinedMesh::NoteRemoval()
+void RefinedMesh::NoteRemoval(Id point)
 {
+  this->ChangedInside.push_back(point);
   ++this->Report.RemovedPoints;
   this->NoteChanges();
 }

@@ -136,12 +136,15 @@ public:
   /**
    * Makes the requested splits of the boundary, and further ones that these need, in the mesh
    * itself.
+   * @param moved points of the surface that have been moved since the last splits, ascending
    * @param options those that the surface was refined with
    * @return whether all requests are done. If not, surface and mesh still fit each other, the
    *   requests that are left stay, and a new mesh has to be made: this object cannot be used then
    */
-  bool SplitBoundary(const DelaunaySurfaceRefinerOptions& options, const SizingField& sizing,
-    const ExecutionContext& context, Status& status);
+  bool SplitBoundary(std::vector<Id> moved, const DelaunaySurfaceRefinerOptions& options,
+    const SizingField& sizing, const ExecutionContext& context, Status& status);
+  /** Triangles of the surface that the last splits have made or may have changed, ascending. */
+  const std::vector<Id>& GetSplitTriangles() const { return this->Splits->GetChangedTriangles(); }
 
   /** Whether a point is none of the surface. */
   bool IsInside(Id point) const { return point >= this->FirstInside; }
@@ -228,11 +231,10 @@ public:
   /** Notes that a free point has been moved in the tetrahedra. */
   void NoteMove(Id point);
   /** Counts a free point that was removed and is not restored. */
-  void NoteRemoval();
+  void NoteRemoval(Id point);
 
 private:
   void ReservePoints();
-  std::vector<Id> TakeMovedSurfacePoints();
   void FollowBoundary(const std::vector<Id>& moved, const std::vector<Id>& sourceTriangles);
   void BoundSizes(const std::vector<Id>& tetrahedra);
   bool TouchesOpenFacet(const PointCavity& cavity) const;
@@ -251,6 +253,8 @@ private:
   std::unique_ptr<BoundarySplits> Splits;
   /** One for each point of the mesh. */
   std::vector<InteriorPoint> Points;
+  /** Interior points that have come, gone or moved since the last splits of the boundary. */
+  std::vector<Id> ChangedInside;
   RefinedMeshReport Report;
   BoundaryRequests Requests;
   NegativeCouplings Couplings;

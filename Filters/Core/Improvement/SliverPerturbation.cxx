@@ -98,7 +98,7 @@ void Perturbation::Make(const SliverChange& change, Id tetrahedron)
   mesh.Remove(change.Point, change.Star, change.Cells);
   if (change.What == SliverChange::Kind::Removal)
   {
-    this->Mesh.NoteRemoval();
+    this->Mesh.NoteRemoval(change.Point);
     return;
   }
   const Id first = mesh.Locate(change.Position, mesh.GetChanged().front());

@@ -30,6 +30,11 @@ constexpr double BoundaryEdgeRatio = 1.15;
  */
 constexpr std::size_t TetrahedraPerSplit = 32;
 /**
+ * A state is noted anew when one of so many points has come, gone or moved since the last one. Each
+ * round took a twentieth of the time of late rounds.
+ */
+constexpr std::size_t PointsPerChange = 64;
+/**
  * So many points, and ten for each point of the surface, may be made for narrow triangles: more are
  * hardly needed, but for angles that cannot be had.
  */
@@ -243,9 +248,10 @@ Status SteinerPointRounds::StartFirst()
 
 Status SteinerPointRounds::StartNext()
 {
-  const bool hasMoved = std::exchange(this->HasMovedPoints, false);
+  const bool haveMoved = !this->MovedPoints.empty();
   Status status = this->CanSplitInPlace() ? this->SplitInPlace() : this->RemakeMesh();
-  this->HasSplitNothing = this->HasSplitNothing && !hasMoved;
+  this->MovedPoints.clear();
+  this->HasSplitNothing = this->HasSplitNothing && !haveMoved;
   return status;
 }
 
@@ -423,7 +429,7 @@ void SteinerPointRounds::TakeMesh(
   AdvancingFrontTetrahedralizerOutput made, const std::vector<InteriorPoint>& interior)
 {
   this->Surface = std::move(made.Boundary);
-  this->CollectSurfaceSizes();
+  this->CollectSurfaceSizes(MakeAscendingIds(this->Surface.Triangles.size()));
   this->Mesh = std::make_unique<RefinedMesh>(std::move(made.Mesh),
     RefinedBoundary{ this->Surface, this->Edges, this->Edges }, interior, this->Memory,
     this->GetMeshOptions());
@@ -435,6 +441,19 @@ void SteinerPointRounds::TakeMesh(
 
 void SteinerPointRounds::NoteState()
 {
+  const RefinedMeshReport& report = this->Mesh->GetReport();
+  const Id numberOfChanges = this->Report.BoundaryPoints + this->Report.InteriorPoints +
+    this->Report.MovedPoints + this->Report.RemovedPoints + report.InsertedPoints +
+    report.MovedPoints + report.RemovedPoints;
+  const std::size_t numberOfPoints =
+    this->Noted.Surface.Points.size() + this->Noted.Interior.size();
+  if (numberOfPoints > 0 &&
+    static_cast<std::size_t>(numberOfChanges - this->Noted.NumberOfChanges) <
+      numberOfPoints / PointsPerChange)
+  {
+    return;
+  }
+  this->Noted.NumberOfChanges = numberOfChanges;
   // Assigned one by one, they keep their memory.
   this->Noted.Surface = this->Surface;
   this->Noted.Edges = this->Edges;
@@ -473,7 +492,8 @@ Status SteinerPointRounds::SplitInPlace()
 {
   const std::size_t before = this->Surface.Points.size();
   Status status;
-  const bool isDone = this->Mesh->SplitBoundary(
+  SortUnique(this->MovedPoints);
+  const bool isDone = this->Mesh->SplitBoundary(std::move(this->MovedPoints),
     this->GetSurfaceOptions(), this->Input.Sizing, this->GetContext(), status);
   const std::size_t after = this->Surface.Points.size();
   this->Report.BoundaryPoints += static_cast<Id>(after - before);
@@ -489,7 +509,7 @@ Status SteinerPointRounds::SplitInPlace()
   this->HasSplitNothing = after == before;
   if (!this->SurfaceSizes.empty())
   {
-    const std::size_t first = this->CollectSurfaceSizes();
+    const std::size_t first = this->CollectSurfaceSizes(this->Mesh->GetSplitTriangles());
     this->Mesh->SetSurfaceSizes(static_cast<Id>(first), this->SurfaceSizes);
   }
   this->IsSurfaceFree.resize(after, 1);
@@ -500,8 +520,9 @@ Status SteinerPointRounds::SplitInPlace()
 /**
  * Gives sizes to the surface points that have none yet: from the points around them, and from edges
  * and facets that come close to each other. Returns the first such point.
+ * @param triangles those at new points are among them
  */
-std::size_t SteinerPointRounds::CollectSurfaceSizes()
+std::size_t SteinerPointRounds::CollectSurfaceSizes(const std::vector<Id>& triangles)
 {
   const std::size_t first = this->SurfaceSizes.size();
   if (first == 0)
@@ -509,7 +530,7 @@ std::size_t SteinerPointRounds::CollectSurfaceSizes()
     return first;
   }
   this->SurfaceSizes.resize(this->Surface.Points.size(), -1.0);
-  this->SpreadSurfaceSizes();
+  this->SpreadSurfaceSizes(triangles);
   const auto find = [&](std::size_t begin, std::size_t end, std::size_t)
   {
     for (std::size_t p = first + begin; p < first + end; ++p)
@@ -523,12 +544,13 @@ std::size_t SteinerPointRounds::CollectSurfaceSizes()
 }
 
 /** Bounds unknown sizes, which are negative, by known ones: from point to point along edges. */
-void SteinerPointRounds::SpreadSurfaceSizes()
+void SteinerPointRounds::SpreadSurfaceSizes(const std::vector<Id>& triangles)
 {
   std::vector<double>& sizes = this->SurfaceSizes;
   std::vector<TriangleIds> around;
-  for (const TriangleIds& ids : this->Surface.Triangles)
+  for (Id t : triangles)
   {
+    const TriangleIds& ids = this->Surface.Triangles[t];
     if (std::any_of(ids.begin(), ids.end(), [&sizes](Id id) { return sizes[id] < 0.0; }))
     {
       around.push_back(ids);
@@ -595,14 +617,14 @@ void SteinerPointRounds::HalveSizes(const std::vector<Id>& tetrahedra)
 
 bool SteinerPointRounds::TakeSurfacePositions(const std::vector<Vec3>& positions)
 {
-  bool isAnyMoved = false;
+  const std::size_t before = this->MovedPoints.size();
   for (std::size_t p = 0; p < positions.size(); ++p)
   {
     if (positions[p] != this->Surface.Points[p])
     {
       this->Surface.Points[p] = positions[p];
       this->IsNew[p] = 1;
-      isAnyMoved = true;
+      this->MovedPoints.push_back(static_cast<Id>(p));
       ++this->Report.MovedPoints;
       if (p < this->SurfaceSources.size())
       {
@@ -610,8 +632,7 @@ bool SteinerPointRounds::TakeSurfacePositions(const std::vector<Vec3>& positions
       }
     }
   }
-  this->HasMovedPoints = this->HasMovedPoints || isAnyMoved;
-  return isAnyMoved;
+  return this->MovedPoints.size() > before;
 }
 
 void SteinerPointRounds::CollectReport()

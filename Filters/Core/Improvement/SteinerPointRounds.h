@@ -59,7 +59,8 @@ public:
 
   /**
    * Notes the state that may have to come back: all smallest spheres are empty now. Points that are
-   * inserted or moved after it may request splits that cannot be had.
+   * inserted or moved after it may request splits that cannot be had. Does nothing if the last noted
+   * state is nearly the same.
    */
   void NoteState();
   /**
@@ -90,6 +91,8 @@ private:
     TriangleMesh Surface;
     std::vector<StructuralEdge> Edges;
     std::vector<InteriorPoint> Interior;
+    /** How many points had come, gone or moved by then. */
+    Id NumberOfChanges = 0;
   };
 
   void ExtractSurface();
@@ -112,8 +115,8 @@ private:
   bool MayShapeSurface() const;
   Id GetMaximumOfShapes() const;
   Status SplitInPlace();
-  std::size_t CollectSurfaceSizes();
-  void SpreadSurfaceSizes();
+  std::size_t CollectSurfaceSizes(const std::vector<Id>& triangles);
+  void SpreadSurfaceSizes(const std::vector<Id>& triangles);
   void CollectReport();
 
   const SteinerPointRefinerInput& Input;
@@ -142,7 +145,8 @@ private:
   /** One for each point of the surface: whether it was made or moved since the mesh was made. */
   std::vector<char> IsNew;
   std::vector<char> IsSurfaceFree;
-  bool HasMovedPoints = false;
+  /** Points of the surface that have been moved in this round. */
+  std::vector<Id> MovedPoints;
   /** Whether narrow triangles took too many points, or spoilt the criterion. */
   bool HasFailedToShape = false;
   bool HasSplitNothing = false;

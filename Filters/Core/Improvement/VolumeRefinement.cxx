@@ -100,7 +100,7 @@ void RemoveClosePoints(double smallest, const SizingField& sizing, RefinedMesh& 
       });
     if (isClose && tetrahedra.Remove(p))
     {
-      mesh.NoteRemoval();
+      mesh.NoteRemoval(p);
     }
   }
 }

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Improvement/SliverMemory.h"
+
+#include <gtest/gtest.h>
+
+using namespace cdm;
+
+TEST(SliverMemory, PointsAreImmovableUntilTheyGetOtherNeighbors)
+{
+  SliverMemory memory;
+  const Id inside = memory.MakeName();
+  const Id onSurface = 7;
+  for (const Id point : { inside, onSurface })
+  {
+    EXPECT_FALSE(memory.IsImmovable(point));
+    memory.SetImmovable(point);
+    EXPECT_TRUE(memory.IsImmovable(point));
+    // Far away.
+    memory.SetChanged({ 1, 2, 3, memory.MakeName() });
+    EXPECT_TRUE(memory.IsImmovable(point));
+    memory.SetChanged({ 1, 2, 3, point });
+    EXPECT_FALSE(memory.IsImmovable(point));
+    memory.SetImmovable(point);
+    EXPECT_TRUE(memory.IsImmovable(point));
+  }
+  EXPECT_FALSE(memory.IsImmovable(memory.MakeName()));
+}
+
+TEST(SliverMemory, SliversAreHopelessUntilAPointGetsOtherNeighbors)
+{
+  SliverMemory memory;
+  const TetrahedronIds sliver{ 4, 5, 6, memory.MakeName() };
+  EXPECT_FALSE(memory.IsHopeless(sliver, SliverAttempt::Move));
+  memory.SetHopeless(sliver, SliverAttempt::Insertion);
+  EXPECT_TRUE(memory.IsHopeless(sliver, SliverAttempt::Move));
+  EXPECT_TRUE(memory.IsHopeless(sliver, SliverAttempt::Insertion));
+  EXPECT_FALSE(memory.IsHopeless(sliver, SliverAttempt::SurfaceMove));
+  memory.SetChanged({ 1, 2, 3, 8 });
+  EXPECT_TRUE(memory.IsHopeless(sliver, SliverAttempt::Move));
+  memory.SetChanged({ 1, 2, 3, 6 });
+  EXPECT_FALSE(memory.IsHopeless(sliver, SliverAttempt::Move));
+}
