@@ -224,6 +224,9 @@ def Measure(program, files, limit, programs):
     own = re.search(r"\bmegabytes (\S+)", run.stdout)
     if own:
         result["megabytes"] = float(own[1])
+    start = re.search(r"\bstart (\S+)", run.stdout)
+    if start:
+        result["added"] = result["megabytes"] - float(start[1])
     # In the line that our programs print of themselves: warnings have such numbers, too.
     tetrahedra = re.search(r"^(?:seconds|points) .*\btetrahedra (\d+)", run.stdout, re.MULTILINE)
     if tetrahedra:

@@ -10,8 +10,9 @@
  * the filter's), remove-slivers (1).
  *
  * Prints one line of "name value" pairs: seconds (processor time of the filter, without reading and
- * writing), megabytes (the peak until then), points and tetrahedra. Exit status: 0 meshed, 1
- * refused by the filter, 2 wrong use or a file that cannot be read or written.
+ * writing), megabytes (the peak until then), start (megabytes before it), points and tetrahedra.
+ * Exit status: 0 meshed, 1 refused by the filter, 2 wrong use or a file that cannot be read or
+ * written.
  */
 #include <vtkConformingDelaunayMesher.h>
 
@@ -28,6 +29,17 @@
 #include <string>
 
 #include <sys/resource.h>
+
+namespace
+{
+/** Peak memory of the process so far. */
+double GetMegabytes()
+{
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+} // namespace
 
 int main(int argc, char* argv[])
 {
@@ -67,15 +79,15 @@ int main(int argc, char* argv[])
   mesher->SetDihedralAngleTarget(options["--dihedral-angle"]);
   mesher->SetRemoveSlivers(options["--remove-slivers"] != 0.0);
 
+  const double before = GetMegabytes();
   const std::clock_t start = std::clock();
   mesher->Update();
   const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
+  const double megabytes = GetMegabytes();
   vtkUnstructuredGrid* mesh = mesher->GetOutput();
-  std::cout << "seconds " << seconds << " megabytes "
-            << static_cast<double>(usage.ru_maxrss) / 1024.0 << " points "
-            << mesh->GetNumberOfPoints() << " tetrahedra " << mesh->GetNumberOfCells() << std::endl;
+  std::cout << "seconds " << seconds << " megabytes " << megabytes << " start " << before
+            << " points " << mesh->GetNumberOfPoints() << " tetrahedra " << mesh->GetNumberOfCells()
+            << std::endl;
   if (mesh->GetNumberOfCells() == 0)
   {
     return 1;

@@ -17,8 +17,9 @@ from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 from vtkmodules.vtkViewsContext2D import vtkContextView
 
-# Shorter times say little: they are left out of ratios.
+# Shorter times, and less memory, say little: they are left out of ratios.
 SHORTEST = 0.01
+LEAST_MEMORY = 10.0
 WIDTH, HEIGHT = 1200, 520
 COLOURS = ((38, 94, 170), (214, 96, 38), (62, 150, 81), (140, 84, 158), (120, 120, 120),
            (196, 160, 0))
@@ -83,8 +84,8 @@ volume.
 
 
 def GetMedian(result, name):
-    """Of the measurements that were finished; None without one."""
-    values = [run[name] for run in result["runs"] if run["status"] == "done"]
+    """Of the measurements that were finished; None without one, or where nothing says it."""
+    values = [run[name] for run in result["runs"] if run["status"] == "done" and name in run]
     return statistics.median(values) if values else None
 
 
@@ -178,18 +179,20 @@ def WriteSummary(results, write):
 
 def WriteOwnRatios(results, write):
     """A row for each other program: our seconds, tetrahedra and MB by theirs."""
-    write("Ours by theirs, median and nine of ten of the inputs that both mesh:\n\n")
-    write("| program | time | tetrahedra | memory |\n|---|---:|---:|---:|\n")
+    write("Ours by theirs, median and nine of ten of the inputs that both mesh; memory added: what "
+          "meshing adds to libraries and input, where theirs is %g MB or more:\n\n" % LEAST_MEMORY)
+    write("| program | time | tetrahedra | memory | memory added |\n|---|---:|---:|---:|---:|\n")
     ours = {result["input"]: result for result in results if result["program"] == "ours"}
     for program in dict.fromkeys(result["program"] for result in results):
         cells = []
-        for get in (lambda row: GetMedian(row, "seconds"), GetTetrahedra,
-                    lambda row: GetMedian(row, "megabytes")):
+        for get, least in ((lambda row: GetMedian(row, "seconds"), SHORTEST), (GetTetrahedra, 0.0),
+                           (lambda row: GetMedian(row, "megabytes"), 0.0),
+                           (lambda row: GetMedian(row, "added") or 0.0, None)):
             pairs = [(get(ours[row["input"]]), get(row)) for row in results
                      if row["program"] == program and row["certificate"]
                      and ours[row["input"]]["certificate"]]
-            ratios = sorted(own / other for own, other in pairs
-                            if get is GetTetrahedra or max(own, other) >= SHORTEST and other > 0.0)
+            ratios = sorted(own / other for own, other in pairs if other > 0.0 and (
+                other >= LEAST_MEMORY if least is None else max(own, other) >= least))
             cells.append("%.2f, %.2f" % (
                 statistics.median(ratios), ratios[math.ceil(0.9 * len(ratios)) - 1])
                          if ratios else "")
@@ -330,7 +333,7 @@ def WriteReport(folder):
             if rows:
                 write(TEXTS[kind] + "\n")
                 WriteSummary(rows, write)
-                if kind == "steiner":
+                if kind != "sets":
                     WriteOwnRatios(rows, write)
         growth = [result for result in results if "growth" in result["kind"]]
         for kind in dict.fromkeys(result["kind"] for result in growth):

@@ -6,8 +6,8 @@
  *     SuiteTetgen SWITCHES INPUT.smesh OUTPUT
  *
  * Prints one line of "name value" pairs: seconds (processor time without reading and writing),
- * megabytes (the peak until then), points and tetrahedra. The mesh goes to OUTPUT.node and
- * OUTPUT.ele.
+ * megabytes (the peak until then), start (megabytes before it), points and tetrahedra. The mesh
+ * goes to OUTPUT.node and OUTPUT.ele.
  * Exit status: 0 meshed, 1 refused, 2 wrong use or a file that cannot be read or written.
  */
 #include "TetgenFiles.h"
@@ -19,6 +19,17 @@
 #include <string>
 
 #include <sys/resource.h>
+
+namespace
+{
+/** Peak memory of the process so far. */
+double GetMegabytes()
+{
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+} // namespace
 
 int main(int argc, char* argv[])
 {
@@ -39,6 +50,7 @@ int main(int argc, char* argv[])
   {
     return 2;
   }
+  const double before = GetMegabytes();
   const std::clock_t start = std::clock();
   try
   {
@@ -50,10 +62,8 @@ int main(int argc, char* argv[])
     return 1;
   }
   const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
-  std::printf("seconds %g megabytes %g points %d tetrahedra %d\n", seconds,
-    static_cast<double>(usage.ru_maxrss) / 1024.0, out.numberofpoints, out.numberoftetrahedra);
+  std::printf("seconds %g megabytes %g start %g points %d tetrahedra %d\n", seconds, GetMegabytes(),
+    before, out.numberofpoints, out.numberoftetrahedra);
 
   TetgenMesh mesh;
   for (int i = 0; i < out.numberofpoints; ++i)
