@@ -183,6 +183,12 @@ public:
     NegativeCouplings couplings;
     EXPECT_EQ(this->Couplings.Update(*this->Mesh, this->Surface, this->Shape->PointTriangles),
       couplings.Update(*this->Mesh, this->Surface, expected->PointTriangles));
+    for (Id p = 0; p < static_cast<Id>(this->Surface.Points.size()); ++p)
+    {
+      const IdLists::Range known = this->Shape->PointTriangles[p];
+      const IdLists::Range all = expected->PointTriangles[p];
+      EXPECT_TRUE(std::equal(known.begin(), known.end(), all.begin(), all.end())) << p;
+    }
     BoundarySpheres::Encroached found;
     BoundarySpheres::Encroached wanted;
     for (Id t = 0; t < this->Mesh->GetNumberOfTetrahedra(); ++t)

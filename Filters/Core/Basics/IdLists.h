@@ -3,7 +3,7 @@
  * @file IdLists.h
  * @brief A list of ids for each of many owners: the triangles at each point, and the like.
  *
- * Cost: O(n) to build; 4 bytes per id and 8 per owner.
+ * Cost: O(n) to build; 4 bytes per id and 8 per owner. A list that is replaced takes O(its ids).
  */
 #ifndef cdmIdLists_h
 #define cdmIdLists_h
@@ -85,14 +85,27 @@ public:
   /** Adds an owner, after all others. */
   void Append(const std::vector<Id>& ids)
   {
-    if (this->Begin.empty())
-    {
-      this->Begin.push_back(0);
-    }
+    this->Begin.resize(this->End.size() + 1);
+    this->Begin.back() = static_cast<Id>(this->Ids.size());
     this->Ids.insert(this->Ids.end(), ids.begin(), ids.end());
     this->Begin.push_back(static_cast<Id>(this->Ids.size()));
     this->End.push_back(this->Begin.back());
   }
+
+  /** Gives an owner other ids. More than before take new memory, until the lists are built anew. */
+  void Replace(Id owner, const std::vector<Id>& ids)
+  {
+    Id& begin = this->Begin[owner];
+    if (ids.size() > (*this)[owner].size())
+    {
+      begin = static_cast<Id>(this->Ids.size());
+      this->Ids.resize(this->Ids.size() + ids.size());
+    }
+    std::copy(ids.begin(), ids.end(), this->Ids.begin() + begin);
+    this->End[owner] = begin + static_cast<Id>(ids.size());
+  }
+  /** What the lists take, with what Replace() has left behind. */
+  std::size_t GetNumberOfIds() const { return this->Ids.size(); }
 
   Range operator[](Id owner) const
   {

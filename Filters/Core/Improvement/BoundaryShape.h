@@ -58,6 +58,8 @@ struct BoundaryShape
   ThinLayers Layers;
 
 private:
+  void FollowTriangles(const std::vector<Id>& triangles);
+
   const TriangleMesh& Surface;
   const std::vector<StructuralEdge>& Edges;
 };

@@ -298,8 +298,7 @@ const std::vector<EdgeIds>& NegativeCouplings::Update(const DynamicTetrahedraliz
   std::vector<EdgeIds> others;
   for (const Candidate& candidate : this->Changed)
   {
-    const EdgeIds edge{ static_cast<Id>(candidate.Edge >> 32),
-      static_cast<Id>(candidate.Edge & 0xFFFFFFFFU) };
+    const EdgeIds edge = UnpackIds(candidate.Edge);
     const std::ptrdiff_t triangles = CountTriangles(boundary, pointTriangles, edge);
     this->NumberOfTests += triangles > 0 ? 1 : 0;
     Around around;

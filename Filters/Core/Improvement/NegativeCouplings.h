@@ -51,7 +51,7 @@ private:
   /** An edge that may have got another coupling. */
   struct Candidate
   {
-    /** Smaller id * 2^32 + larger one. */
+    /** See PackIds(). */
     std::uint64_t Edge;
     /** A tetrahedron at the edge * 6 + its number there, or NoId if none is known. */
     Id Simplex;

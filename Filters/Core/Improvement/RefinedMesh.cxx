@@ -441,10 +441,8 @@ void RefinedMesh::NoteSurfaceMove()
 
 TetrahedronIds RefinedMesh::GetNames(const TetrahedronIds& ids) const
 {
-  TetrahedronIds names{ this->Points[ids[0]].Name, this->Points[ids[1]].Name,
-    this->Points[ids[2]].Name, this->Points[ids[3]].Name };
-  std::sort(names.begin(), names.end());
-  return names;
+  return { this->Points[ids[0]].Name, this->Points[ids[1]].Name, this->Points[ids[2]].Name,
+    this->Points[ids[3]].Name };
 }
 
 std::size_t RefinedMesh::FindBroken(const PointCavity& cavity, const Vec3& position) const

@@ -198,7 +198,7 @@ public:
   void NoteChanges();
   /** Notes that surface points have been moved in the mesh only: the surface will follow. */
   void NoteSurfaceMove();
-  /** The sorted names of a tetrahedron's points, under which SliverMemory keeps failed attempts. */
+  /** The names of a tetrahedron's points, under which SliverMemory keeps failed attempts. */
   TetrahedronIds GetNames(const TetrahedronIds& ids) const;
   SliverMemory& GetMemory() { return this->Memory; }
   /** Whether a point is immovable, see SliverMemory. */

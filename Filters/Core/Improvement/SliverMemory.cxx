@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/SliverMemory.h"
 
+#include "Core/Basics/SortedIds.h"
+
 #include <algorithm>
 
 namespace cdm
@@ -34,14 +36,25 @@ void SliverMemory::SetChanged(const TetrahedronIds& names)
   }
 }
 
+std::size_t SliverMemory::NamesHash::operator()(const TetrahedronIds& names) const
+{
+  std::uint64_t hash = 0;
+  for (Id name : names)
+  {
+    hash = (hash ^ static_cast<std::uint64_t>(name)) * 0x9E3779B97F4A7C15ULL;
+    hash ^= hash >> 32;
+  }
+  return static_cast<std::size_t>(hash);
+}
+
 void SliverMemory::SetHopeless(const TetrahedronIds& names, SliverAttempt last)
 {
-  this->Failures[names] = { this->Time, last };
+  this->Failures[Sorted(names)] = { this->Time, last };
 }
 
 bool SliverMemory::IsHopeless(const TetrahedronIds& names, SliverAttempt last) const
 {
-  const auto failure = this->Failures.find(names);
+  const auto failure = this->Failures.find(Sorted(names));
   return failure != this->Failures.end() && failure->second.Last >= last &&
     std::none_of(names.begin(), names.end(),
       [&](Id name) { return this->Get(name).Change > failure->second.Time; });

@@ -13,8 +13,9 @@
 
 #include "Core/Basics/Types.h"
 
+#include <cstddef>
 #include <cstdint>
-#include <map>
+#include <unordered_map>
 #include <vector>
 
 namespace cdm
@@ -71,7 +72,12 @@ private:
   std::int64_t Time = 1;
   std::vector<Times> OnSurface;
   std::vector<Times> Inside;
-  std::map<TetrahedronIds, Failure> Failures;
+  struct NamesHash
+  {
+    std::size_t operator()(const TetrahedronIds& names) const;
+  };
+  /** By sorted names. */
+  std::unordered_map<TetrahedronIds, Failure, NamesHash> Failures;
 };
 } // namespace cdm
 
