@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Basics/SortedIds.h"
+#include "Core/Delaunay/CavityCone.h"
 #include "Core/Delaunay/CavityFilling.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Repair/BoundaryTriangulator.h"
@@ -253,4 +254,81 @@ TEST(CavityFilling, RefusesPointsThatTheCavityDoesNotHave)
     wrong.Walls.push_back({ 2, 4, other });
     EXPECT_FALSE(filling.Run(wrong)) << other;
   }
+}
+
+namespace
+{
+/** The border of an octahedron of four tetrahedra, with the apex on its axis or beyond. */
+struct Octahedron
+{
+  std::vector<Vec3> Points{ { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { -1.0, 0.0, 0.0 },
+    { 0.0, -1.0, 0.0 }, { 0.0, 0.0, 1.0 }, { 0.0, 0.0, -1.0 } };
+  Cavity Around;
+  CavityCone Cone;
+
+  explicit Octahedron(double height)
+  {
+    this->Points.push_back({ 0.0, 0.0, height });
+    for (Id k = 0; k < 4; ++k)
+    {
+      // Above and below the square are two regions.
+      this->Around.Border.push_back({ (k + 1) % 4, k, 4 });
+      this->Around.Regions.push_back(1);
+      this->Around.Border.push_back({ k, (k + 1) % 4, 5 });
+      this->Around.Regions.push_back(2);
+    }
+  }
+  bool Run(const CavityCone::Walls& walls)
+  {
+    return this->Cone.Run(
+      this->Around, 6, walls, [this](Id id) -> const Vec3& { return this->Points[id]; });
+  }
+};
+
+CavityCone::Walls MakeSquare(int numberOfSides)
+{
+  CavityCone::Walls walls;
+  for (Id k = 0; k < numberOfSides; ++k)
+  {
+    const TriangleIds wall = Sorted(TriangleIds{ k, (k + 1) % 4, 6 });
+    walls.emplace_back(wall, 1);
+    walls.emplace_back(wall, 2);
+  }
+  std::sort(walls.begin(), walls.end());
+  return walls;
+}
+} // namespace
+
+TEST(CavityCone, JoinsAPointWithAllFacets)
+{
+  Octahedron octahedron(0.0);
+  ASSERT_TRUE(octahedron.Run(MakeSquare(4)));
+  const std::vector<CavityCell>& cells = octahedron.Cone.GetCells();
+  ASSERT_EQ(cells.size(), 8u);
+  for (std::size_t k = 0; k < cells.size(); ++k)
+  {
+    EXPECT_EQ(CavityCell::GetBorderFacet(cells[k].Neighbors[3]), static_cast<Id>(k));
+    EXPECT_EQ(cells[k].Region, octahedron.Around.Regions[k]);
+    for (int i = 0; i < 3; ++i)
+    {
+      const Id neighbor = cells[k].Neighbors[i];
+      ASSERT_GE(neighbor, 0);
+      EXPECT_EQ(cells[neighbor / 4].Neighbors[neighbor % 4], 4 * static_cast<Id>(k) + i);
+      EXPECT_EQ(
+        Sorted(GetFacet(cells[neighbor / 4].Ids, neighbor % 4)), Sorted(GetFacet(cells[k].Ids, i)));
+    }
+  }
+}
+
+TEST(CavityCone, RefusesWhatIsNoCone)
+{
+  // Regions meet where no wall is; a wall is where no region is; the apex is beyond a facet.
+  EXPECT_FALSE(Octahedron(0.0).Run(MakeSquare(3)));
+  CavityCone::Walls walls = MakeSquare(4);
+  walls.emplace_back(TriangleIds{ 0, 4, 6 }, 2);
+  std::sort(walls.begin(), walls.end());
+  EXPECT_FALSE(Octahedron(0.0).Run(walls));
+  EXPECT_FALSE(Octahedron(1.5).Run(MakeSquare(4)));
+  // It lies in the planes of four facets.
+  EXPECT_FALSE(Octahedron(1.0).Run(MakeSquare(4)));
 }

@@ -205,12 +205,17 @@ bool BoundarySplits::Update()
   {
     return false;
   }
-  this->CollectCavity(points);
-  if (!this->Filling.Run(this->Around) || !this->AreWallsComplete())
+  this->CollectCavity();
+  const bool isFilled = this->FillByCone(points);
+  if (!isFilled)
   {
-    return false;
+    this->CollectPoints(points);
+    if (!this->Filling.Run(this->Around) || !this->AreWallsComplete())
+    {
+      return false;
+    }
   }
-  this->Adopt(points);
+  this->Adopt(points, isFilled ? this->Cone.GetCells() : this->Filling.GetCells());
   this->Moved.clear();
   return true;
 }
@@ -315,7 +320,9 @@ void BoundarySplits::Visit(Id tetrahedron, Id point, const Vec3& position)
   const TetMesh& mesh = this->Mesh.GetMesh();
   const TetrahedronIds& ids = mesh.Tetrahedra[tetrahedron];
   const auto [a, b, c, d] = GetCorners(mesh.Points, ids);
-  if (std::find(ids.begin(), ids.end(), point) == ids.end() && InSphere(a, b, c, d, position) < 0)
+  const int side = InSphere(a, b, c, d, position);
+  this->HasTies = this->HasTies || side == 0;
+  if (side < 0 && std::find(ids.begin(), ids.end(), point) == ids.end())
   {
     return;
   }
@@ -340,6 +347,7 @@ bool BoundarySplits::CollectConflicts(
       return false;
     }
   }
+  this->HasTies = false;
   this->Tetrahedra.clear();
   this->IsInCavity.resize(this->Mesh.GetNumberOfTetrahedra(), 0);
   const auto search = [this](const std::vector<Id>& sides, Id point, const Vec3& position)
@@ -411,7 +419,8 @@ Id BoundarySplits::GetRegionInFront(const TriangleIds& ids) const
   return others[(first + 1) % 3] == ids[1] ? triangle->Labels.Front : triangle->Labels.Back;
 }
 
-void BoundarySplits::CollectCavity(const std::vector<Vec3>& points)
+/** Collects the facets around the tetrahedra that are replaced, and the walls within. */
+void BoundarySplits::CollectCavity()
 {
   const TetMesh& mesh = this->Mesh.GetMesh();
   Cavity& cavity = this->Around;
@@ -421,10 +430,10 @@ void BoundarySplits::CollectCavity(const std::vector<Vec3>& points)
   this->WallRegions.clear();
   this->FoundRegions.clear();
   this->Bared.clear();
+  this->IsNoCone = false;
   for (Id t : this->Tetrahedra)
   {
     const TetrahedronIds& ids = mesh.Tetrahedra[t];
-    cavity.Numbers.insert(cavity.Numbers.end(), ids.begin(), ids.end());
     for (int i = 0; i < 4; ++i)
     {
       const TriangleIds facet = GetFacet(ids, i);
@@ -434,6 +443,7 @@ void BoundarySplits::CollectCavity(const std::vector<Vec3>& points)
       const bool isVanished = Contains(this->Vanished, key);
       if (isInside && !isVanished && mesh.Regions[neighbor / 4] != mesh.Regions[t])
       {
+        this->IsNoCone = true;
         this->WallRegions.emplace_back(key, mesh.Regions[t]);
         if (neighbor / 4 > t)
         {
@@ -470,7 +480,7 @@ void BoundarySplits::CollectCavity(const std::vector<Vec3>& points)
     if (this->IsInCavity[side / 4] == 0)
     {
       const TriangleIds facet = GetFacet(mesh.Tetrahedra[side / 4], side % 4);
-      cavity.Numbers.insert(cavity.Numbers.end(), facet.begin(), facet.end());
+      this->IsNoCone = true;
       cavity.Border.push_back(facet);
       cavity.Regions.push_back(mesh.Regions[side / 4]);
       this->Outer.push_back(side);
@@ -480,24 +490,6 @@ void BoundarySplits::CollectCavity(const std::vector<Vec3>& points)
   {
     this->IsInCavity[t] = 0;
   }
-  const Id first = static_cast<Id>(this->Surface.Points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    cavity.Numbers.push_back(first + static_cast<Id>(i));
-  }
-  SortUnique(cavity.Numbers);
-  cavity.Points.reserve(cavity.Numbers.size());
-  for (Id id : cavity.Numbers)
-  {
-    cavity.Points.push_back(id < first ? this->Surface.Points[id]
-        : id < this->FirstInside       ? points[id - first]
-                                       : mesh.Points[id]);
-  }
-}
-
-/** Whether all regions at walls have cells there: a region may lie between walls alone. */
-bool BoundarySplits::AreWallsComplete()
-{
   for (const NewTriangle& triangle : this->Triangles)
   {
     const TriangleIds key = Sorted(triangle.Ids);
@@ -513,6 +505,56 @@ bool BoundarySplits::AreWallsComplete()
     }
   }
   std::sort(this->WallRegions.begin(), this->WallRegions.end());
+}
+
+const Vec3& BoundarySplits::GetPosition(Id point, const std::vector<Vec3>& points) const
+{
+  const Id first = static_cast<Id>(this->Surface.Points.size());
+  return point < first          ? this->Surface.Points[point]
+    : point < this->FirstInside ? points[point - first]
+                                : this->Mesh.GetPoint(point);
+}
+
+/** Collects the points of the cavity and of its border. */
+void BoundarySplits::CollectPoints(const std::vector<Vec3>& points)
+{
+  Cavity& cavity = this->Around;
+  for (Id t : this->Tetrahedra)
+  {
+    const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[t];
+    cavity.Numbers.insert(cavity.Numbers.end(), ids.begin(), ids.end());
+  }
+  for (const TriangleIds& facet : cavity.Border)
+  {
+    cavity.Numbers.insert(cavity.Numbers.end(), facet.begin(), facet.end());
+  }
+  const Id first = static_cast<Id>(this->Surface.Points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    cavity.Numbers.push_back(first + static_cast<Id>(i));
+  }
+  SortUnique(cavity.Numbers);
+  cavity.Points.reserve(cavity.Numbers.size());
+  for (Id id : cavity.Numbers)
+  {
+    cavity.Points.push_back(this->GetPosition(id, points));
+  }
+}
+
+/** Fills the cavity of a single point, if no other one lies on a sphere there. */
+bool BoundarySplits::FillByCone(const std::vector<Vec3>& points)
+{
+  const Id apex = static_cast<Id>(this->Surface.Points.size());
+  return points.size() == 1 && this->Moved.empty() && !this->HasTies && !this->IsNoCone &&
+    std::all_of(this->Made.begin(), this->Made.end(),
+      [apex](const TriangleIds& ids) { return cdm::Contains(ids, apex); }) &&
+    this->Cone.Run(this->Around, apex, this->WallRegions,
+      [&](Id point) -> const Vec3& { return this->GetPosition(point, points); });
+}
+
+/** Whether all regions at walls have cells there: a region may lie between walls alone. */
+bool BoundarySplits::AreWallsComplete()
+{
   for (const CavityCell& cell : this->Filling.GetCells())
   {
     for (int i = 0; i < 4; ++i)
@@ -530,7 +572,7 @@ bool BoundarySplits::AreWallsComplete()
   return this->FoundRegions == this->WallRegions;
 }
 
-void BoundarySplits::Adopt(const std::vector<Vec3>& points)
+void BoundarySplits::Adopt(const std::vector<Vec3>& points, const std::vector<CavityCell>& cells)
 {
   for (const Vec3& position : points)
   {
@@ -545,7 +587,7 @@ void BoundarySplits::Adopt(const std::vector<Vec3>& points)
   {
     this->Mesh.MakeOuter(facet);
   }
-  this->Mesh.Replace(this->Tetrahedra, this->Outer, this->Filling.GetCells());
+  this->Mesh.Replace(this->Tetrahedra, this->Outer, cells);
   const std::vector<Id>& changed = this->Mesh.GetChanged();
   this->Changed.insert(this->Changed.end(), changed.begin(), changed.end());
 

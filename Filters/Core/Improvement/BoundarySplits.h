@@ -20,6 +20,7 @@
 
 #include "Core/Basics/ExecutionContext.h"
 #include "Core/Basics/Status.h"
+#include "Core/Delaunay/CavityCone.h"
 #include "Core/Delaunay/CavityFilling.h"
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 #include "Core/Surface/SurfaceRefinement.h"
@@ -90,12 +91,15 @@ private:
   bool Update();
   void CollectTriangles(const std::vector<Id>& touched);
   bool CollectConflicts(const std::vector<Vec3>& points, const std::vector<Id>& touched);
-  void CollectCavity(const std::vector<Vec3>& points);
+  void CollectCavity();
+  void CollectPoints(const std::vector<Vec3>& points);
+  const Vec3& GetPosition(Id point, const std::vector<Vec3>& points) const;
+  bool FillByCone(const std::vector<Vec3>& points);
   bool AreWallsComplete();
   Id GetRegionInFront(const TriangleIds& ids) const;
   bool FindSides(const TriangleIds& ids);
   void Visit(Id tetrahedron, Id point, const Vec3& position);
-  void Adopt(const std::vector<Vec3>& points);
+  void Adopt(const std::vector<Vec3>& points, const std::vector<CavityCell>& cells);
   std::vector<std::pair<EdgeIds, Id>> FindChangedSegments();
   void UpdateEdges();
 
@@ -135,7 +139,11 @@ private:
   std::vector<Id> Visits;
   Id Search = 0;
   std::vector<Id> Open;
+  /** Whether a new point lies on the sphere of a tetrahedron that was visited. */
+  bool HasTies = false;
   Cavity Around;
+  /** Whether the cone from a new point may not fill it. */
+  bool IsNoCone = false;
   std::vector<Id> Outer;
   /** Facets of tetrahedra beyond the cavity that have become outer ones. */
   std::vector<Id> Bared;
@@ -146,6 +154,7 @@ private:
   std::vector<std::pair<TriangleIds, Id>> WallRegions;
   std::vector<std::pair<TriangleIds, Id>> FoundRegions;
   CavityFilling Filling;
+  CavityCone Cone;
   /** Marks changed segments; edges and segments as they were before. */
   std::vector<char> IsChangedSegment;
   std::vector<StructuralEdge> FormerEdges;

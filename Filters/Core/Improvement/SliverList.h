@@ -20,7 +20,7 @@
 namespace cdm
 {
 /** Points are moved where angles are below this multiple of the target: it leaves some room. */
-constexpr double MoveRatio = 1.1;
+constexpr double MoveRatio = 1.02;
 /**
  * Most searches find nothing. Five steps for all of them took 5 to 25 % more of the whole mesher's
  * time, and left as many slivers; one step for those that find nothing makes more tetrahedra.
