@@ -58,6 +58,13 @@ std::vector<Vec3> MakeDirections(const Vec3& axis, bool isLine)
   return directions;
 }
 
+/** Those along a coordinate axis are exact: a factor of 1 / norm would be rounded. */
+Vec3 GetUnitVector(const Vec3& v)
+{
+  const double norm = Norm(v);
+  return { v.X / norm, v.Y / norm, v.Z / norm };
+}
+
 /** The point of a plane or line through the origin nearest to a position; along the axes exact. */
 Vec3 Project(const Vec3& position, const Vec3& origin, const Vec3& axis, bool isLine)
 {
@@ -155,7 +162,7 @@ bool SurfacePointMoves::FindSupport(Id point, Support& support) const
     {
       return false;
     }
-    support.Axis = (1.0 / Norm(u - v)) * (u - v);
+    support.Axis = GetUnitVector(u - v);
   }
   else if (ends.empty())
   {
@@ -168,7 +175,7 @@ bool SurfacePointMoves::FindSupport(Id point, Support& support) const
       if (Norm(normal) > largest)
       {
         largest = Norm(normal);
-        support.Axis = (1.0 / largest) * normal;
+        support.Axis = GetUnitVector(normal);
       }
     }
   }
