@@ -19,7 +19,10 @@
 
 namespace cdm
 {
-/** Points are moved where angles are below this multiple of the target: it leaves some room. */
+/**
+ * Points are moved where angles are below this multiple of the target, which leaves some room. With
+ * 1.1 meshes take 7 % more time and leave as many slivers; with 1 some have more tetrahedra.
+ */
 constexpr double MoveRatio = 1.02;
 /**
  * Most searches find nothing. Five steps for all of them took 5 to 25 % more of the whole mesher's

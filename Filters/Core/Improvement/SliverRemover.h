@@ -17,7 +17,7 @@
  *     makes it vanish;
  *  4. free points of those that are left are moved, with the Delaunay tetrahedra around them made
  *     anew, so that the smallest dihedral angle of what is replaced grows (SliverPointMoves.h);
- *     then also those of tetrahedra below 1.1 times the target, which leaves some room. Points
+ *     then also those of tetrahedra below 1.02 times the target, which leaves some room. Points
  *     inside go anywhere, those of the boundary and of interfaces along their facet or structural
  *     edge. Where cospherical sets are not split by the pulling rule, as after flips, points may
  *     have to stay.
