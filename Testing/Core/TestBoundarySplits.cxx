@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -39,8 +40,8 @@ std::vector<TriangleIds> GetSorted(const std::vector<TriangleIds>& triangles)
 class GrowingMesh
 {
 public:
-  GrowingMesh(
-    const PolygonSoup& soup, SurfaceCriterion criterion, Id reserve, std::mt19937_64& generator)
+  GrowingMesh(const PolygonSoup& soup, SurfaceCriterion criterion, Id reserve,
+    std::mt19937_64& generator, double edge = 0.4)
     : Generator(generator)
   {
     this->Options.Criterion = criterion;
@@ -50,7 +51,7 @@ public:
     DelaunaySurfaceRefinerInput input;
     input.Surface = &boundary.Surface;
     DelaunaySurfaceRefinerOptions options = this->Options;
-    options.MaximumEdgeLength = 0.4;
+    options.MaximumEdgeLength = edge;
     DelaunaySurfaceRefinerOutput refined;
     EXPECT_TRUE(RefineDelaunaySurface(input, options, {}, refined).IsOk());
     AdvancingFrontTetrahedralizerInput front;
@@ -213,6 +214,20 @@ public:
 
   std::size_t GetNumberOfSurfacePoints() const { return this->Surface.Points.size(); }
 
+  Id GetNumberOfTetrahedra() const { return this->Mesh->GetNumberOfTetrahedra(); }
+  /** Tetrahedra that the last splits have made. */
+  std::int64_t CountMade() const
+  {
+    return static_cast<std::int64_t>(this->Splits->GetChanged().size());
+  }
+  /** Tetrahedra that the search for negative couplings looks at now. */
+  std::int64_t CountCouplingVisits()
+  {
+    const std::int64_t before = this->Couplings.GetNumberOfVisits();
+    this->Couplings.Update(*this->Mesh, this->Surface, this->Shape->PointTriangles);
+    return this->Couplings.GetNumberOfVisits() - before;
+  }
+
   /** Surface and mesh are what is made anew of their points. */
   void ExpectAsMadeAnew() const
   {
@@ -361,5 +376,31 @@ TEST(BoundarySplits, TheFirstOneThatFailsIsStillToBeDone)
     GrowingMesh mesh(MakeStraightBoxes(), SurfaceCriterion::SmallestSphere, 0, generator);
     EXPECT_FALSE(mesh.Split(triangles, edges));
     mesh.ExpectAsMadeAnew();
+  }
+}
+
+/** The work is in proportion to the tetrahedra that a split makes, whatever the size of the mesh. */
+TEST(BoundarySplits, CouplingsAreLookedAtWhereTheMeshHasChanged)
+{
+  for (const double edge : { 0.25, 0.12, 0.06 })
+  {
+    std::mt19937_64 generator(1);
+    GrowingMesh mesh(MakeStraightBoxes(), SurfaceCriterion::SmallestSphere, 500, generator, edge);
+    EXPECT_GE(mesh.CountCouplingVisits(), 2 * mesh.GetNumberOfTetrahedra());
+    EXPECT_EQ(mesh.CountCouplingVisits(), 0);
+    // The first split tests all triangles.
+    ASSERT_TRUE(mesh.Split(1, 1));
+    mesh.CountCouplingVisits();
+    std::int64_t visits = 0;
+    std::int64_t made = 0;
+    for (int i = 0; i < 50; ++i)
+    {
+      ASSERT_TRUE(mesh.Split(1, 1));
+      made += mesh.CountMade();
+      visits += mesh.CountCouplingVisits();
+    }
+    std::cout << made << " tetrahedra made and " << visits << " looked at by 50 splits, of "
+              << mesh.GetNumberOfTetrahedra() << '\n';
+    EXPECT_LT(visits, 12 * made);
   }
 }

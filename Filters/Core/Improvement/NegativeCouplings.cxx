@@ -203,6 +203,34 @@ std::ptrdiff_t CountTriangles(
     [&](Id t) { return Contains(boundary.Triangles[t], edge[1]); });
 }
 
+/**
+ * A tetrahedron at an edge, as in SimplexIncidence, found from one at an end of it. NoId if bodies
+ * touch at the end, or if it has too many tetrahedra.
+ */
+Id FindSimplex(const DynamicTetrahedralization& mesh, const EdgeIds& edge)
+{
+  constexpr std::size_t most = 256;
+  // The newer end: corners of the input may have thousands of tetrahedra.
+  std::vector<Id> star(1, mesh.GetTetrahedronAt(edge[1]));
+  for (std::size_t k = 0; star.front() != NoId && k < star.size() && star.size() < most; ++k)
+  {
+    const TetrahedronIds& ids = mesh.GetMesh().Tetrahedra[star[k]];
+    if (Contains(ids, edge[0]))
+    {
+      return 6 * star[k] + FindEdge(ids, edge);
+    }
+    for (int i = 0; i < 4; ++i)
+    {
+      const Id neighbor = mesh.GetMesh().Neighbors[star[k]][i];
+      if (neighbor != NoId && ids[i] != edge[1] && !Contains(star, neighbor / 4))
+      {
+        star.push_back(neighbor / 4);
+      }
+    }
+  }
+  return NoId;
+}
+
 /** The tetrahedra around an edge, and how many boundary facets were passed on the way. */
 struct Around
 {
@@ -243,12 +271,17 @@ void NegativeCouplings::NoteTriangles(
   }
 }
 
-/** Adds the pairs of points of the boundary at new tetrahedra, or all edges of the boundary. */
-void NegativeCouplings::CollectChanged(
+/**
+ * Adds the pairs of points of the boundary at new tetrahedra; or, if there are too many of these, all
+ * edges of the boundary, and returns true.
+ */
+bool NegativeCouplings::CollectChanged(
   const DynamicTetrahedralization& mesh, const TriangleMesh& boundary)
 {
   const std::int64_t numberOfNew = mesh.CountMade() - this->NumberMade;
-  if (this->NextStamp == 0 || numberOfNew > static_cast<std::int64_t>(boundary.Triangles.size()))
+  const bool areAll =
+    this->NextStamp == 0 || numberOfNew > static_cast<std::int64_t>(boundary.Triangles.size());
+  if (areAll)
   {
     std::for_each(boundary.Triangles.begin(), boundary.Triangles.end(),
       [this](const TriangleIds& ids) { this->Note(ids); });
@@ -259,6 +292,7 @@ void NegativeCouplings::CollectChanged(
     mesh.VisitMadeSince(this->NumberMade, this->New,
       [&](Id t)
       {
+        ++this->NumberOfVisits;
         if (mesh.GetStamp(t) >= this->NextStamp && !mesh.IsDead(t))
         {
           ForEachBoundaryPair(mesh.GetMesh().Tetrahedra[t], numberOfPoints,
@@ -277,12 +311,13 @@ void NegativeCouplings::CollectChanged(
   this->Changed.erase(std::unique(this->Changed.begin(), this->Changed.end(),
                         [](const Candidate& a, const Candidate& b) { return a.Edge == b.Edge; }),
     this->Changed.end());
+  return areAll;
 }
 
 const std::vector<EdgeIds>& NegativeCouplings::Update(const DynamicTetrahedralization& mesh,
   const TriangleMesh& boundary, const IdLists& pointTriangles)
 {
-  this->CollectChanged(mesh, boundary);
+  const bool areAll = this->CollectChanged(mesh, boundary);
   std::vector<EdgeIds> found;
   for (const EdgeIds& edge : this->Negative)
   {
@@ -300,11 +335,14 @@ const std::vector<EdgeIds>& NegativeCouplings::Update(const DynamicTetrahedraliz
   {
     const EdgeIds edge = UnpackIds(candidate.Edge);
     const std::ptrdiff_t triangles = CountTriangles(boundary, pointTriangles, edge);
-    this->NumberOfTests += triangles > 0 ? 1 : 0;
     Around around;
-    if (triangles > 0 && candidate.Simplex != NoId)
+    const Id simplex = candidate.Simplex != NoId || triangles == 0 || areAll
+      ? candidate.Simplex
+      : FindSimplex(mesh, edge);
+    if (triangles > 0 && simplex != NoId)
     {
-      around = WalkAround(mesh.GetMesh(), candidate.Simplex);
+      around = WalkAround(mesh.GetMesh(), simplex);
+      this->NumberOfVisits += static_cast<std::int64_t>(around.Records.size());
     }
     if (around.NumberOfFacets != triangles)
     {
@@ -316,6 +354,7 @@ const std::vector<EdgeIds>& NegativeCouplings::Update(const DynamicTetrahedraliz
     }
   }
   this->Changed.clear();
+  this->NumberOfVisits += others.empty() ? 0 : 2 * mesh.GetNumberOfTetrahedra();
   const Id numberOfPoints = static_cast<Id>(boundary.Points.size());
   const std::vector<EdgeIds> filled = FindFilledEdges(mesh.GetMesh(), others, numberOfPoints);
   const std::vector<EdgeIds> negative = FindNegative(mesh.GetMesh(), filled, numberOfPoints);

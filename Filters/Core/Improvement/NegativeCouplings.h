@@ -11,8 +11,8 @@
  *
  * Method: only edges whose smallest spheres are not empty are looked at. After the first time only
  * those at tetrahedra that are new, and at triangles that have changed: walks around these edges
- * find their tetrahedra. Where the walk misses some, as bodies touch at the edge, or where none
- * is known, all tetrahedra are looked through.
+ * find their tetrahedra. At first, and where the walk misses some, as bodies touch at the edge, all
+ * tetrahedra are looked through.
  *
  * Deterministic. Cost: O(m log m) for m new tetrahedra; O(n) for n in all at first, twice through
  * all of them, and wherever bodies touch.
@@ -44,8 +44,8 @@ public:
   /** Notes that triangles of the boundary have changed. */
   void NoteTriangles(const TriangleMesh& boundary, const std::vector<Id>& triangles);
 
-  /** How many edges have been looked at. */
-  std::int64_t GetNumberOfTests() const { return this->NumberOfTests; }
+  /** How many tetrahedra have been looked at. */
+  std::int64_t GetNumberOfVisits() const { return this->NumberOfVisits; }
 
 private:
   /** An edge that may have got another coupling. */
@@ -57,7 +57,7 @@ private:
     Id Simplex;
   };
   void Note(const TriangleIds& ids);
-  void CollectChanged(const DynamicTetrahedralization& mesh, const TriangleMesh& boundary);
+  bool CollectChanged(const DynamicTetrahedralization& mesh, const TriangleMesh& boundary);
 
   std::vector<EdgeIds> Negative;
   /** Edges of triangles that have changed since the last update, then all that may have. */
@@ -68,7 +68,7 @@ private:
   std::int64_t NumberMade = 0;
   /** Work space. */
   std::vector<Id> New;
-  std::int64_t NumberOfTests = 0;
+  std::int64_t NumberOfVisits = 0;
 };
 
 /**

@@ -399,7 +399,10 @@ SliverChange SliverChanges::Find(Id tetrahedron, SliverAttempt last)
     {
       return change;
     }
-    change.Immovable.push_back(id);
+    if (!this->Goal.IsSharp)
+    {
+      change.Immovable.push_back(id);
+    }
   }
   if (last == SliverAttempt::Insertion)
   {
