@@ -12,10 +12,11 @@
  * ends for; then its defaults against slivers.
  *
  * Prints one line of "name value" pairs: seconds (processor time without reading and writing),
- * megabytes (the peak until then), points and tetrahedra. The mesh goes to OUTPUT.node and
- * OUTPUT.ele. Exit status: 0 meshed, 1 nothing meshed, 2 wrong use or a file that cannot be read or
- * written.
+ * megabytes (the peak until then), start (megabytes before it), points and tetrahedra. The mesh
+ * goes to OUTPUT.node and OUTPUT.ele. Exit status: 0 meshed, 1 nothing meshed, 2 wrong use or a file
+ * that cannot be read or written.
  */
+#include "Measurement.h"
 #include "TetgenFiles.h"
 
 #include <vtkBoundaryTriangulator.h>
@@ -44,8 +45,6 @@
 #include <map>
 #include <utility>
 #include <vector>
-
-#include <sys/resource.h>
 
 namespace
 {
@@ -113,6 +112,7 @@ int main(int argc, char* argv[])
     return 2;
   }
 
+  const double before = GetMegabytes("VmHWM");
   const std::clock_t start = std::clock();
   std::vector<Polyhedron> polyhedra;
   std::vector<std::pair<int, int>> regions;
@@ -133,8 +133,7 @@ int main(int argc, char* argv[])
     facet_distance = 0.1 * radius, cell_radius_edge_ratio = 2.0, cell_size = radius);
   const Complex complex = CGAL::make_mesh_3<Complex>(domain, criteria);
   const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
+  const double megabytes = GetMegabytes("VmHWM");
 
   TetgenMesh mesh;
   std::map<Complex::Vertex_handle, std::size_t> numbers;
@@ -154,8 +153,8 @@ int main(int argc, char* argv[])
       mesh.Tetrahedra.back()[i] = place.first->second;
     }
   }
-  std::printf("seconds %g megabytes %g points %zu tetrahedra %zu\n", seconds,
-    static_cast<double>(usage.ru_maxrss) / 1024.0, mesh.Points.size(), mesh.Tetrahedra.size());
+  std::printf("seconds %g megabytes %g start %g points %zu tetrahedra %zu\n", seconds, megabytes,
+    before, mesh.Points.size(), mesh.Tetrahedra.size());
   WriteTetgenFiles(mesh, argv[3]);
   return mesh.Tetrahedra.empty() ? 1 : 0;
 }

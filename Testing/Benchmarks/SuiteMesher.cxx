@@ -14,6 +14,8 @@
  * Exit status: 0 meshed, 1 refused by the filter, 2 wrong use or a file that cannot be read or
  * written.
  */
+#include "Measurement.h"
+
 #include <vtkConformingDelaunayMesher.h>
 
 #include <vtkNew.h>
@@ -27,19 +29,6 @@
 #include <iostream>
 #include <map>
 #include <string>
-
-#include <sys/resource.h>
-
-namespace
-{
-/** Peak memory of the process so far. */
-double GetMegabytes()
-{
-  rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
-} // namespace
 
 int main(int argc, char* argv[])
 {
@@ -79,11 +68,11 @@ int main(int argc, char* argv[])
   mesher->SetDihedralAngleTarget(options["--dihedral-angle"]);
   mesher->SetRemoveSlivers(options["--remove-slivers"] != 0.0);
 
-  const double before = GetMegabytes();
+  const double before = GetMegabytes("VmHWM");
   const std::clock_t start = std::clock();
   mesher->Update();
   const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  const double megabytes = GetMegabytes();
+  const double megabytes = GetMegabytes("VmHWM");
   vtkUnstructuredGrid* mesh = mesher->GetOutput();
   std::cout << "seconds " << seconds << " megabytes " << megabytes << " start " << before
             << " points " << mesh->GetNumberOfPoints() << " tetrahedra " << mesh->GetNumberOfCells()

@@ -10,6 +10,7 @@
  * goes to OUTPUT.node and OUTPUT.ele.
  * Exit status: 0 meshed, 1 refused, 2 wrong use or a file that cannot be read or written.
  */
+#include "Measurement.h"
 #include "TetgenFiles.h"
 
 #include <tetgen.h>
@@ -17,19 +18,6 @@
 #include <cstdio>
 #include <ctime>
 #include <string>
-
-#include <sys/resource.h>
-
-namespace
-{
-/** Peak memory of the process so far. */
-double GetMegabytes()
-{
-  rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
-} // namespace
 
 int main(int argc, char* argv[])
 {
@@ -50,7 +38,7 @@ int main(int argc, char* argv[])
   {
     return 2;
   }
-  const double before = GetMegabytes();
+  const double before = GetMegabytes("VmHWM");
   const std::clock_t start = std::clock();
   try
   {
@@ -62,8 +50,8 @@ int main(int argc, char* argv[])
     return 1;
   }
   const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  std::printf("seconds %g megabytes %g start %g points %d tetrahedra %d\n", seconds, GetMegabytes(),
-    before, out.numberofpoints, out.numberoftetrahedra);
+  std::printf("seconds %g megabytes %g start %g points %d tetrahedra %d\n", seconds,
+    GetMegabytes("VmHWM"), before, out.numberofpoints, out.numberoftetrahedra);
 
   TetgenMesh mesh;
   for (int i = 0; i < out.numberofpoints; ++i)

@@ -29,7 +29,7 @@ namespace cdm
 class CavityCone
 {
 public:
-  /** By sorted numbers. */
+  /** Each wall by the sorted numbers of its points, with a region that has to be at it. */
   using Walls = std::vector<std::pair<TriangleIds, Id>>;
 
   /**

@@ -22,6 +22,25 @@ DynamicTetrahedralization::DynamicTetrahedralization(TetMesh mesh)
   }
 }
 
+bool DynamicTetrahedralization::FindWholeStar(
+  Id point, std::size_t most, std::vector<Id>& star) const
+{
+  star.assign(1, this->GetTetrahedronAt(point));
+  for (std::size_t k = 0; k < star.size() && star.size() <= most; ++k)
+  {
+    const TetrahedronIds& ids = this->Mesh.Tetrahedra[star[k]];
+    for (int i = 0; i < 4; ++i)
+    {
+      const Id neighbor = this->Mesh.Neighbors[star[k]][i];
+      if (neighbor != NoId && ids[i] != point && !Contains(star, neighbor / 4))
+      {
+        star.push_back(neighbor / 4);
+      }
+    }
+  }
+  return star.size() <= most;
+}
+
 Id DynamicTetrahedralization::Make(const TetrahedronIds& ids, Id region)
 {
   Id t = NoId;

@@ -78,6 +78,12 @@ public:
     return this->Search.IsBoundary(tetrahedron, facet);
   }
 
+  /**
+   * Lists the tetrahedra at a point, whatever their region, in no order; the search ends with more
+   * than most of them. Where bodies touch at the point, it finds those of one only.
+   * @return whether it has come to its end
+   */
+  bool FindWholeStar(Id point, std::size_t most, std::vector<Id>& star) const;
   /** These four do what CavitySearch says, in this mesh. */
   bool FindStar(Id point, std::vector<Id>& star) { return this->Search.FindStar(point, star); }
   Id Locate(const Vec3& position, Id first) { return this->Search.Locate(position, first); }

@@ -321,7 +321,7 @@ void BoundarySplits::Visit(Id tetrahedron, Id point, const Vec3& position)
   const TetrahedronIds& ids = mesh.Tetrahedra[tetrahedron];
   const auto [a, b, c, d] = GetCorners(mesh.Points, ids);
   const int side = InSphere(a, b, c, d, position);
-  this->HasTies = this->HasTies || side == 0;
+  this->IsNoCone = this->IsNoCone || side == 0;
   if (side < 0 && std::find(ids.begin(), ids.end(), point) == ids.end())
   {
     return;
@@ -347,7 +347,7 @@ bool BoundarySplits::CollectConflicts(
       return false;
     }
   }
-  this->HasTies = false;
+  this->IsNoCone = false;
   this->Tetrahedra.clear();
   this->IsInCavity.resize(this->Mesh.GetNumberOfTetrahedra(), 0);
   const auto search = [this](const std::vector<Id>& sides, Id point, const Vec3& position)
@@ -430,7 +430,6 @@ void BoundarySplits::CollectCavity()
   this->WallRegions.clear();
   this->FoundRegions.clear();
   this->Bared.clear();
-  this->IsNoCone = false;
   for (Id t : this->Tetrahedra)
   {
     const TetrahedronIds& ids = mesh.Tetrahedra[t];
@@ -545,7 +544,7 @@ void BoundarySplits::CollectPoints(const std::vector<Vec3>& points)
 bool BoundarySplits::FillByCone(const std::vector<Vec3>& points)
 {
   const Id apex = static_cast<Id>(this->Surface.Points.size());
-  return points.size() == 1 && this->Moved.empty() && !this->HasTies && !this->IsNoCone &&
+  return points.size() == 1 && this->Moved.empty() && !this->IsNoCone &&
     std::all_of(this->Made.begin(), this->Made.end(),
       [apex](const TriangleIds& ids) { return cdm::Contains(ids, apex); }) &&
     this->Cone.Run(this->Around, apex, this->WallRegions,

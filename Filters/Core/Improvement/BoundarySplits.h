@@ -139,10 +139,8 @@ private:
   std::vector<Id> Visits;
   Id Search = 0;
   std::vector<Id> Open;
-  /** Whether a new point lies on the sphere of a tetrahedron that was visited. */
-  bool HasTies = false;
   Cavity Around;
-  /** Whether the cone from a new point may not fill it. */
+  /** Whether the cone from a new point may not fill the cavity. */
   bool IsNoCone = false;
   std::vector<Id> Outer;
   /** Facets of tetrahedra beyond the cavity that have become outer ones. */

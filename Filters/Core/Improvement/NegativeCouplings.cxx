@@ -211,24 +211,12 @@ Id FindSimplex(const DynamicTetrahedralization& mesh, const EdgeIds& edge)
 {
   constexpr std::size_t most = 256;
   // The newer end: corners of the input may have thousands of tetrahedra.
-  std::vector<Id> star(1, mesh.GetTetrahedronAt(edge[1]));
-  for (std::size_t k = 0; star.front() != NoId && k < star.size() && star.size() < most; ++k)
-  {
-    const TetrahedronIds& ids = mesh.GetMesh().Tetrahedra[star[k]];
-    if (Contains(ids, edge[0]))
-    {
-      return 6 * star[k] + FindEdge(ids, edge);
-    }
-    for (int i = 0; i < 4; ++i)
-    {
-      const Id neighbor = mesh.GetMesh().Neighbors[star[k]][i];
-      if (neighbor != NoId && ids[i] != edge[1] && !Contains(star, neighbor / 4))
-      {
-        star.push_back(neighbor / 4);
-      }
-    }
-  }
-  return NoId;
+  std::vector<Id> star;
+  mesh.FindWholeStar(edge[1], most, star);
+  const auto& tetrahedra = mesh.GetMesh().Tetrahedra;
+  const auto found =
+    std::find_if(star.begin(), star.end(), [&](Id t) { return Contains(tetrahedra[t], edge[0]); });
+  return found != star.end() ? 6 * *found + FindEdge(tetrahedra[*found], edge) : NoId;
 }
 
 /** The tetrahedra around an edge, and how many boundary facets were passed on the way. */
@@ -304,7 +292,7 @@ bool NegativeCouplings::CollectChanged(
   }
   this->NumberMade = mesh.CountMade();
   this->NextStamp = mesh.GetNextStamp();
-  // Of each edge one is kept, with a tetrahedron if there is one.
+  // Each edge becomes one candidate: the first one, which has a tetrahedron if any of them has.
   std::sort(this->Changed.begin(), this->Changed.end(),
     [](const Candidate& a, const Candidate& b)
     { return a.Edge != b.Edge ? a.Edge < b.Edge : a.Simplex > b.Simplex; });

@@ -312,6 +312,14 @@ void RefinedMesh::FollowBoundary(
   this->FirstPreliminary = std::numeric_limits<std::int64_t>::max();
 }
 
+void RefinedMesh::SetImmovable(const std::vector<Id>& points)
+{
+  for (const Id point : points)
+  {
+    this->Memory.SetImmovable(this->Points[point].Name);
+  }
+}
+
 bool RefinedMesh::IsFree(Id point) const
 {
   return point >= this->FirstInside && this->Points[point].IsFree &&

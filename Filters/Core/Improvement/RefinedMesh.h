@@ -203,7 +203,7 @@ public:
   SliverMemory& GetMemory() { return this->Memory; }
   /** Whether a point is immovable, see SliverMemory. */
   bool IsImmovable(Id point) const { return this->Memory.IsImmovable(this->Points[point].Name); }
-  void SetImmovable(Id point) { this->Memory.SetImmovable(this->Points[point].Name); }
+  void SetImmovable(const std::vector<Id>& points);
 
   /**
    * Finds the cavity of a point, see CavitySearch::FindCavity(). Insert() and Restore() fill it.

@@ -76,7 +76,7 @@ private:
   {
     std::size_t operator()(const TetrahedronIds& names) const;
   };
-  /** By sorted names. */
+  /** The last failure for each sliver, whose key are the sorted names of its points. */
   std::unordered_map<TetrahedronIds, Failure, NamesHash> Failures;
 };
 } // namespace cdm

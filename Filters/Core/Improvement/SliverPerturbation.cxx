@@ -114,10 +114,7 @@ bool Perturbation::Mend(std::size_t i)
     return false;
   }
   const SliverChange change = this->Find(i);
-  for (const Id point : change.Immovable)
-  {
-    this->Mesh.SetImmovable(point);
-  }
+  this->Mesh.SetImmovable(change.Immovable);
   if (change.What == SliverChange::Kind::None)
   {
     SetHopeless(sliver, this->GetLast(sliver), this->Mesh);

@@ -193,25 +193,12 @@ bool SurfacePointMoves::FindSupport(Id point, Support& support) const
  */
 bool SurfacePointMoves::CollectStar(Id point)
 {
-  this->Star.assign(1, this->Mesh.GetTetrahedronAt(point));
-  for (std::size_t k = 0; k < this->Star.size() && this->Star.size() <= LargestCavity; ++k)
-  {
-    const Id t = this->Star[k];
-    for (int i = 0; i < 4; ++i)
-    {
-      const Id neighbor = this->Mesh.GetMesh().Neighbors[t][i];
-      if (neighbor != NoId && this->Mesh.GetMesh().Tetrahedra[t][i] != point &&
-        std::find(this->Star.begin(), this->Star.end(), neighbor / 4) == this->Star.end())
-      {
-        this->Star.push_back(neighbor / 4);
-      }
-    }
-  }
+  const bool areFew = this->Mesh.FindWholeStar(point, LargestCavity, this->Star);
   if (this->IsRecording)
   {
     this->Visited.insert(this->Visited.end(), this->Star.begin(), this->Star.end());
   }
-  return this->Star.size() <= LargestCavity;
+  return areFew;
 }
 
 std::vector<Id> SurfacePointMoves::TakeVisited()
@@ -610,10 +597,7 @@ bool SliverSurfaceMoves::Mend(std::size_t i)
     return false;
   }
   const SurfaceMove move = this->Find(i);
-  for (const Id point : move.Immovable)
-  {
-    this->Mesh.SetImmovable(point);
-  }
+  this->Mesh.SetImmovable(move.Immovable);
   if (move.Point == NoId)
   {
     SetHopeless(sliver, SliverAttempt::SurfaceMove, this->Mesh);
