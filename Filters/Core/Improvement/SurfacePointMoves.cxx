@@ -223,13 +223,7 @@ double SurfacePointMoves::MeasureStar(Id point, double& nearest) const
         nearest = std::min(nearest, Distance(mesh.Points[id], mesh.Points[point]));
       }
     }
-    const auto [a, b, c, d] = GetCorners(mesh.Points, ids);
-    const double angle = GetSmallestDihedralAngle(a, b, c, d);
-    // In that order: whether an angle counts takes longer than the angle.
-    if (angle < smallest && this->Given.HasAngle(ids, mesh.Regions[t]))
-    {
-      smallest = angle;
-    }
+    smallest = this->GetSmallerAngle(smallest, ids, mesh.Regions[t], GetCorners(mesh.Points, ids));
   }
   return smallest;
 }
@@ -263,19 +257,15 @@ bool SurfacePointMoves::IsOnSurface(const TriangleIds& ids) const
 
 /**
  * Collects the tetrahedra at the point and those in conflict with the position; false if these are
- * too many or reach beyond the boundary.
+ * too many.
  */
-bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
+bool SurfacePointMoves::CollectConflicts(const Vec3& position)
 {
   const TetMesh& mesh = this->Mesh.GetMesh();
   this->Tetrahedra = this->Star;
-  this->Marks.resize(mesh.Tetrahedra.size(), 0);
-  const Id outside = ++this->LastMark;
-  const Id inside = ++this->LastMark;
-  for (const Id t : this->Star)
-  {
-    this->Marks[t] = inside;
-  }
+  this->MarkInside();
+  const Id inside = this->LastMark;
+  const Id outside = inside - 1;
   for (std::size_t k = 0; k < this->Tetrahedra.size(); ++k)
   {
     for (Id neighbor : mesh.Neighbors[this->Tetrahedra[k]])
@@ -302,21 +292,40 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
       return false;
     }
   }
+  return true;
+}
 
-  Cavity& cavity = this->Around;
-  cavity = Cavity();
-  this->Outer.clear();
+/** Gives the tetrahedra collected so far, and no other ones, the mark of those inside. */
+void SurfacePointMoves::MarkInside()
+{
+  this->Marks.resize(this->Mesh.GetMesh().Tetrahedra.size(), 0);
+  this->LastMark += 2;
+  for (const Id t : this->Tetrahedra)
+  {
+    this->Marks[t] = this->LastMark;
+  }
+}
+
+/** Makes a cavity of the marked tetrahedra; false if they reach beyond the boundary. */
+bool SurfacePointMoves::CollectFacets(Id point, Surroundings& around) const
+{
+  const TetMesh& mesh = this->Mesh.GetMesh();
+  Cavity& cavity = around.Inside;
+  cavity.Border.clear();
+  cavity.Regions.clear();
+  cavity.Walls.clear();
+  around.Outer.clear();
+  around.Triangles.clear();
   const auto isAtPoint = [&](const TriangleIds& ids)
   { return std::find(ids.begin(), ids.end(), point) != ids.end(); };
   for (Id t : this->Tetrahedra)
   {
     const TetrahedronIds& ids = mesh.Tetrahedra[t];
-    cavity.Numbers.insert(cavity.Numbers.end(), ids.begin(), ids.end());
     for (int i = 0; i < 4; ++i)
     {
       const TriangleIds facet = GetFacet(ids, i);
       const Id neighbor = mesh.Neighbors[t][i];
-      const bool isInside = neighbor != NoId && this->Marks[neighbor / 4] == inside;
+      const bool isInside = neighbor != NoId && this->Marks[neighbor / 4] == this->LastMark;
       if (isInside && neighbor / 4 < t)
       {
         // Was looked at from the other side.
@@ -329,11 +338,15 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
         // What lies beyond may be in conflict with the new tetrahedra.
         return false;
       }
+      if (isTriangle)
+      {
+        around.Triangles.push_back(facet);
+      }
       if (!isInside && !isAtPoint(facet))
       {
         cavity.Border.push_back({ facet[0], facet[2], facet[1] });
         cavity.Regions.push_back(mesh.Regions[t]);
-        this->Outer.push_back(neighbor);
+        around.Outer.push_back(neighbor);
       }
       else if (isTriangle)
       {
@@ -342,25 +355,69 @@ bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
     }
   }
   // Tetrahedra that meet the others in an edge only would be left out.
-  if (std::count_if(cavity.Walls.begin(), cavity.Walls.end(), isAtPoint) !=
-    static_cast<std::ptrdiff_t>(this->PointTriangles[point].size()))
+  return std::count_if(cavity.Walls.begin(), cavity.Walls.end(), isAtPoint) ==
+    static_cast<std::ptrdiff_t>(this->PointTriangles[point].size());
+}
+
+/** Collects the points of the marked tetrahedra. */
+void SurfacePointMoves::CollectPoints(Id point, const Vec3& position, Cavity& cavity)
+{
+  const TetMesh& mesh = this->Mesh.GetMesh();
+  this->PointMarks.resize(mesh.Points.size(), 0);
+  cavity.Numbers.clear();
+  for (Id t : this->Tetrahedra)
   {
-    return false;
+    for (Id id : mesh.Tetrahedra[t])
+    {
+      if (this->PointMarks[id] != this->LastMark)
+      {
+        this->PointMarks[id] = this->LastMark;
+        cavity.Numbers.push_back(id);
+      }
+    }
   }
-  SortUnique(cavity.Numbers);
-  cavity.Points.reserve(cavity.Numbers.size());
+  std::sort(cavity.Numbers.begin(), cavity.Numbers.end());
+  cavity.Points.clear();
   for (Id id : cavity.Numbers)
   {
     cavity.Points.push_back(id == point ? position : mesh.Points[id]);
+  }
+}
+
+/**
+ * Collects what the position changes; false if that is too much or reaches beyond the boundary.
+ */
+bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
+{
+  if (!this->CollectConflicts(position) || !this->CollectFacets(point, this->Around))
+  {
+    return false;
+  }
+  this->CollectPoints(point, position, this->Around.Inside);
+  return true;
+}
+
+/** Whether the position is as far as it has to be from the points of a cavity. */
+bool SurfacePointMoves::IsClear(Id point, const Vec3& position, const Cavity& cavity) const
+{
+  for (std::size_t i = 0; i < cavity.Numbers.size(); ++i)
+  {
+    const Id id = cavity.Numbers[i];
+    if (id != point && Distance(position, cavity.Points[i]) < this->Given.GetClearance(id))
+    {
+      return false;
+    }
   }
   return true;
 }
 
 /**
- * Whether the smallest spheres of the triangles at the cavity, and of its kept edges, are empty.
+ * Whether the smallest spheres of the triangles at a cavity, and of their kept edges, are empty. A
+ * triangle for which they are not comes to the front: it is likely to be the next one, too.
  */
-bool SurfacePointMoves::AreSpheresEmpty(Id point, const Vec3& position) const
+bool SurfacePointMoves::AreSpheresEmpty(Id point, const Vec3& position, Surroundings& around) const
 {
+  const Cavity& cavity = around.Inside;
   const auto getPoint = [&](Id id) { return id == point ? position : this->Points[id]; };
   const auto isEmpty = [&](const auto& ids, const auto& isInside)
   {
@@ -368,10 +425,10 @@ bool SurfacePointMoves::AreSpheresEmpty(Id point, const Vec3& position) const
     {
       return !isInside(position);
     }
-    for (std::size_t i = 0; i < this->Around.Numbers.size(); ++i)
+    for (std::size_t i = 0; i < cavity.Numbers.size(); ++i)
     {
-      if (std::find(ids.begin(), ids.end(), this->Around.Numbers[i]) == ids.end() &&
-        isInside(this->Around.Points[i]))
+      if (std::find(ids.begin(), ids.end(), cavity.Numbers[i]) == ids.end() &&
+        isInside(cavity.Points[i]))
       {
         return false;
       }
@@ -399,55 +456,99 @@ bool SurfacePointMoves::AreSpheresEmpty(Id point, const Vec3& position) const
     }
     return true;
   };
-  return std::all_of(this->Around.Walls.begin(), this->Around.Walls.end(), isTriangleEmpty) &&
-    std::all_of(this->Around.Border.begin(), this->Around.Border.end(),
-      [&](const TriangleIds& ids) { return !this->IsOnSurface(ids) || isTriangleEmpty(ids); });
+  const auto full =
+    std::find_if_not(around.Triangles.begin(), around.Triangles.end(), isTriangleEmpty);
+  if (full == around.Triangles.end())
+  {
+    return true;
+  }
+  std::iter_swap(full, around.Triangles.begin());
+  return false;
+}
+
+/** The smaller one of an angle and that of a tetrahedron, if it counts. */
+double SurfacePointMoves::GetSmallerAngle(
+  double angle, const TetrahedronIds& ids, Id region, const std::array<Vec3, 4>& corners) const
+{
+  const double own = GetSmallestDihedralAngle(corners[0], corners[1], corners[2], corners[3]);
+  // In that order: whether an angle counts takes longer than the angle.
+  return own < angle && this->Given.HasAngle(ids, region) ? own : angle;
+}
+
+/** The corners of a tetrahedron with the point moved. */
+std::array<Vec3, 4> SurfacePointMoves::GetMovedCorners(
+  const TetrahedronIds& ids, Id point, const Vec3& position) const
+{
+  std::array<Vec3, 4> v;
+  for (int i = 0; i < 4; ++i)
+  {
+    v[i] = ids[i] == point ? position : this->Mesh.GetPoint(ids[i]);
+  }
+  return v;
+}
+
+/**
+ * Whether the tetrahedron that made another position too bad is one of those of the cavity, and
+ * makes this position too bad as well.
+ */
+bool SurfacePointMoves::IsFlatAgain(Id point, const Vec3& position, double required) const
+{
+  const TetrahedronIds& ids = this->Flat.Ids;
+  const Cavity& cavity = this->Around.Inside;
+  const auto isThere = [&](Id id) { return this->PointMarks[id] == this->LastMark; };
+  if (this->Flat.Region == NoId || !std::all_of(ids.begin(), ids.end(), isThere))
+  {
+    return false;
+  }
+  const std::array<Vec3, 4> v = this->GetMovedCorners(ids, point, position);
+  if (this->GetSmallerAngle(180.0, ids, this->Flat.Region, v) > required ||
+    Orientation(v[0], v[1], v[2], v[3]) <= 0)
+  {
+    return false;
+  }
+  for (std::size_t i = 0; i < cavity.Numbers.size(); ++i)
+  {
+    if (std::find(ids.begin(), ids.end(), cavity.Numbers[i]) == ids.end() &&
+      InSphere(v[0], v[1], v[2], v[3], cavity.Points[i]) >= 0)
+    {
+      return false;
+    }
+  }
+  return true;
 }
 
 double SurfacePointMoves::Rate(Id point, const Vec3& position, double required)
 {
-  if (!this->KeepsOrientations(point, position) || !this->CollectCavity(point, position))
+  // Most positions fail by what is known of the tetrahedra at the point.
+  if (!this->KeepsOrientations(point, position) ||
+    !this->IsClear(point, position, this->AtPoint.Inside) ||
+    !this->AreSpheresEmpty(point, position, this->AtPoint) ||
+    !this->CollectCavity(point, position) || this->IsFlatAgain(point, position, required) ||
+    !this->IsClear(point, position, this->Around.Inside) ||
+    !this->AreSpheresEmpty(point, position, this->Around))
   {
     return 0.0;
   }
-  const Cavity& cavity = this->Around;
-  for (std::size_t i = 0; i < cavity.Numbers.size(); ++i)
-  {
-    const Id id = cavity.Numbers[i];
-    if (id != point && Distance(position, cavity.Points[i]) < this->Given.GetClearance(id))
-    {
-      return 0.0;
-    }
-  }
-  const TetMesh& mesh = this->Mesh.GetMesh();
-  const auto getVertices = [&](const TetrahedronIds& ids)
-  {
-    std::array<Vec3, 4> v;
-    for (int i = 0; i < 4; ++i)
-    {
-      v[i] = ids[i] == point ? position : mesh.Points[ids[i]];
-    }
-    return v;
-  };
   double smallest = 180.0;
   const auto isLarger = [&](const TetrahedronIds& ids, Id region)
   {
-    const auto [a, b, c, d] = getVertices(ids);
-    const double angle = GetSmallestDihedralAngle(a, b, c, d);
-    if (angle < smallest && this->Given.HasAngle(ids, region))
+    smallest =
+      this->GetSmallerAngle(smallest, ids, region, this->GetMovedCorners(ids, point, position));
+    if (smallest <= required && std::find(ids.begin(), ids.end(), point) != ids.end())
     {
-      smallest = angle;
+      this->Flat = { ids, region };
     }
     return smallest > required;
   };
-  if (!this->AreSpheresEmpty(point, position) || !this->Filling.Run(cavity, isLarger))
+  if (!this->Filling.Run(this->Around.Inside, isLarger))
   {
     return 0.0;
   }
+  const TetMesh& mesh = this->Mesh.GetMesh();
   Id broken = 0;
   for (const CavityCell& cell : this->Filling.GetCells())
   {
-    broken += this->Given.BreaksLimit(cell.Ids, getVertices(cell.Ids));
+    broken += this->Given.BreaksLimit(cell.Ids, this->GetMovedCorners(cell.Ids, point, position));
   }
   for (std::size_t k = 0; k < this->Tetrahedra.size() && broken > 0; ++k)
   {
@@ -464,8 +565,13 @@ bool SurfacePointMoves::Find(Id point, const TetrahedronIds& sliver, double targ
   {
     return false;
   }
-  double nearest = 0.0;
   const Vec3& old = this->Points[point];
+  this->Tetrahedra = this->Star;
+  this->MarkInside();
+  this->CollectFacets(point, this->AtPoint);
+  this->CollectPoints(point, old, this->AtPoint.Inside);
+  this->Flat = {};
+  double nearest = 0.0;
   Place best{ old, this->MeasureStar(point, nearest) + SmallestGain, false };
   const auto rate = [&](const Vec3& place, double required)
   { return this->Rate(point, place, required); };
@@ -488,9 +594,9 @@ void SurfacePointMoves::Make(Id point, const Vec3& position, DynamicTetrahedrali
 {
   this->CollectStar(point);
   this->CollectCavity(point, position);
-  this->Filling.Run(this->Around);
+  this->Filling.Run(this->Around.Inside);
   mesh.SetPoint(point, position);
-  mesh.Replace(this->Tetrahedra, this->Outer, this->Filling.GetCells());
+  mesh.Replace(this->Tetrahedra, this->Around.Outer, this->Filling.GetCells());
 }
 
 namespace

@@ -90,16 +90,35 @@ private:
     Vec3 Axis;
     bool IsLine = false;
   };
+  /** Tetrahedra that a position changes, as a cavity, and what is around them. */
+  struct Surroundings
+  {
+    Cavity Inside;
+    /** One for each facet of the cavity's border: the facet behind it, or NoId. */
+    std::vector<Id> Outer;
+    /** Facets of the tetrahedra that are triangles of the surface. */
+    std::vector<TriangleIds> Triangles;
+  };
   bool FindSupport(Id point, Support& support) const;
   std::vector<Id> FindEdgeEnds(Id point) const;
   bool ArePlanar(Id point, const std::vector<Id>& ends) const;
   bool CollectStar(Id point);
   double MeasureStar(Id point, double& nearest) const;
+  double GetSmallerAngle(
+    double angle, const TetrahedronIds& ids, Id region, const std::array<Vec3, 4>& corners) const;
+  std::array<Vec3, 4> GetMovedCorners(
+    const TetrahedronIds& ids, Id point, const Vec3& position) const;
+  bool IsFlatAgain(Id point, const Vec3& position, double required) const;
   double Rate(Id point, const Vec3& position, double required);
   bool KeepsOrientations(Id point, const Vec3& position) const;
+  bool CollectConflicts(const Vec3& position);
+  void MarkInside();
+  bool CollectFacets(Id point, Surroundings& around) const;
+  void CollectPoints(Id point, const Vec3& position, Cavity& cavity);
   bool CollectCavity(Id point, const Vec3& position);
   bool IsOnSurface(const TriangleIds& ids) const;
-  bool AreSpheresEmpty(Id point, const Vec3& position) const;
+  bool IsClear(Id point, const Vec3& position, const Cavity& cavity) const;
+  bool AreSpheresEmpty(Id point, const Vec3& position, Surroundings& around) const;
 
   const DynamicTetrahedralization& Mesh;
   const TriangleMesh& Surface;
@@ -112,7 +131,9 @@ private:
   double Flatness = 0.0;
   /** Tetrahedra at the point that is moved. */
   std::vector<Id> Star;
-  /** Work space for one position: the tetrahedra that it changes, and the facets around these. */
+  /** That star by itself: what it has is part of the surroundings of all positions. */
+  Surroundings AtPoint;
+  /** Work space for one position: the tetrahedra that it changes. */
   std::vector<Id> Tetrahedra;
   /**
    * One for each tetrahedron: the last mark if it is in the cavity, one less if it is a neighbor that
@@ -120,8 +141,15 @@ private:
    */
   std::vector<Id> Marks;
   Id LastMark = 0;
-  Cavity Around;
-  std::vector<Id> Outer;
+  /** One for each point: the last mark if it is in the cavity. */
+  std::vector<Id> PointMarks;
+  Surroundings Around;
+  /** A tetrahedron with the point that made a position too bad, and its region; NoId: none. */
+  struct
+  {
+    TetrahedronIds Ids{};
+    Id Region = NoId;
+  } Flat;
   CavityFilling Filling;
   const bool IsRecording;
   std::vector<Id> Visited;
