@@ -19,6 +19,12 @@ constexpr double Epsilon = std::numeric_limits<double>::epsilon();
 
 /** Spheres with radii above this, in edges of the triangle, are almost half spaces. */
 constexpr double FlatRadius = 1e3;
+/**
+ * Triangles with an edge shorter than this, in radii, are needles: points that have come as close to
+ * each other as that edge lie in the balls of all needles among them, which are larger than the
+ * spheres by a millionth of the radius. 500 needles were tested again for each such point.
+ */
+constexpr double NeedleEdge = 1e-4;
 /** The search in a sphere stops after this many points. */
 constexpr std::size_t EnoughPoints = 64;
 
@@ -111,6 +117,13 @@ public:
   }
 
   bool IsNeedle() const { return this->Form.has_value(); }
+  /** Whether a ball around the sphere holds much that is not in the sphere. */
+  bool IsLoose() const
+  {
+    const double shortest = std::min(
+      { Distance(this->A, this->B), Distance(this->B, this->C), Distance(this->C, this->A) });
+    return this->IsNeedle() || shortest < NeedleEdge * this->Radius;
+  }
 
   /** Whether there are so many points inside that some may have been left out. */
   bool HasEnough() const { return this->Found.InsideSmallestSphere.size() >= EnoughPoints; }
@@ -325,7 +338,7 @@ void SurfaceDelaunayTest::Run(
   {
     result.Proof.Radius = Infinity;
   }
-  result.Proof.IsLoose = visitor.IsNeedle();
+  result.Proof.IsLoose = visitor.IsLoose();
   result.Proof.HasPoint = false;
   result.IsDelaunay = !visitor.IsCoplanarInside &&
     !(visitor.IsFrontInside && visitor.IsBackInside) &&
@@ -377,7 +390,8 @@ void SurfaceDelaunayTest::Run(
   {
     result.Proof.Center = isCertain ? center : visitor.Center;
     result.Proof.Radius = isCertain ? radius : Infinity;
-    result.Proof.IsLoose = !isCertain || !(radius < FlatRadius * (Norm(b - a) + Norm(c - a)));
+    result.Proof.IsLoose =
+      visitor.IsLoose() || !isCertain || !(radius < FlatRadius * (Norm(b - a) + Norm(c - a)));
     result.Proof.HasPoint = true;
     result.Proof.Point = this->Points[best];
   }
