@@ -440,6 +440,6 @@ TEST(ComplexKinds, StacksAreRefinedFromTheirTriangles)
     BoundaryTriangulatorOutput triangulated;
     ASSERT_TRUE(MakeUnplaced(ComplexKind::SmallSlabs, seed, triangulated));
     ExpectStrongerFulfilled(
-      triangulated.Surface, triangulated.Surface.Triangles.size() == 7 ? 600u : 10000u);
+      triangulated.Surface, triangulated.Surface.Triangles.size() == 7 ? 1000u : 10000u);
   }
 }

@@ -297,6 +297,50 @@ TEST(DelaunaySurfaceRefiner, MirrorsPointsThroughThinLayers)
   }
 }
 
+/**
+ * A match lies as close to its point as the sheets do, also where no edge may be that short. Matches
+ * that were refused for it left the circumcenters of both sheets to go on without end.
+ */
+TEST(DelaunaySurfaceRefiner, MatchesAcrossGapsThinnerThanTheShortestEdge)
+{
+  constexpr double thickness = 1e-4;
+  PolygonSoup soup = MakeBox({ 1.0, 1.0, thickness });
+  TriangleMesh surface = Triangulate(soup);
+  // A point in the middle of the lower side.
+  const Id point = static_cast<Id>(surface.Points.size());
+  const Vec3 position{ 0.3, 0.4, 0.0 };
+  surface.Points.push_back(position);
+  for (std::size_t t = surface.Triangles.size(); t-- > 0;)
+  {
+    const TriangleIds ids = surface.Triangles[t];
+    const auto& p = surface.Points;
+    const Vec3 weights = GetBarycentricWeights(position, p[ids[0]], p[ids[1]], p[ids[2]]);
+    if (std::all_of(ids.begin(), ids.end(), [&p](Id id) { return p[id].Z == 0.0; }) &&
+      std::min({ weights.X, weights.Y, weights.Z }) > 0.0)
+    {
+      surface.Triangles[t] = { ids[0], ids[1], point };
+      surface.Triangles.push_back({ ids[1], ids[2], point });
+      surface.Triangles.push_back({ ids[2], ids[0], point });
+      for (int i = 0; i < 2; ++i)
+      {
+        surface.Labels.push_back(surface.Labels[t]);
+        surface.SourceCells.push_back(surface.SourceCells[t]);
+      }
+    }
+  }
+  DelaunaySurfaceRefinerOptions options;
+  options.Criterion = SurfaceCriterion::SmallestSphere;
+  options.MinimumEdgeRatio = 1e-2;
+  const DelaunaySurfaceRefinerOutput output = Refine(surface, options);
+  // The match, and those on edges that either of the two encroaches on.
+  EXPECT_EQ(output.Surface.Points.size(), surface.Points.size() + 5);
+  EXPECT_TRUE(std::any_of(output.Surface.Points.begin(), output.Surface.Points.end(),
+    [](const Vec3& p) {
+      return Distance(p, { 0.3, 0.4, thickness }) < 1e-12;
+    }));
+  EXPECT_EQ(MeshAndCheck(output).GetCount(MeshFault::FacetSphere), 0);
+}
+
 TEST(DelaunaySurfaceRefiner, EndsAtSharpAngles)
 {
   for (double degrees : { 60.0, 10.0, 1.0, 0.1 })

@@ -109,10 +109,8 @@ Status SurfaceRefiner::Prepare(int numberOfThreads)
   const std::vector<Vec3> meshPoints = this->CollectMeshPoints(numberOfThreads);
   this->NumberOfSurfacePoints = static_cast<Id>(surface.Points.size());
   this->NumberOfGivenPoints = this->NumberOfSurfacePoints + static_cast<Id>(meshPoints.size());
-  SurfaceRefinementPlan plan = this->Plan;
-  plan.IsTrial = plan.IsTrial && edges.HasRoundedFacets;
   this->Refinement = std::make_unique<SurfaceRefinement>(
-    surface, edges.Edges, meshPoints, this->Options, this->Input.Sizing, false, plan);
+    surface, edges.Edges, meshPoints, this->Options, this->Input.Sizing, false, this->Plan);
   this->Refinement->SetExcusedTriangles(this->Input.ExcusedTriangles);
   return Status();
 }
@@ -313,7 +311,7 @@ public:
 
 private:
   void RunPlan(const SurfaceRefinementPlan& plan);
-  void RunInTurn(SurfaceRefinementPlan plan);
+  void RunInTurn(const SurfaceRefinementPlan& first);
   bool HasSizes() const
   {
     return this->Options.MaximumEdgeLength > 0.0 || this->Options.MaximumArea > 0.0 ||
@@ -405,15 +403,27 @@ void SurfaceAttempts::Keep(DelaunaySurfaceRefinerOutput&& output)
   }
 }
 
+/** Limits the points of a plan that others follow: what ends by it hardly ever takes as many. */
+void Limit(SurfaceRefinementPlan& plan)
+{
+  if (plan.GivesUp)
+  {
+    const bool isLong = plan.Rules == MatchingRules::ThinLayers;
+    plan.MostPoints = isLong ? 50000 : 4000;
+    plan.MostPerTriangle = isLong ? 50 : 10;
+  }
+}
+
 /**
  * Refines by a plan, then with facets that are plane in double precision only, and with the other
- * rules, until an attempt ends. Only the first attempt may be a trial. The flatness stays as the
- * last attempt had it.
+ * rules, until an attempt ends. The rules for stacks may take the most points: 200,000 are needed
+ * at times. The flatness stays as the last attempt had it.
  */
-void SurfaceAttempts::RunInTurn(SurfaceRefinementPlan plan)
+void SurfaceAttempts::RunInTurn(const SurfaceRefinementPlan& first)
 {
+  SurfaceRefinementPlan plan = first;
+  Limit(plan);
   this->RunPlan(plan);
-  plan.IsTrial = false;
   double& flatness = this->Options.StructuralEdges.FlatnessRatio;
   if (this->IsOpen() && this->HasRoundedFacets && flatness > RoundedFlatnessRatio)
   {
@@ -425,7 +435,12 @@ void SurfaceAttempts::RunInTurn(SurfaceRefinementPlan plan)
   {
     if (this->IsOpen())
     {
+      plan = first;
       plan.Rules = rules;
+      if (rules != MatchingRules::Stacks)
+      {
+        Limit(plan);
+      }
       this->RunPlan(plan);
     }
   }
@@ -436,16 +451,16 @@ Status SurfaceAttempts::Run()
   SurfaceRefinementPlan plan;
   // Where sizes are asked for, they are what most of the points are for.
   plan.GivesUp = !this->HasSizes();
-  plan.IsTrial = true;
   const double flatness = this->Options.StructuralEdges.FlatnessRatio;
   this->RunInTurn(plan);
-  plan.IsTrial = false;
   const SurfaceCriterion criterion = this->Options.Criterion;
   if (criterion == SurfaceCriterion::SmallestSphere && this->IsOpen())
   {
     // The stronger criterion takes another way, edges before all triangles, and implies this one.
     this->Options.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
-    this->RunPlan(plan);
+    SurfaceRefinementPlan other = plan;
+    Limit(other);
+    this->RunPlan(other);
     this->Options.Criterion = criterion;
   }
   if (criterion != SurfaceCriterion::Delaunay && this->IsOpen())

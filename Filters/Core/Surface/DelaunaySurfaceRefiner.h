@@ -81,13 +81,16 @@ struct DelaunaySurfaceRefinerOptions
   double MaximumEdgeLength = 0.0;
   /** Mesh points closer to the surface, as a ratio of the diagonal, are dropped. >= 0. */
   double MeshPointClearanceRatio = 1e-3;
-  /** No edge is made shorter than this ratio of the diagonal. >= 0. */
+  /**
+   * No edge is made shorter than this ratio of the diagonal. >= 0. Points of different sheets may be
+   * closer to each other: they are as close as the sheets.
+   */
   double MinimumEdgeRatio = 1e-9;
   /**
    * The refinement stops when it has made this many points, except for what the criterion Delaunay
-   * needs. 0: 50 for each triangle, at least 20000, or 1000000 where sizes or angles are asked for;
+   * needs. 0: 50 for each triangle, at least 400000, or 1000000 where sizes or angles are asked for;
    * and one for each mesh point. Surfaces that need more are hardly intended: they have sheets a
-   * hair apart that run into each other.
+   * hair apart that run into each other. Rules that are tried first may take less.
    */
   Id MaximumNewPoints = 0;
 };

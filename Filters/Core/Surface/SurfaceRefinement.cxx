@@ -18,8 +18,14 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t ReportInterval = 256;
 
-/** A plan that may give up does so after this part as many needles that are bad as points. */
-constexpr Id NeedlePart = 4;
+/** The largest number of new points where sizes or angles are asked for. */
+constexpr std::size_t MostForSizes = 1000000;
+/**
+ * A plan that may give up does so after so many tests of needles that are bad, or as many as a
+ * quarter of the points for each triangle: it has come down to rounding errors.
+ */
+constexpr std::size_t MostNeedles = 5000;
+constexpr std::size_t NeedlePart = 4;
 /** A point farther from a circumcenter than this, in circumradii, is certainly not cocircular. */
 constexpr double CocircularRadii = 1.0 + 1e-6;
 } // namespace
@@ -39,12 +45,14 @@ SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
 {
   this->Points.insert(this->Points.end(), meshPoints.begin(), meshPoints.end());
   // Without a limit of the user's, one that only a runaway refinement reaches: sheets a hair apart.
-  const std::size_t perTriangle = plan.IsTrial ? 10 : 50;
-  this->UsualMaximum = static_cast<Id>(
-    std::min<std::size_t>(std::max<std::size_t>(this->Limits.HasAny() ? 1000000 : 20000,
-                            perTriangle * surface.Triangles.size()) +
-        meshPoints.size(),
-      LargestId / 8));
+  const std::size_t forTriangles = plan.MostPerTriangle * surface.Triangles.size();
+  const auto makeId = [](std::size_t most)
+  { return static_cast<Id>(std::min<std::size_t>(most, LargestId / 8)); };
+  this->UsualMaximum =
+    makeId(std::max(this->Limits.HasAny() ? MostForSizes : plan.MostPoints, forTriangles) +
+      meshPoints.size());
+  this->MaximumNeedles = makeId(
+    std::max(std::min(MostNeedles, plan.MostPoints / NeedlePart), forTriangles / NeedlePart));
   this->MaximumNewPoints =
     options.MaximumNewPoints > 0 ? options.MaximumNewPoints : this->UsualMaximum;
   this->Octree.Insert(this->Points);
@@ -678,8 +686,8 @@ Status SurfaceRefinement::Refine(const ExecutionContext& context)
     {
       return range;
     }
-    this->HasGivenUp = this->HasGivenUp ||
-      (this->Plan.GivesUp && this->NumberOfNeedles > this->UsualMaximum / NeedlePart);
+    this->HasGivenUp =
+      this->HasGivenUp || (this->Plan.GivesUp && this->NumberOfNeedles > this->MaximumNeedles);
     if (this->IsFull() && !this->IsRescuing())
     {
       this->Plan.GivesUp ? this->GiveUp() : this->StartRescue();

@@ -50,10 +50,11 @@ struct SurfaceRefinementPlan
    */
   bool GivesUp = false;
   /**
-   * Whether another plan follows that is likely to end. Then the largest number of points, if the
-   * user gives none and no sizes, is a fifth of the usual one.
+   * The largest number of new points if the user gives none and no sizes: so many, or so many for
+   * each triangle, if that is more.
    */
-  bool IsTrial = false;
+  std::size_t MostPoints = 400000;
+  std::size_t MostPerTriangle = 50;
 };
 
 class SurfaceRefinement
@@ -247,6 +248,7 @@ private:
   // Each returns true if it has changed the surface.
   bool ResolveByFlip(Id t);
   bool ResolveInFacet(Id t, Id encroaching, const Vec3& target, bool isMirrored);
+  bool IsTooClose(Id t, const Vec3& position) const;
   bool SplitSegment(Id segment, Id encroaching);
   bool SplitLongestEdge(Id t);
 
@@ -306,6 +308,7 @@ private:
    * them.
    */
   Id NumberOfNeedles = 0;
+  Id MaximumNeedles = 0;
   bool HasGivenUp = false;
 
   /** The next three are made when the first triangle has to be refined. */

@@ -158,6 +158,18 @@ Id SurfaceRefinement::FindPassingSegment(Id t, const Vec3& position)
   return found;
 }
 
+/**
+ * Whether a point in a triangle would make too short an edge. Points of other sheets may be closer: a
+ * match is as close as the sheets are.
+ */
+bool SurfaceRefinement::IsTooClose(Id t, const Vec3& position) const
+{
+  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+  return this->HasPointNear(position, 0.0) ||
+    std::any_of(ids.begin(), ids.end(),
+      [&](Id id) { return Distance(this->Points[id], position) < this->MinimumEdge; });
+}
+
 bool SurfaceRefinement::ResolveInFacet(Id t, Id encroaching, const Vec3& target, bool isMirrored)
 {
   const RefinableSurface& surface = *this->Surface;
@@ -191,7 +203,7 @@ bool SurfaceRefinement::ResolveInFacet(Id t, Id encroaching, const Vec3& target,
 
   // A point that does not encroach on the triangle would not remove it (on curved facets).
   const Vec3& position = landing.Position;
-  if (this->HasPointNear(position, this->MinimumEdge) ||
+  if (this->IsTooClose(landing.Triangle, position) ||
     InEquatorialSphere(
       this->Points[start[0]], this->Points[start[1]], this->Points[start[2]], position) <= 0)
   {
