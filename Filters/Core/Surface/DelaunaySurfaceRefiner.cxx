@@ -294,8 +294,8 @@ Status SurfaceRefiner::Run()
 
 /**
  * Attempts to refine one surface: with the usual rules, with facets that are plane in double
- * precision only, with the rules for corners, thin layers and stacks, by criterion 3.2 in place of
- * 3.1, and by the criterion Delaunay alone, until one attempt ends.
+ * precision only, with the rules for corners, thin layers and stacks, with edges before all triangles
+ * or after them, and by the criterion Delaunay alone, until one attempt ends.
  */
 class SurfaceAttempts
 {
@@ -311,7 +311,7 @@ public:
 
 private:
   void RunPlan(const SurfaceRefinementPlan& plan);
-  void RunInTurn(const SurfaceRefinementPlan& first);
+  void RunInTurn(const SurfaceRefinementPlan& first, MatchingRules last = MatchingRules::Stacks);
   bool HasSizes() const
   {
     return this->Options.MaximumEdgeLength > 0.0 || this->Options.MaximumArea > 0.0 ||
@@ -416,10 +416,10 @@ void Limit(SurfaceRefinementPlan& plan)
 
 /**
  * Refines by a plan, then with facets that are plane in double precision only, and with the other
- * rules, until an attempt ends. The rules for stacks may take the most points: 200,000 are needed
+ * rules, up to the last ones, until an attempt ends. The rules for stacks may take the most points: 200,000 are needed
  * at times. The flatness stays as the last attempt had it.
  */
-void SurfaceAttempts::RunInTurn(const SurfaceRefinementPlan& first)
+void SurfaceAttempts::RunInTurn(const SurfaceRefinementPlan& first, MatchingRules last)
 {
   SurfaceRefinementPlan plan = first;
   Limit(plan);
@@ -433,7 +433,7 @@ void SurfaceAttempts::RunInTurn(const SurfaceRefinementPlan& first)
   for (const MatchingRules rules :
     { MatchingRules::Corners, MatchingRules::ThinLayers, MatchingRules::Stacks })
   {
-    if (this->IsOpen())
+    if (this->IsOpen() && rules <= last)
     {
       plan = first;
       plan.Rules = rules;
@@ -451,16 +451,19 @@ Status SurfaceAttempts::Run()
   SurfaceRefinementPlan plan;
   // Where sizes are asked for, they are what most of the points are for.
   plan.GivesUp = !this->HasSizes();
-  const double flatness = this->Options.StructuralEdges.FlatnessRatio;
+  double& flatness = this->Options.StructuralEdges.FlatnessRatio;
+  const double givenFlatness = flatness;
   this->RunInTurn(plan);
   const SurfaceCriterion criterion = this->Options.Criterion;
-  if (criterion == SurfaceCriterion::SmallestSphere && this->IsOpen())
+  if (criterion != SurfaceCriterion::Delaunay && this->IsOpen())
   {
-    // The stronger criterion takes another way, edges before all triangles, and implies this one.
-    this->Options.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
+    // The other way: edges before all triangles by criterion 3.2, which implies 3.1, or after them. By
+    // the rules for stacks they always come last.
     SurfaceRefinementPlan other = plan;
-    Limit(other);
-    this->RunPlan(other);
+    other.AreEdgesLast = criterion == SurfaceCriterion::SmallestSphereAndEdges;
+    this->Options.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
+    flatness = givenFlatness;
+    this->RunInTurn(other, MatchingRules::ThinLayers);
     this->Options.Criterion = criterion;
   }
   if (criterion != SurfaceCriterion::Delaunay && this->IsOpen())
@@ -468,7 +471,7 @@ Status SurfaceAttempts::Run()
     // The surface is refined as if the criterion Delaunay were asked for.
     plan.IsRelaxed = true;
     plan.GivesUp = false;
-    this->Options.StructuralEdges.FlatnessRatio = flatness;
+    flatness = givenFlatness;
     this->RunInTurn(plan);
   }
   return this->IsAborted ? Status::Aborted() : this->HasBest ? Status() : *this->First;

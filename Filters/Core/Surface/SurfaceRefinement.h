@@ -44,6 +44,8 @@ struct SurfaceRefinementPlan
   MatchingRules Rules = MatchingRules::Usual;
   /** Whether triangles only have to fulfil the criterion Delaunay, and edges none. */
   bool IsRelaxed = false;
+  /** Whether edges are made fine enough after all triangles, where they count. */
+  bool AreEdgesLast = false;
   /**
    * Whether to give up at the largest number of points. Otherwise the refinement then goes on with
    * what the criterion Delaunay needs.
@@ -222,7 +224,7 @@ private:
    */
   bool AreEdgesFirst() const
   {
-    return this->AreEdgesTested() && !this->Plan.IsRelaxed &&
+    return this->AreEdgesTested() && !this->Plan.IsRelaxed && !this->Plan.AreEdgesLast &&
       this->Plan.Rules != MatchingRules::Stacks;
   }
   bool IsGood(Id t, SurfaceDelaunayTest::Result& found) const
