@@ -3,7 +3,8 @@
 // the table that is printed says how many fulfil the criterion asked for, and at which price.
 //
 // CDM_COMPLEXES=12500 build/bin/TestComplexKinds makes so many of each kind, CDM_FIRST_SEED other
-// ones, CDM_STEINER_COMPLEXES=1000 so many with Steiner points.
+// ones, CDM_UNPLACED=1 leaves them as they are made, neither turned nor moved nor scaled, and
+// CDM_STEINER_COMPLEXES=1000 makes so many with Steiner points.
 #include "ComplexKinds.h"
 #include "Core/Certificate/MeshCertificate.h"
 #include "Core/Improvement/SteinerPointRefiner.h"
@@ -96,7 +97,8 @@ void ExpectStrongerFulfilled(const TriangleMesh& surface, std::size_t pointBound
 /** A complex as it is made, neither rotated nor moved nor scaled; whether it is one. */
 bool MakeUnplaced(ComplexKind kind, std::uint64_t seed, BoundaryTriangulatorOutput& triangulated)
 {
-  return TriangulateBoundary(ComplexMaker(kind, seed).Make(), {}, {}, triangulated).IsOk();
+  return TriangulateBoundary(ComplexMaker(kind, seed).Make(), {}, {}, triangulated).IsOk() &&
+    !triangulated.Surface.Triangles.empty();
 }
 
 /** A complex, rotated, moved and scaled; whether it is one. */
@@ -114,10 +116,13 @@ KindCounts MeshComplexes(ComplexKind kind, std::uint64_t usualCount)
   KindCounts counts;
   const std::uint64_t first = GetFromEnvironment("CDM_FIRST_SEED", 1);
   const std::uint64_t count = GetFromEnvironment("CDM_COMPLEXES", usualCount);
+  const bool isUnplaced = GetFromEnvironment("CDM_UNPLACED", 0) != 0;
   for (std::uint64_t seed = first; seed < first + count; ++seed)
   {
     BoundaryTriangulatorOutput triangulated;
-    if (!MakePlaced(kind, seed, triangulated))
+    const bool isMade =
+      isUnplaced ? MakeUnplaced(kind, seed, triangulated) : MakePlaced(kind, seed, triangulated);
+    if (!isMade)
     {
       // All is outside, or what is thin intersects itself when it is turned and rounded.
       continue;
@@ -370,6 +375,43 @@ TEST(ComplexKinds, FallsBackToTheCriterionDelaunay)
   }
 }
 
+/**
+ * A sheet passes 1.2e-5 from a corner of a wedge of 0.04 degrees. Matches across the wedge were refused
+ * as too close to their points, and 100,000 points filled it.
+ */
+TEST(ComplexKinds, WedgesThinnerThanTheShortestEdge)
+{
+  BoundaryTriangulatorOutput triangulated;
+  ASSERT_TRUE(MakeUnplaced(ComplexKind::TiltedPlates, 5842, triangulated));
+  ExpectStrongerFulfilled(triangulated.Surface, 3000u);
+}
+
+/**
+ * Plates 3000 times as far away as they are large, which end with edges before all triangles, and
+ * others, 80,000 times as far, which end with edges after them.
+ */
+TEST(ComplexKinds, TheOtherOrderOfEdgesAndTriangles)
+{
+  for (const std::uint64_t seed : { 5454, 5461 })
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    BoundaryTriangulatorOutput triangulated;
+    ASSERT_TRUE(MakePlaced(ComplexKind::TiltedPlates, seed, triangulated));
+    ExpectStrongerFulfilled(triangulated.Surface, seed == 5454 ? 5000u : 800u);
+  }
+}
+
+/**
+ * Points that had come together in a runaway plan were in the balls of 500 needles each: 4.6 million
+ * tests of triangles, 50 s.
+ */
+TEST(ComplexKinds, NeedlesAreTestedAgainForPointsInTheirSpheresOnly)
+{
+  BoundaryTriangulatorOutput triangulated;
+  ASSERT_TRUE(MakeUnplaced(ComplexKind::TiltedPlates, 5260, triangulated));
+  ExpectStrongerFulfilled(triangulated.Surface, 1500u);
+}
+
 /** Not all fulfil the stronger criteria; all are meshed. */
 TEST(ComplexKinds, Fans)
 {
@@ -417,6 +459,17 @@ INSTANTIATE_TEST_SUITE_P(ComplexKinds, SteinerPointsInComplexes,
   testing::Range(0, static_cast<int>(ComplexKind::TiltedPlates)),
   [](const testing::TestParamInfo<int>& info)
   { return std::string(GetComplexKindName(static_cast<ComplexKind>(info.param))); });
+
+/**
+ * Eighteen points in a slab of 3e-3: 75,700 points, where none of that many sheets ended as long as
+ * matches in narrow gaps were refused.
+ */
+TEST(ComplexKinds, SlabsOfManySheetsEnd)
+{
+  BoundaryTriangulatorOutput triangulated;
+  ASSERT_TRUE(MakeUnplaced(ComplexKind::SlabTetrahedra, 6, triangulated));
+  ExpectStrongerFulfilled(triangulated.Surface, 90000u);
+}
 
 /** Five points in a slab of 4e-5: edges that pass each other were halved towards that place. */
 TEST(ComplexKinds, EdgesThatPassEachOtherAreSplitThere)
