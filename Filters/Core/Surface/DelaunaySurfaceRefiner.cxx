@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace cdm
@@ -311,7 +312,8 @@ public:
 
 private:
   void RunPlan(const SurfaceRefinementPlan& plan);
-  void RunInTurn(const SurfaceRefinementPlan& first, MatchingRules last = MatchingRules::Stacks);
+  void RunUsual(SurfaceRefinementPlan plan);
+  void RunThin(const SurfaceRefinementPlan& first);
   bool HasSizes() const
   {
     return this->Options.MaximumEdgeLength > 0.0 || this->Options.MaximumArea > 0.0 ||
@@ -341,9 +343,9 @@ private:
   /** Status of the first attempt. */
   std::optional<Status> First;
   bool IsAborted = false;
-  /** Whether the last attempt came to its end, see SurfaceRefiner. */
+  /** Whether an attempt came to its end, see SurfaceRefiner. */
   bool IsSettled = false;
-  /** Whether its facets were plane but for rounding. */
+  /** Whether the facets of the last attempt were plane but for rounding. */
   bool HasRoundedFacets = false;
   double Begin = 0.0;
 };
@@ -375,7 +377,7 @@ void SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
       this->First = this->First ? this->First : status;
       if (status.IsOk())
       {
-        this->IsSettled = refiner.IsSettled();
+        this->IsSettled = this->IsSettled || refiner.IsSettled();
         this->HasRoundedFacets = output.Report.HasRoundedFacets;
         this->Keep(std::move(output));
       }
@@ -390,12 +392,15 @@ void SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
 
 /**
  * Keeps an output if it is better than the best so far: fewer triangles that cannot be meshed, then
- * fewer that miss the criterion.
+ * fewer that miss the criterion, then fewer points.
  */
 void SurfaceAttempts::Keep(DelaunaySurfaceRefinerOutput&& output)
 {
   const auto rate = [](const DelaunaySurfaceRefinerOutput& x)
-  { return std::make_pair(x.NonDelaunayTriangles.size(), x.UnresolvedTriangles.size()); };
+  {
+    return std::make_tuple(
+      x.NonDelaunayTriangles.size(), x.UnresolvedTriangles.size(), x.NewPoints.size());
+  };
   if (!this->HasBest || rate(output) < rate(this->Best))
   {
     this->Best = std::move(output);
@@ -403,26 +408,18 @@ void SurfaceAttempts::Keep(DelaunaySurfaceRefinerOutput&& output)
   }
 }
 
-/** Limits the points of a plan that others follow: what ends by it hardly ever takes as many. */
-void Limit(SurfaceRefinementPlan& plan)
+/**
+ * Refines by a plan, then with facets that are plane in double precision only, and with the rules for
+ * corners, until an attempt ends. Others follow: what ends so hardly ever takes as many points as it
+ * may. The flatness stays as the last attempt had it.
+ */
+void SurfaceAttempts::RunUsual(SurfaceRefinementPlan plan)
 {
   if (plan.GivesUp)
   {
-    const bool isLong = plan.Rules == MatchingRules::ThinLayers;
-    plan.MostPoints = isLong ? 50000 : 4000;
-    plan.MostPerTriangle = isLong ? 50 : 10;
+    plan.MostPoints = 4000;
+    plan.MostPerTriangle = 10;
   }
-}
-
-/**
- * Refines by a plan, then with facets that are plane in double precision only, and with the other
- * rules, up to the last ones, until an attempt ends. The rules for stacks may take the most points: 200,000 are needed
- * at times. The flatness stays as the last attempt had it.
- */
-void SurfaceAttempts::RunInTurn(const SurfaceRefinementPlan& first, MatchingRules last)
-{
-  SurfaceRefinementPlan plan = first;
-  Limit(plan);
   this->RunPlan(plan);
   double& flatness = this->Options.StructuralEdges.FlatnessRatio;
   if (this->IsOpen() && this->HasRoundedFacets && flatness > RoundedFlatnessRatio)
@@ -430,19 +427,55 @@ void SurfaceAttempts::RunInTurn(const SurfaceRefinementPlan& first, MatchingRule
     flatness = RoundedFlatnessRatio;
     this->RunPlan(plan);
   }
-  for (const MatchingRules rules :
-    { MatchingRules::Corners, MatchingRules::ThinLayers, MatchingRules::Stacks })
+  plan.Rules = MatchingRules::Corners;
+  if (this->IsOpen())
   {
-    if (this->IsOpen() && rules <= last)
+    this->RunPlan(plan);
+  }
+}
+
+/**
+ * Refines with the rules for thin layers, edges before all triangles and after them, and with those for
+ * stacks. Any of these takes five times as many points as another one at times. So all are tried,
+ * each with at most as many points as the best one so far, and the fewest points are kept. Where a
+ * plan does not give up, the first one that ends is taken.
+ */
+void SurfaceAttempts::RunThin(const SurfaceRefinementPlan& first)
+{
+  const SurfaceCriterion criterion = this->Options.Criterion;
+  const bool areEdgesTested = criterion != SurfaceCriterion::Delaunay && !first.IsRelaxed;
+  const auto run = [&](MatchingRules rules, bool areEdgesFirst, std::size_t mostPoints)
+  {
+    const bool isBetterWanted = first.GivesUp && this->IsSettled;
+    if (this->IsAborted || !(this->IsOpen() || isBetterWanted))
     {
-      plan = first;
-      plan.Rules = rules;
-      if (rules != MatchingRules::Stacks)
-      {
-        Limit(plan);
-      }
-      this->RunPlan(plan);
+      return;
     }
+    SurfaceRefinementPlan plan = first;
+    plan.Rules = rules;
+    plan.AreEdgesLast = !areEdgesFirst;
+    if (first.GivesUp)
+    {
+      plan.MostPoints = mostPoints;
+    }
+    if (isBetterWanted)
+    {
+      plan.MostPoints = std::min(mostPoints, this->Best.NewPoints.size());
+      plan.MostPerTriangle = 0;
+    }
+    this->Options.Criterion = areEdgesFirst ? SurfaceCriterion::SmallestSphereAndEdges : criterion;
+    this->RunPlan(plan);
+    this->Options.Criterion = criterion;
+  };
+  if (areEdgesTested)
+  {
+    run(MatchingRules::ThinLayers, true, 50000);
+    run(MatchingRules::Stacks, false, 400000);
+  }
+  run(MatchingRules::ThinLayers, false, 50000);
+  if (!areEdgesTested)
+  {
+    run(MatchingRules::Stacks, false, 400000);
   }
 }
 
@@ -453,26 +486,34 @@ Status SurfaceAttempts::Run()
   plan.GivesUp = !this->HasSizes();
   double& flatness = this->Options.StructuralEdges.FlatnessRatio;
   const double givenFlatness = flatness;
-  this->RunInTurn(plan);
+  this->RunUsual(plan);
   const SurfaceCriterion criterion = this->Options.Criterion;
-  if (criterion != SurfaceCriterion::Delaunay && this->IsOpen())
+  const bool isStrong = criterion != SurfaceCriterion::Delaunay;
+  if (this->IsOpen())
   {
-    // The other way: edges before all triangles by criterion 3.2, which implies 3.1, or after them. By
-    // the rules for stacks they always come last.
+    this->RunThin(plan);
+  }
+  if (isStrong && this->IsOpen())
+  {
+    // The other order: edges before all triangles by criterion 3.2, which implies 3.1, or after them.
     SurfaceRefinementPlan other = plan;
     other.AreEdgesLast = criterion == SurfaceCriterion::SmallestSphereAndEdges;
     this->Options.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
     flatness = givenFlatness;
-    this->RunInTurn(other, MatchingRules::ThinLayers);
+    this->RunUsual(other);
     this->Options.Criterion = criterion;
   }
-  if (criterion != SurfaceCriterion::Delaunay && this->IsOpen())
+  if (isStrong && this->IsOpen())
   {
     // The surface is refined as if the criterion Delaunay were asked for.
     plan.IsRelaxed = true;
     plan.GivesUp = false;
     flatness = givenFlatness;
-    this->RunInTurn(plan);
+    this->RunUsual(plan);
+    if (this->IsOpen())
+    {
+      this->RunThin(plan);
+    }
   }
   return this->IsAborted ? Status::Aborted() : this->HasBest ? Status() : *this->First;
 }
