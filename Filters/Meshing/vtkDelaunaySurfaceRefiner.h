@@ -137,7 +137,7 @@ public:
   ///@{
   /**
    * The refinement stops when it has made so many points. Default 0: 50 for each triangle, at
-   * least 400000, or 1000000 where sizes or angles are asked for, and one for each mesh point;
+   * least 200000, or 1000000 where sizes or angles are asked for, and one for each mesh point;
    * range >= 0. Surfaces that need more have sheets a hair apart that run into each other.
    */
   vtkSetInRangeMacro(MaximumNewPoints, int, 0, VTK_INT_MAX, "points");

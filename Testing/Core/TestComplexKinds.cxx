@@ -242,6 +242,8 @@ void RefineComplexes(ComplexKind kind, std::uint64_t usualCount)
       options.Criterion = criterion;
       options.RadiusEdgeRatio = ratios[seed % 3];
       options.DihedralAngleTarget = seed % 2 == 0 ? 15.0 : 20.0;
+      // Slabs are filled up to 100 times their thickness.
+      options.MaximumNewPoints = kind == ComplexKind::SlabTetrahedra ? 2000 : 0;
       RefineComplex(triangulated.Surface, options, seed, counts);
     }
     std::printf("%-14s criterion %d, Steiner points: %d meshed, %d fulfil it, %d are clean; missed "

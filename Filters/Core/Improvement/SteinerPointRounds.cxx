@@ -262,13 +262,14 @@ Status SteinerPointRounds::RemakeMesh()
   const bool isFirst = !this->Mesh;
   DelaunaySurfaceRefinerOutput refined;
   Status status = this->RefineSurface(context.Part(0.0, 0.3), refined);
+  const bool isRefused = status.Code == StatusCode::InvalidInput;
+  if (!isFirst && (isRefused || (status.IsOk() && !refined.WeakTriangles.empty())))
+  {
+    return this->RestoreState(context.Part(0.3, 1.0));
+  }
   if (!status.IsOk())
   {
     return status;
-  }
-  if (!isFirst && !refined.WeakTriangles.empty())
-  {
-    return this->RestoreState(context.Part(0.3, 1.0));
   }
   this->Edges = std::move(refined.StructuralEdges);
   if (!isFirst || !this->TakeGivenMesh(refined))
@@ -346,6 +347,8 @@ Status SteinerPointRounds::RefineSurface(
     refined = DelaunaySurfaceRefinerOutput();
     this->HasFailedToShape = true;
   }
+  // The limit of the user is one for each refinement of the boundary, too.
+  options.MaximumNewPoints = this->Options.MaximumNewPoints;
   Status status = RefineDelaunaySurface(input, options, context, refined);
   return status.IsOk() ? status : this->Translate(std::move(status), {});
 }

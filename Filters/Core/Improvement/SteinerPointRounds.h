@@ -10,8 +10,8 @@
  * (DelaunaySurfaceRefiner.h) and tetrahedralized anew with the points inside of the mesh so far
  * (AdvancingFrontTetrahedralizer.h).
  *
- * Splits may leave triangles whose smallest spheres cannot be emptied. Then the last noted state
- * comes back, and the boundary is final.
+ * Splits may leave triangles whose smallest spheres cannot be emptied, or two sheets that become one.
+ * Then the last noted state comes back, and the boundary is final.
  */
 #ifndef cdmSteinerPointRounds_h
 #define cdmSteinerPointRounds_h

@@ -470,12 +470,12 @@ void SurfaceAttempts::RunThin(const SurfaceRefinementPlan& first)
   if (areEdgesTested)
   {
     run(MatchingRules::ThinLayers, true, 50000);
-    run(MatchingRules::Stacks, false, 400000);
+    run(MatchingRules::Stacks, false, 200000);
   }
   run(MatchingRules::ThinLayers, false, 50000);
   if (!areEdgesTested)
   {
-    run(MatchingRules::Stacks, false, 400000);
+    run(MatchingRules::Stacks, false, 200000);
   }
 }
 

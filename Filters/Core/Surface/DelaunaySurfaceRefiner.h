@@ -88,7 +88,7 @@ struct DelaunaySurfaceRefinerOptions
   double MinimumEdgeRatio = 1e-9;
   /**
    * The refinement stops when it has made this many points, except for what the criterion Delaunay
-   * needs. 0: 50 for each triangle, at least 400000, or 1000000 where sizes or angles are asked for;
+   * needs. 0: 50 for each triangle, at least 200000, or 1000000 where sizes or angles are asked for;
    * and one for each mesh point. Surfaces that need more are hardly intended: they have sheets a
    * hair apart that run into each other. Rules that are tried first may take less.
    */
