@@ -55,7 +55,7 @@ struct SurfaceRefinementPlan
    * The largest number of new points if the user gives none and no sizes: so many, or so many for
    * each triangle, if that is more.
    */
-  std::size_t MostPoints = 200000;
+  std::size_t MostPoints = 20000;
   std::size_t MostPerTriangle = 50;
 };
 
