@@ -414,6 +414,16 @@ TEST(ComplexKinds, NeedlesAreTestedAgainForPointsInTheirSpheresOnly)
   ExpectStrongerFulfilled(triangulated.Surface, 1500u);
 }
 
+/** By the criterion Delaunay in the end: plans without a limit of their own took many minutes. */
+TEST(ComplexKinds, GivesUpSoonByTheCriterionDelaunay)
+{
+  BoundaryTriangulatorOutput triangulated;
+  ASSERT_TRUE(MakePlaced(ComplexKind::TiltedPlates, 9244, triangulated));
+  bool isFulfilled = true;
+  EXPECT_EQ(MeshComplex(triangulated.Surface, SurfaceCriterion::SmallestSphere, isFulfilled),
+    MeshComplex(triangulated.Surface, SurfaceCriterion::Delaunay, isFulfilled));
+}
+
 /** Not all fulfil the stronger criteria; all are meshed. */
 TEST(ComplexKinds, Fans)
 {

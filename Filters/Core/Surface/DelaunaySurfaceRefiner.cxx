@@ -505,9 +505,10 @@ Status SurfaceAttempts::Run()
   }
   if (isStrong && this->IsOpen())
   {
-    // The surface is refined as if the criterion Delaunay were asked for.
+    // The surface is refined as if the criterion Delaunay were asked for, by which each plan either ends
+    // soon or not at all; beyond the user's limit with what it needs.
     plan.IsRelaxed = true;
-    plan.GivesUp = false;
+    plan.GivesUp = plan.GivesUp && this->Options.MaximumNewPoints == 0;
     flatness = givenFlatness;
     this->RunUsual(plan);
     if (this->IsOpen())
