@@ -85,7 +85,7 @@ struct DelaunaySurfaceRefinerOptions
    * No edge is made shorter than this ratio of the diagonal. >= 0. Points of different sheets may be
    * closer to each other: they are as close as the sheets.
    */
-  double MinimumEdgeRatio = 1e-12;
+  double MinimumEdgeRatio = 1e-9;
   /**
    * The refinement stops when it has made this many points, except for what the criterion Delaunay
    * needs. 0: 50 for each triangle, at least 200000, or 1000000 where sizes or angles are asked for;
