@@ -95,8 +95,7 @@ def main():
     for name in files:
         path = os.path.join(folder, name)
         for criterion, criterion_name in enumerate(CRITERIA):
-            # Slabs would be filled up to 100 times their thickness: many minutes each.
-            for has_steiner_points in (False,) if "slab" in name else (False, True):
+            for has_steiner_points in (False, True):
                 start = time.process_time()
                 mesher, messages = mesh(path, criterion, has_steiner_points)
                 grid = mesher.GetOutput(0)
