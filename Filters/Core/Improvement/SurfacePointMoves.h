@@ -132,7 +132,7 @@ private:
   double Flatness = 0.0;
   /** Tetrahedra at the point that is moved. */
   std::vector<Id> Star;
-  /** That star by itself: what it has is part of the surroundings of all positions. */
+  /** The tetrahedra at the point as a cavity, which is a part of the cavities of all positions. */
   Surroundings AtPoint;
   /** Work space for one position: the tetrahedra that it changes. */
   std::vector<Id> Tetrahedra;

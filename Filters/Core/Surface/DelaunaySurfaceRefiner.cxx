@@ -24,6 +24,15 @@ namespace
 /** After this many attempts the edges of all triangles are judged without the accuracy angle. */
 constexpr int LargestNumberOfAttempts = 20;
 
+/**
+ * The largest number of new points of plans that may give up, or so many for each triangle. What ends by
+ * the first plans hardly ever takes as many; thin stacks of many sheets need 191,000 at times.
+ */
+constexpr std::size_t MostInFirstPlans = 4000;
+constexpr std::size_t MostPerTriangleInFirstPlans = 10;
+constexpr std::size_t MostInThinLayers = 50000;
+constexpr std::size_t MostInStacks = 200000;
+
 /** One attempt to refine the surface, by one plan. */
 class SurfaceRefiner
 {
@@ -410,15 +419,14 @@ void SurfaceAttempts::Keep(DelaunaySurfaceRefinerOutput&& output)
 
 /**
  * Refines by a plan, then with facets that are plane in double precision only, and with the rules for
- * corners, until an attempt ends. Others follow: what ends so hardly ever takes as many points as it
- * may. The flatness stays as the last attempt had it.
+ * corners, until an attempt ends. The flatness stays as the last attempt had it.
  */
 void SurfaceAttempts::RunUsual(SurfaceRefinementPlan plan)
 {
   if (plan.GivesUp)
   {
-    plan.MostPoints = 4000;
-    plan.MostPerTriangle = 10;
+    plan.MostPoints = MostInFirstPlans;
+    plan.MostPerTriangle = MostPerTriangleInFirstPlans;
   }
   this->RunPlan(plan);
   double& flatness = this->Options.StructuralEdges.FlatnessRatio;
@@ -435,16 +443,20 @@ void SurfaceAttempts::RunUsual(SurfaceRefinementPlan plan)
 }
 
 /**
- * Refines with the rules for thin layers, edges before all triangles and after them, and with those for
- * stacks. Any of these takes five times as many points as another one at times. So all are tried,
+ * If nothing has ended yet: refines with the rules for thin layers, edges before all triangles and after
+ * them, and with those for stacks. Any of these takes five times as many points as another one at times. So all are tried,
  * each with at most as many points as the best one so far, and the fewest points are kept. Where a
  * plan does not give up, the first one that ends is taken.
  */
 void SurfaceAttempts::RunThin(const SurfaceRefinementPlan& first)
 {
+  if (!this->IsOpen())
+  {
+    return;
+  }
   const SurfaceCriterion criterion = this->Options.Criterion;
   const bool areEdgesTested = criterion != SurfaceCriterion::Delaunay && !first.IsRelaxed;
-  const auto run = [&](MatchingRules rules, bool areEdgesFirst, std::size_t mostPoints)
+  const auto run = [&](MatchingRules rules, bool areEdgesFirst)
   {
     const bool isBetterWanted = first.GivesUp && this->IsSettled;
     if (this->IsAborted || !(this->IsOpen() || isBetterWanted))
@@ -456,11 +468,11 @@ void SurfaceAttempts::RunThin(const SurfaceRefinementPlan& first)
     plan.AreEdgesLast = !areEdgesFirst;
     if (first.GivesUp)
     {
-      plan.MostPoints = mostPoints;
+      plan.MostPoints = rules == MatchingRules::Stacks ? MostInStacks : MostInThinLayers;
     }
     if (isBetterWanted)
     {
-      plan.MostPoints = std::min(mostPoints, this->Best.NewPoints.size());
+      plan.MostPoints = std::min(plan.MostPoints, this->Best.NewPoints.size());
       plan.MostPerTriangle = 0;
     }
     this->Options.Criterion = areEdgesFirst ? SurfaceCriterion::SmallestSphereAndEdges : criterion;
@@ -469,13 +481,13 @@ void SurfaceAttempts::RunThin(const SurfaceRefinementPlan& first)
   };
   if (areEdgesTested)
   {
-    run(MatchingRules::ThinLayers, true, 50000);
-    run(MatchingRules::Stacks, false, 200000);
+    run(MatchingRules::ThinLayers, true);
+    run(MatchingRules::Stacks, false);
   }
-  run(MatchingRules::ThinLayers, false, 50000);
+  run(MatchingRules::ThinLayers, false);
   if (!areEdgesTested)
   {
-    run(MatchingRules::Stacks, false, 200000);
+    run(MatchingRules::Stacks, false);
   }
 }
 
@@ -489,10 +501,7 @@ Status SurfaceAttempts::Run()
   this->RunUsual(plan);
   const SurfaceCriterion criterion = this->Options.Criterion;
   const bool isStrong = criterion != SurfaceCriterion::Delaunay;
-  if (this->IsOpen())
-  {
-    this->RunThin(plan);
-  }
+  this->RunThin(plan);
   if (isStrong && this->IsOpen())
   {
     // The other order: edges before all triangles by criterion 3.2, which implies 3.1, or after them.
@@ -511,10 +520,7 @@ Status SurfaceAttempts::Run()
     plan.GivesUp = plan.GivesUp && this->Options.MaximumNewPoints == 0;
     flatness = givenFlatness;
     this->RunUsual(plan);
-    if (this->IsOpen())
-    {
-      this->RunThin(plan);
-    }
+    this->RunThin(plan);
   }
   return this->IsAborted ? Status::Aborted() : this->HasBest ? Status() : *this->First;
 }
