@@ -127,8 +127,9 @@ public:
 
   ///@{
   /**
-   * No edge is made shorter: a guard against endless refinement. Points of different sheets may be
-   * closer to each other. Ratio of the bounding box diagonal; default 1e-9; range 0 to 1.
+   * No edge is made shorter: a guard against endless refinement. Far from the origin, where coordinates
+   * are rounded farther, 8 times their rounding is the limit. Points of different sheets may be closer
+   * to each other. Ratio of the bounding box diagonal; default 1e-12; range 0 to 1.
    */
   vtkSetInRangeMacro(MinimumEdgeRatio, double, 0.0, 1.0, "ratio of the bounding box diagonal");
   vtkGetMacro(MinimumEdgeRatio, double);
@@ -167,7 +168,7 @@ protected:
   double MaximumArea = 0.0;
   double MaximumEdgeLength = 0.0;
   double MeshPointClearanceRatio = 1e-3;
-  double MinimumEdgeRatio = 1e-9;
+  double MinimumEdgeRatio = 1e-12;
   int MaximumNewPoints = 0;
 
   vtkIdType NumberOfEdgePoints = 0;

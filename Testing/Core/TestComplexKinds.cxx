@@ -393,6 +393,34 @@ TEST(ComplexKinds, WedgesThinnerThanTheShortestEdge)
 }
 
 /**
+ * Plates less than their size away from the origin, which need edges a little shorter than 1e-9 of
+ * their size.
+ */
+TEST(ComplexKinds, EdgesAreAsShortAsCoordinatesAllow)
+{
+  for (const std::uint64_t seed : { 2601, 9652 })
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    BoundaryTriangulatorOutput triangulated;
+    ASSERT_TRUE(MakePlaced(ComplexKind::TiltedPlates, seed, triangulated));
+    ExpectStrongerFulfilled(triangulated.Surface, 2500u);
+  }
+}
+
+/**
+ * Plates 350,000 times as far away as they are large. With edges of 1e-10 of their size, which is what
+ * their coordinates are rounded by, they are not even Delaunay.
+ */
+TEST(ComplexKinds, EdgesAreLongerThanRounding)
+{
+  BoundaryTriangulatorOutput triangulated;
+  ASSERT_TRUE(MakePlaced(ComplexKind::TiltedPlates, 9244, triangulated));
+  bool isFulfilled = false;
+  EXPECT_LT(MeshComplex(triangulated.Surface, SurfaceCriterion::Delaunay, isFulfilled), 1000u);
+  EXPECT_TRUE(isFulfilled);
+}
+
+/**
  * Plates 3000 times as far away as they are large, which end with edges before all triangles, and
  * others, 80,000 times as far, which end with edges after them.
  */

@@ -25,6 +25,8 @@ CRITERIA = ("Delaunay", "SmallestSphere", "SmallestSphereAndEdges")
 MUST_BE_ZERO = ((), ("equatorial_violations",),
                 ("equatorial_violations", "diametral_violations_structural"))
 INEVITABLE = 4
+# With Steiner points a boundary of 143,000 points, in a slab of 0.001, takes more than 200 seconds.
+TOO_LONG = {"slab_1201.vtp"}
 
 
 class Messages:
@@ -92,10 +94,11 @@ def main():
     failures = []
     print("%-18s %-22s %7s %8s %8s %9s %8s" % (
         "complex", "criterion", "Steiner", "points", "tets", "fulfilled", "seconds"))
+    print("Without Steiner points for their time: " + ", ".join(sorted(TOO_LONG)))
     for name in files:
         path = os.path.join(folder, name)
         for criterion, criterion_name in enumerate(CRITERIA):
-            for has_steiner_points in (False, True):
+            for has_steiner_points in (False,) if name in TOO_LONG else (False, True):
                 start = time.process_time()
                 mesher, messages = mesh(path, criterion, has_steiner_points)
                 grid = mesher.GetOutput(0)

@@ -32,13 +32,11 @@ INEVITABLE = 4
 CLEAN = ("InvertedTetrahedra", "FlatTetrahedra", "NonDelaunayTetrahedra", "FacetSphereViolations",
          "NegativeCouplings")
 
-# With --edges. Two edges that are 0.0006 apart and 2168 long are split down to the smallest edge
-# that the surface stage makes, MinimumEdgeRatio of the diagonal: a warning counts the triangles.
+# With --edges.
 EDGES = ("EdgeSphereViolations",)
 # The same in the validator's words.
 VALIDATOR_CLEAN = ("equatorial_violations",)
 VALIDATOR_EDGES = ("diametral_violations_structural",)
-TOO_SHARP = {"cgal_step"}
 
 # Tetrahedra below the target that are neither in a thin layer nor at a sharp angle, and stay: at a
 # corner of narrow facets that bend by 0.002 degrees the same ones come back at each size.
@@ -125,13 +123,12 @@ def main():
         print("%-28s %8d %7.2f %8d %10d %8.2f" % (
             name, len(angles), others.min() if len(others) else angles.min(), slivers,
             int((kinds == INEVITABLE).sum()), time.process_time() - start), flush=True)
-        are_edges_judged = arguments.edges and name not in TOO_SHARP
-        faults = CLEAN + (EDGES if are_edges_judged else ())
+        faults = CLEAN + (EDGES if arguments.edges else ())
         wrong = ["%d %s" % (summary.GetArray(fault).GetValue(0), fault)
                  for fault in faults if summary.GetArray(fault).GetValue(0)]
         wrong += validate(
             arguments.validator, path, judged, os.path.join(arguments.output, name + ".vtu"),
-            VALIDATOR_CLEAN + (VALIDATOR_EDGES if are_edges_judged else ()))
+            VALIDATOR_CLEAN + (VALIDATOR_EDGES if arguments.edges else ()))
         if slivers > KNOWN_SLIVERS.get(name, 0):
             wrong.append("%d slivers" % slivers)
         if wrong:

@@ -70,7 +70,7 @@ def GeneratePoints(surface, spacing):
 def RefineSurface(name, length, criterion, points=None, angle=0.0):
     return Run(vtkDelaunaySurfaceRefiner(), Triangulate(name), points, Criterion=criterion,
                AccuracyAngle=angle, FlatnessRatio=1e-9, MinimumAngle=0.0, MaximumArea=0.0,
-               MaximumEdgeLength=length, MeshPointClearanceRatio=1e-3, MinimumEdgeRatio=1e-9,
+               MaximumEdgeLength=length, MeshPointClearanceRatio=1e-3, MinimumEdgeRatio=1e-12,
                MaximumNewPoints=0)
 
 

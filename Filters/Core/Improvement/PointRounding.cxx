@@ -4,6 +4,7 @@
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Search/PlaceSearch.h"
+#include "Core/Surface/StructuralEdges.h"
 
 #include <algorithm>
 #include <cmath>
@@ -270,11 +271,7 @@ double PointRounding::Rate(
 
 void PointRounding::Move(const std::vector<char>& isFree, std::vector<Vec3>& points) const
 {
-  double largest = 0.0;
-  for (const Vec3& point : points)
-  {
-    largest = std::max({ largest, std::abs(point.X), std::abs(point.Y), std::abs(point.Z) });
-  }
+  const double largest = GetLargestCoordinate(points);
   const double step =
     std::ldexp(std::numeric_limits<double>::epsilon(), largest > 0.0 ? std::ilogb(largest) : 0);
   std::vector<char> isMoved(points.size(), 0);

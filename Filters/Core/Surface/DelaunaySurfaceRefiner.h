@@ -82,10 +82,11 @@ struct DelaunaySurfaceRefinerOptions
   /** Mesh points closer to the surface, as a ratio of the diagonal, are dropped. >= 0. */
   double MeshPointClearanceRatio = 1e-3;
   /**
-   * No edge is made shorter than this ratio of the diagonal. >= 0. Points of different sheets may be
-   * closer to each other: they are as close as the sheets.
+   * No edge is made shorter than this ratio of the diagonal. >= 0. Far from the origin, where
+   * coordinates are rounded farther, 8 times their rounding is the limit. Points of different sheets may
+   * be closer to each other: they are as close as the sheets.
    */
-  double MinimumEdgeRatio = 1e-9;
+  double MinimumEdgeRatio = 1e-12;
   /**
    * The refinement stops when it has made this many points, except for what the criterion Delaunay
    * needs. 0: 50 for each triangle, at least 200000, or 1000000 where sizes or angles are asked for;

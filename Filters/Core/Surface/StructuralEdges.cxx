@@ -351,16 +351,21 @@ double GetBoundingBoxDiagonal(const std::vector<Vec3>& points)
   return Distance(lower, upper);
 }
 
-double GetFlatness(double flatnessRatio, const std::vector<Vec3>& points)
+double GetLargestCoordinate(const std::vector<Vec3>& points)
 {
   double largest = 0.0;
   for (const Vec3& point : points)
   {
     largest = std::max({ largest, std::abs(point.X), std::abs(point.Y), std::abs(point.Z) });
   }
-  return flatnessRatio > 0.0
-    ? std::max(flatnessRatio * GetBoundingBoxDiagonal(points), CoordinateRounding * largest)
-    : 0.0;
+  return largest;
+}
+
+double GetFlatness(double flatnessRatio, const std::vector<Vec3>& points)
+{
+  return flatnessRatio > 0.0 ? std::max(flatnessRatio * GetBoundingBoxDiagonal(points),
+                                 CoordinateRounding * GetLargestCoordinate(points))
+                             : 0.0;
 }
 
 namespace

@@ -123,6 +123,9 @@ bool IsSmoothEdge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, do
 /** Diagonal of the bounding box of the points; 0 without points. */
 double GetBoundingBoxDiagonal(const std::vector<Vec3>& points);
 
+/** The largest absolute value of a coordinate, which tells how far coordinates are rounded. */
+double GetLargestCoordinate(const std::vector<Vec3>& points);
+
 /** FlatnessRatio as a distance in model units, for a surface with these points. */
 double GetFlatness(double flatnessRatio, const std::vector<Vec3>& points);
 } // namespace cdm

@@ -28,6 +28,11 @@ constexpr std::size_t MostNeedles = 5000;
 constexpr std::size_t NeedlePart = 4;
 /** A point farther from a circumcenter than this, in circumradii, is certainly not cocircular. */
 constexpr double CocircularRadii = 1.0 + 1e-6;
+/**
+ * No edge is made shorter than this part of the largest coordinate, 8 times the rounding of it: the
+ * points of shorter ones are not where they should be, and their triangles lean out of their facet.
+ */
+constexpr double RoundedEdgeRatio = 8.0 * std::numeric_limits<double>::epsilon();
 } // namespace
 
 SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
@@ -38,7 +43,8 @@ SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
     NumberOfSurfacePoints(static_cast<Id>(surface.Points.size())),
     Diagonal(GetBoundingBoxDiagonal(surface.Points)),
     Flatness(GetFlatness(options.StructuralEdges.FlatnessRatio, surface.Points)),
-    MinimumEdge(options.MinimumEdgeRatio * this->Diagonal),
+    MinimumEdge(std::max(options.MinimumEdgeRatio * this->Diagonal,
+      RoundedEdgeRatio * GetLargestCoordinate(surface.Points))),
     Test(this->Points, this->Octree), Limits{ options.MaximumEdgeLength, options.MaximumArea,
       options.MinimumAngle, std::move(sizing) },
     Proofs(this->Points)

@@ -288,7 +288,7 @@ class vtkDelaunaySurfaceRefiner(_Stage):
     properties = {
         **_SURFACE,
         "MeshPointClearanceRatio": 1e-3,
-        "MinimumEdgeRatio": 1e-9,
+        "MinimumEdgeRatio": 1e-12,
         "MaximumNewPoints": 0,
     }
 
