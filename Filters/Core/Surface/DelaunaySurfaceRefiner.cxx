@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -32,6 +33,9 @@ constexpr std::size_t MostInFirstPlans = 4000;
 constexpr std::size_t MostPerTriangleInFirstPlans = 10;
 constexpr std::size_t MostInThinLayers = 50000;
 constexpr std::size_t MostInStacks = 200000;
+/** The largest numbers of tests of needles (SurfaceRefinementPlan) in thin layers, at first and at last. */
+constexpr std::size_t MostNeedlesInThinLayers = 5000;
+constexpr std::size_t MostNeedlesAtLast = 100000;
 
 /** One attempt to refine the surface, by one plan. */
 class SurfaceRefiner
@@ -51,6 +55,12 @@ public:
    * Returns whether any of them was not marked before.
    */
   bool FindOverrefined(std::vector<char>& isExact) const;
+
+  /** Whether the plan gave up at needles. */
+  bool HasTooManyNeedles() const
+  {
+    return this->Refinement && this->Refinement->HasTooManyNeedles();
+  }
 
   /** Whether no limit was reached: all triangles are as the plan wants them. */
   bool IsSettled() const
@@ -320,8 +330,12 @@ public:
   Status Run();
 
 private:
-  void RunPlan(const SurfaceRefinementPlan& plan);
+  /** Rules for thin layers, and whether edges are refined before all triangles. */
+  using ThinWay = std::pair<MatchingRules, bool>;
+
+  bool RunPlan(const SurfaceRefinementPlan& plan);
   void RunUsual(SurfaceRefinementPlan plan);
+  void RunThinWay(const SurfaceRefinementPlan& first, const ThinWay& way);
   void RunThin(const SurfaceRefinementPlan& first);
   bool HasSizes() const
   {
@@ -356,6 +370,8 @@ private:
   bool IsSettled = false;
   /** Whether the facets of the last attempt were plane but for rounding. */
   bool HasRoundedFacets = false;
+  /** Those that gave up at needles. */
+  std::set<ThinWay> StoppedByNeedles;
   double Begin = 0.0;
 };
 
@@ -370,8 +386,9 @@ ExecutionContext SurfaceAttempts::GetNextPart()
 /**
  * Refines by one plan. If curved facets or flips keep it from ending, the edges there become
  * structural, and it is tried again.
+ * @return whether the plan gave up at needles
  */
-void SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
+bool SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
 {
   for (int attempt = 0;; ++attempt)
   {
@@ -390,7 +407,7 @@ void SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
         this->HasRoundedFacets = output.Report.HasRoundedFacets;
         this->Keep(std::move(output));
       }
-      return;
+      return refiner.HasTooManyNeedles();
     }
     if (attempt == LargestNumberOfAttempts)
     {
@@ -442,11 +459,43 @@ void SurfaceAttempts::RunUsual(SurfaceRefinementPlan plan)
   }
 }
 
+/** Refines with rules for thin layers, if nothing has ended yet or if fewer points are wanted. */
+void SurfaceAttempts::RunThinWay(const SurfaceRefinementPlan& first, const ThinWay& way)
+{
+  const bool isBetterWanted = first.GivesUp && this->IsSettled;
+  if (this->IsAborted || !(this->IsOpen() || isBetterWanted))
+  {
+    return;
+  }
+  const auto [rules, areEdgesFirst] = way;
+  SurfaceRefinementPlan plan = first;
+  plan.Rules = rules;
+  plan.AreEdgesLast = !areEdgesFirst;
+  if (first.GivesUp)
+  {
+    plan.MostPoints = rules == MatchingRules::Stacks ? MostInStacks : MostInThinLayers;
+    plan.MostNeedles = std::max(first.MostNeedles, MostNeedlesInThinLayers);
+  }
+  if (isBetterWanted)
+  {
+    plan.MostPoints = std::min(plan.MostPoints, this->Best.NewPoints.size());
+    plan.MostPerTriangle = 0;
+  }
+  const SurfaceCriterion criterion = this->Options.Criterion;
+  this->Options.Criterion = areEdgesFirst ? SurfaceCriterion::SmallestSphereAndEdges : criterion;
+  if (this->RunPlan(plan))
+  {
+    this->StoppedByNeedles.insert(way);
+  }
+  this->Options.Criterion = criterion;
+}
+
 /**
  * If nothing has ended yet: refines with the rules for thin layers, edges before all triangles and after
- * them, and with those for stacks. Any of these takes five times as many points as another one at times. So all are tried,
- * each with at most as many points as the best one so far, and the fewest points are kept. Where a
- * plan does not give up, the first one that ends is taken.
+ * them, and with those for stacks. Any of these takes five times as many points as another one at times.
+ * So all are tried, each with at most as many points as the best one so far, and the fewest points are
+ * kept. Where a plan does not give up, the first one that ends is taken. With more needles allowed than
+ * at first, only those are tried again that gave up at them.
  */
 void SurfaceAttempts::RunThin(const SurfaceRefinementPlan& first)
 {
@@ -454,40 +503,19 @@ void SurfaceAttempts::RunThin(const SurfaceRefinementPlan& first)
   {
     return;
   }
-  const SurfaceCriterion criterion = this->Options.Criterion;
-  const bool areEdgesTested = criterion != SurfaceCriterion::Delaunay && !first.IsRelaxed;
-  const auto run = [&](MatchingRules rules, bool areEdgesFirst)
+  const bool areEdgesTested =
+    this->Options.Criterion != SurfaceCriterion::Delaunay && !first.IsRelaxed;
+  const std::vector<ThinWay> ways = areEdgesTested
+    ? std::vector<ThinWay>{ { MatchingRules::ThinLayers, true }, { MatchingRules::Stacks, false },
+        { MatchingRules::ThinLayers, false } }
+    : std::vector<ThinWay>{ { MatchingRules::ThinLayers, false },
+        { MatchingRules::Stacks, false } };
+  for (const ThinWay& way : ways)
   {
-    const bool isBetterWanted = first.GivesUp && this->IsSettled;
-    if (this->IsAborted || !(this->IsOpen() || isBetterWanted))
+    if (first.MostNeedles <= MostNeedlesInThinLayers || this->StoppedByNeedles.count(way) != 0)
     {
-      return;
+      this->RunThinWay(first, way);
     }
-    SurfaceRefinementPlan plan = first;
-    plan.Rules = rules;
-    plan.AreEdgesLast = !areEdgesFirst;
-    if (first.GivesUp)
-    {
-      plan.MostPoints = rules == MatchingRules::Stacks ? MostInStacks : MostInThinLayers;
-    }
-    if (isBetterWanted)
-    {
-      plan.MostPoints = std::min(plan.MostPoints, this->Best.NewPoints.size());
-      plan.MostPerTriangle = 0;
-    }
-    this->Options.Criterion = areEdgesFirst ? SurfaceCriterion::SmallestSphereAndEdges : criterion;
-    this->RunPlan(plan);
-    this->Options.Criterion = criterion;
-  };
-  if (areEdgesTested)
-  {
-    run(MatchingRules::ThinLayers, true);
-    run(MatchingRules::Stacks, false);
-  }
-  run(MatchingRules::ThinLayers, false);
-  if (!areEdgesTested)
-  {
-    run(MatchingRules::Stacks, false);
   }
 }
 
@@ -511,6 +539,13 @@ Status SurfaceAttempts::Run()
     flatness = givenFlatness;
     this->RunUsual(other);
     this->Options.Criterion = criterion;
+  }
+  if (isStrong && plan.GivesUp && this->IsOpen())
+  {
+    // Rounded coordinates make needles, of which some surfaces have many before they end.
+    SurfaceRefinementPlan patient = plan;
+    patient.MostNeedles = MostNeedlesAtLast;
+    this->RunThin(patient);
   }
   if (isStrong && this->IsOpen())
   {

@@ -20,11 +20,7 @@ constexpr std::size_t ReportInterval = 256;
 
 /** The largest number of new points where sizes or angles are asked for. */
 constexpr std::size_t MostForSizes = 1000000;
-/**
- * A plan that may give up does so after so many tests of needles that are bad, or as many as a
- * quarter of the points for each triangle: it has come down to rounding errors.
- */
-constexpr std::size_t MostNeedles = 5000;
+/** See SurfaceRefinementPlan::MostNeedles. */
 constexpr std::size_t NeedlePart = 4;
 /** A point farther from a circumcenter than this, in circumradii, is certainly not cocircular. */
 constexpr double CocircularRadii = 1.0 + 1e-6;
@@ -57,8 +53,7 @@ SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
   this->UsualMaximum =
     makeId(std::max(this->Limits.HasAny() ? MostForSizes : plan.MostPoints, forTriangles) +
       meshPoints.size());
-  this->MaximumNeedles = makeId(
-    std::max(std::min(MostNeedles, plan.MostPoints / NeedlePart), forTriangles / NeedlePart));
+  this->MaximumNeedles = makeId(std::max(plan.MostNeedles, forTriangles / NeedlePart));
   this->MaximumNewPoints =
     options.MaximumNewPoints > 0 ? options.MaximumNewPoints : this->UsualMaximum;
   this->Octree.Insert(this->Points);
@@ -692,8 +687,7 @@ Status SurfaceRefinement::Refine(const ExecutionContext& context)
     {
       return range;
     }
-    this->HasGivenUp =
-      this->HasGivenUp || (this->Plan.GivesUp && this->NumberOfNeedles > this->MaximumNeedles);
+    this->HasGivenUp = this->HasGivenUp || this->HasTooManyNeedles();
     if (this->IsFull() && !this->IsRescuing())
     {
       this->Plan.GivesUp ? this->GiveUp() : this->StartRescue();

@@ -57,6 +57,11 @@ struct SurfaceRefinementPlan
    */
   std::size_t MostPoints = 20000;
   std::size_t MostPerTriangle = 50;
+  /**
+   * A plan that may give up does so after so many tests of needles that are bad, or a quarter of the
+   * points for each triangle, if that is more: it has come down to rounding errors.
+   */
+  std::size_t MostNeedles = 1000;
 };
 
 class SurfaceRefinement
@@ -133,6 +138,11 @@ public:
   bool IsUnresolved(Id triangle) const;
   /** How many triangles and edges are not as they are to be, whatever the plan has relaxed. */
   Id GetNumberOfFailures() const { return this->NumberOfFailures; }
+  /** Whether it was needles at which the plan gave up. */
+  bool HasTooManyNeedles() const
+  {
+    return this->Plan.GivesUp && this->NumberOfNeedles > this->MaximumNeedles;
+  }
   bool IsDelaunay(Id triangle) const;
   /** Whether limits may have left triangles that are larger than asked for. */
   bool MayBeTooCoarse() const
