@@ -3,8 +3,8 @@
 
     TestComplexes.py --shared FOLDER --validator PROGRAM --output FOLDER
 
-Each is meshed by the composite mesher with each criterion, with and without Steiner points. Slabs
-may miss a stronger criterion: then there is a mesh, a warning, and the mark Unresolved on the
+Each is meshed by the composite mesher with each criterion, and but for most slabs also with Steiner points.
+One slab may miss a stronger criterion: then there is a mesh, a warning, and the mark Unresolved on the
 triangles. All others have to fulfil it. Tetrahedra that miss the radius-edge ratio or the dihedral
 angle, which are many at such angles, come with a warning. An independent validator has to find each
 mesh Delaunay and conforming. Prints a table. Exit status 77: no complexes.
@@ -25,8 +25,11 @@ CRITERIA = ("Delaunay", "SmallestSphere", "SmallestSphereAndEdges")
 MUST_BE_ZERO = ((), ("equatorial_violations",),
                 ("equatorial_violations", "diametral_violations_structural"))
 INEVITABLE = 4
-# With Steiner points a boundary of 143,000 points, in a slab of 0.001, takes more than 200 seconds.
-TOO_LONG = {"slab_1201.vtp"}
+# Slabs have 130,000 to 270,000 points on the boundary. With Steiner points they take 15 to 40 seconds.
+TOO_LONG = {"slab_1017.vtp", "slab_1040.vtp", "slab_1063.vtp", "slab_1086.vtp", "slab_1132.vtp",
+            "slab_1155.vtp", "slab_1224.vtp", "slab_1247.vtp", "slab_1270.vtp"}
+# Two facets at 1e-6 radians in a slab of 0.001.
+MISSED = {"slab_1132.vtp"}
 
 
 class Messages:
@@ -57,13 +60,13 @@ def mesh(path, criterion, has_steiner_points):
     return mesher, messages
 
 
-def find_faults(mesher, messages, is_thin):
+def find_faults(mesher, messages, may_miss):
     """What is wrong without a look at the mesh's geometry, and whether the criterion is fulfilled."""
     wrong = ["%d errors" % messages.errors] if messages.errors else []
     if mesher.GetOutput(0).GetNumberOfCells() == 0:
         return wrong + ["no mesh"], False
     is_fulfilled = not mesher.GetOutputDataObject(1).GetCellData().HasArray("Unresolved")
-    if not is_fulfilled and not is_thin:
+    if not is_fulfilled and not may_miss:
         wrong.append("the criterion is missed")
     if not is_fulfilled and not messages.warnings:
         wrong.append("no warning")
@@ -102,7 +105,7 @@ def main():
                 start = time.process_time()
                 mesher, messages = mesh(path, criterion, has_steiner_points)
                 grid = mesher.GetOutput(0)
-                wrong, is_fulfilled = find_faults(mesher, messages, name.startswith("slab"))
+                wrong, is_fulfilled = find_faults(mesher, messages, name in MISSED)
                 print("%-18s %-22s %7s %8d %8d %9s %8.2f" % (
                     name, criterion_name, has_steiner_points, grid.GetNumberOfPoints(),
                     grid.GetNumberOfCells(), is_fulfilled, time.process_time() - start), flush=True)

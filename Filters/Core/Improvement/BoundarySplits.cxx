@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/BoundarySplits.h"
 
+#include "Core/Basics/IdLimits.h"
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Predicates.h"
 
@@ -13,6 +14,13 @@ namespace cdm
 {
 namespace
 {
+/**
+ * One run may make so many points, and so many for each split. What makes more has run away: it is in
+ * thin stacks, for which the usual rules are not enough.
+ */
+constexpr std::size_t MostPoints = 1000;
+constexpr std::size_t MostPerSplit = 20;
+
 bool Contains(const std::vector<TriangleIds>& sorted, const TriangleIds& key)
 {
   return std::binary_search(sorted.begin(), sorted.end(), key);
@@ -30,13 +38,23 @@ std::vector<Vec3> CollectPointsInside(const DynamicTetrahedralization& mesh, Id 
   }
   return points;
 }
+
+/** A plan with the usual rules, which gives up where a run makes too many points. */
+SurfaceRefinementPlan MakePlan()
+{
+  SurfaceRefinementPlan plan;
+  plan.GivesUp = true;
+  plan.MostNeedles = LargestId;
+  return plan;
+}
 } // namespace
 
 BoundarySplits::BoundarySplits(DynamicTetrahedralization& mesh, Id firstInside,
   TriangleMesh& surface, std::vector<StructuralEdge>& edges,
   const DelaunaySurfaceRefinerOptions& options, const SizingField& sizing)
   : Mesh(mesh), FirstInside(firstInside), Surface(surface), Edges(edges),
-    Refinement(surface, edges, CollectPointsInside(mesh, firstInside), options, sizing, true),
+    Refinement(
+      surface, edges, CollectPointsInside(mesh, firstInside), options, sizing, true, MakePlan()),
     SourceCells(surface.SourceCells)
 {
   this->SurfacePoints.resize(surface.Points.size());
@@ -113,6 +131,7 @@ Status BoundarySplits::Run(const ChangedPoints& changed, std::vector<Id>& triang
 {
   this->Changed.clear();
   this->ChangedTriangles.clear();
+  this->Refinement.AllowNewPoints(MostPoints + MostPerSplit * (triangles.size() + edges.size()));
   Status status = this->IsUsable() ? this->FollowPoints(changed, context) : Status();
   this->CanGoOn = this->CanGoOn && status.IsOk() && this->Update();
   const Id numberOfPoints = static_cast<Id>(this->Surface.Points.size());
@@ -187,7 +206,8 @@ bool BoundarySplits::Update()
   std::vector<Id> touched = this->Refinement.TakeTouched();
   const bool isResolved = std::none_of(
     touched.begin(), touched.end(), [this](Id t) { return this->Refinement.IsUnresolved(t); });
-  if (!isResolved || this->Refinement.IsRelaxed() || next > this->FirstInside)
+  this->IsFull = this->Refinement.IsFull();
+  if (!isResolved || this->IsFull || next > this->FirstInside)
   {
     return false;
   }

@@ -143,6 +143,8 @@ public:
    */
   bool SplitBoundary(std::vector<Id> moved, const DelaunaySurfaceRefinerOptions& options,
     const SizingField& sizing, const ExecutionContext& context, Status& status);
+  /** Whether the last splits took far more points than they were: see BoundarySplits.h. */
+  bool HaveSplitsRunAway() const { return this->Splits && this->Splits->HasRunAway(); }
   /** Triangles of the surface that the last splits have made or may have changed, ascending. */
   const std::vector<Id>& GetSplitTriangles() const { return this->Splits->GetChangedTriangles(); }
 

@@ -465,10 +465,15 @@ void SteinerPointRounds::NoteState()
 
 /**
  * Goes back to the noted state, because the requested splits would leave triangles whose smallest
- * spheres are not empty. Part of the splits may have been made already.
+ * spheres are not empty, or take far too many points. Part of the splits may have been made already.
  */
 Status SteinerPointRounds::RestoreState(const ExecutionContext& context)
 {
+  if (this->Mesh)
+  {
+    this->CollectReport();
+    this->Mesh.reset();
+  }
   this->HasSplitNothing = true;
   this->HasFinalBoundary = true;
   this->Report.BoundaryPoints -=
@@ -506,7 +511,9 @@ Status SteinerPointRounds::SplitInPlace()
   }
   if (!isDone)
   {
-    return this->RemakeMesh();
+    // What has run away would do so in a new mesh, too.
+    const bool isInVain = this->Mesh->HaveSplitsRunAway() && !this->Noted.Surface.Points.empty();
+    return isInVain ? this->RestoreState(this->GetContext()) : this->RemakeMesh();
   }
   ++this->Report.Rounds;
   this->HasSplitNothing = after == before;

@@ -10,7 +10,8 @@
  * (DelaunaySurfaceRefiner.h) and tetrahedralized anew with the points inside of the mesh so far
  * (AdvancingFrontTetrahedralizer.h).
  *
- * Splits may leave triangles whose smallest spheres cannot be emptied, or two sheets that become one.
+ * Splits may leave triangles whose smallest spheres cannot be emptied, or two sheets that become one, or
+ * take far more points than they are, in thin stacks.
  * Then the last noted state comes back, and the boundary is final.
  */
 #ifndef cdmSteinerPointRounds_h

@@ -27,12 +27,12 @@ constexpr int LargestNumberOfAttempts = 20;
 
 /**
  * The largest number of new points of plans that may give up, or so many for each triangle. What ends by
- * the first plans hardly ever takes as many; thin stacks of many sheets need 191,000 at times.
+ * the first plans hardly ever takes as many; thin stacks of many sheets need 265,000 at times.
  */
 constexpr std::size_t MostInFirstPlans = 4000;
 constexpr std::size_t MostPerTriangleInFirstPlans = 10;
 constexpr std::size_t MostInThinLayers = 50000;
-constexpr std::size_t MostInStacks = 200000;
+constexpr std::size_t MostInStacks = 300000;
 /** The largest numbers of tests of needles (SurfaceRefinementPlan) in thin layers, at first and at last. */
 constexpr std::size_t MostNeedlesInThinLayers = 5000;
 constexpr std::size_t MostNeedlesAtLast = 100000;
@@ -330,8 +330,11 @@ public:
   Status Run();
 
 private:
-  /** Rules for thin layers, and whether edges are refined before all triangles. */
-  using ThinWay = std::pair<MatchingRules, bool>;
+  /**
+   * Rules for thin layers, whether edges are refined before all triangles, and whether only matches
+   * that are nearer to a corner cut triangles there at half of the distance (SurfaceRefinementPlan).
+   */
+  using ThinWay = std::tuple<MatchingRules, bool, bool>;
 
   bool RunPlan(const SurfaceRefinementPlan& plan);
   void RunUsual(SurfaceRefinementPlan plan);
@@ -370,7 +373,7 @@ private:
   bool IsSettled = false;
   /** Whether the facets of the last attempt were plane but for rounding. */
   bool HasRoundedFacets = false;
-  /** Those that gave up at needles. */
+  /** Those that gave up at needles, with few points. */
   std::set<ThinWay> StoppedByNeedles;
   double Begin = 0.0;
 };
@@ -386,7 +389,7 @@ ExecutionContext SurfaceAttempts::GetNextPart()
 /**
  * Refines by one plan. If curved facets or flips keep it from ending, the edges there become
  * structural, and it is tried again.
- * @return whether the plan gave up at needles
+ * @return whether the plan gave up at needles, with few points
  */
 bool SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
 {
@@ -397,6 +400,8 @@ bool SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
     SurfaceRefiner refiner(this->Input, this->Options, plan, part, output);
     const Status status = refiner.Run();
     this->IsAborted = status.IsAborted();
+    const bool isStoppedByNeedles =
+      refiner.HasTooManyNeedles() && output.NewPoints.size() < MostInThinLayers;
     if (this->IsAborted || this->IsStoppedByUser(output) ||
       !refiner.FindOverrefined(this->Options.StructuralEdges.IsExact))
     {
@@ -407,7 +412,7 @@ bool SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
         this->HasRoundedFacets = output.Report.HasRoundedFacets;
         this->Keep(std::move(output));
       }
-      return refiner.HasTooManyNeedles();
+      return isStoppedByNeedles;
     }
     if (attempt == LargestNumberOfAttempts)
     {
@@ -467,10 +472,15 @@ void SurfaceAttempts::RunThinWay(const SurfaceRefinementPlan& first, const ThinW
   {
     return;
   }
-  const auto [rules, areEdgesFirst] = way;
+  const auto [rules, areEdgesFirst, cutsArcs] = way;
+  if (cutsArcs && this->IsSettled)
+  {
+    return;
+  }
   SurfaceRefinementPlan plan = first;
   plan.Rules = rules;
   plan.AreEdgesLast = !areEdgesFirst;
+  plan.CutsArcs = cutsArcs;
   if (first.GivesUp)
   {
     plan.MostPoints = rules == MatchingRules::Stacks ? MostInStacks : MostInThinLayers;
@@ -491,11 +501,12 @@ void SurfaceAttempts::RunThinWay(const SurfaceRefinementPlan& first, const ThinW
 }
 
 /**
- * If nothing has ended yet: refines with the rules for thin layers, edges before all triangles and after
- * them, and with those for stacks. Any of these takes five times as many points as another one at times.
- * So all are tried, each with at most as many points as the best one so far, and the fewest points are
- * kept. Where a plan does not give up, the first one that ends is taken. With more needles allowed than
- * at first, only those are tried again that gave up at them.
+ * If nothing has ended yet: refines with the rules for thin layers, edges before all triangles and
+ * after them, and with those for stacks, in two ways. Any of these takes five times as many points as
+ * another one at times. So all are tried, each with at most as many points as the best one so far, and
+ * the fewest points are kept; the second way for stacks only if nothing else ends. Where a plan does
+ * not give up, the first one that ends is taken. With more needles allowed than at first, only those
+ * are tried again that gave up at them.
  */
 void SurfaceAttempts::RunThin(const SurfaceRefinementPlan& first)
 {
@@ -505,11 +516,12 @@ void SurfaceAttempts::RunThin(const SurfaceRefinementPlan& first)
   }
   const bool areEdgesTested =
     this->Options.Criterion != SurfaceCriterion::Delaunay && !first.IsRelaxed;
-  const std::vector<ThinWay> ways = areEdgesTested
-    ? std::vector<ThinWay>{ { MatchingRules::ThinLayers, true }, { MatchingRules::Stacks, false },
-        { MatchingRules::ThinLayers, false } }
-    : std::vector<ThinWay>{ { MatchingRules::ThinLayers, false },
-        { MatchingRules::Stacks, false } };
+  std::vector<ThinWay> ways{ { MatchingRules::ThinLayers, areEdgesTested, false },
+    { MatchingRules::Stacks, false, false }, { MatchingRules::Stacks, false, true } };
+  if (areEdgesTested)
+  {
+    ways.emplace_back(MatchingRules::ThinLayers, false, false);
+  }
   for (const ThinWay& way : ways)
   {
     if (first.MostNeedles <= MostNeedlesInThinLayers || this->StoppedByNeedles.count(way) != 0)

@@ -57,6 +57,11 @@ constexpr double LayerGapRatio = 0.1;
 constexpr double LayerEndRatio = 0.1;
 /** In stacks, how far a match leans toward steeper facets, as a part of what others bear. */
 constexpr double LeanRatio = 0.25;
+
+bool HaveCommonPoint(const EdgeIds& a, const EdgeIds& b)
+{
+  return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
+}
 } // namespace
 
 /**
@@ -110,7 +115,9 @@ bool PartnerPoints::PlaceOnLine(
     way = foot + shift;
     along = 0.5 * (direction + line);
     passing = -1.0;
-    if (AreForLayers(this->Rules) && squaredSine > PassingSquaredSine)
+    // Edges with a common corner do not pass each other there, as rounding may have it.
+    if (AreForLayers(this->Rules) && squaredSine > PassingSquaredSine &&
+      !HaveCommonPoint(edges[other], edges[own]))
     {
       // Feet of the common perpendicular, here and on the other edge.
       const double foothold = way + distance;

@@ -381,6 +381,12 @@ void SurfaceRefinement::StartRescue()
   this->EdgeQueue.clear();
 }
 
+void SurfaceRefinement::AllowNewPoints(std::size_t count)
+{
+  this->MaximumNewPoints =
+    static_cast<Id>(std::min<std::size_t>(this->NewPoints.size() + count, LargestId / 8));
+}
+
 /** Triangles that are still to be looked at count as bad. */
 void SurfaceRefinement::GiveUp()
 {

@@ -47,6 +47,12 @@ struct SurfaceRefinementPlan
   /** Whether edges are made fine enough after all triangles, where they count. */
   bool AreEdgesLast = false;
   /**
+   * In stacks: whether a triangle at a corner is cut at half of the distance only for a match that is
+   * nearer to the corner than what it matches. For others the arc is cut. There are surfaces that end
+   * with either, but not with the other.
+   */
+  bool CutsArcs = false;
+  /**
    * Whether to give up at the largest number of points. Otherwise the refinement then goes on with
    * what the criterion Delaunay needs.
    */
@@ -114,6 +120,8 @@ public:
   const std::vector<PointParents>& GetNewPoints() const { return this->NewPoints; }
   Id GetNumberOfEdgePoints() const { return this->NumberOfEdgePoints; }
   Id GetNumberOfFlips() const { return this->Flips->GetNumberOfFlips(); }
+  /** From now on at most so many new points are made. */
+  void AllowNewPoints(std::size_t count);
   /**
    * Whether as many points have been made as allowed. Then only the criterion Delaunay is refined
    * for.

@@ -379,12 +379,16 @@ bool SurfaceRefinement::IsTooLong(Id t, int corner, Id encroaching) const
   Vec3 outward = (1.0 / Norm(first)) * first + (1.0 / Norm(second)) * second;
   outward = (1.0 / Norm(outward)) * outward;
   const Vec3 center = this->FindCircumcenter(t);
+  const double distance = Norm(q - this->Points[ids[corner]]);
   for (const Id point : { ids[(corner + 1) % 3], ids[(corner + 2) % 3] })
   {
-    // How much nearer the match is to the circumcenter than the point, along the way and across.
+    // How much nearer the match is to the circumcenter than the point: away from the corner, or by the
+    // distance from it, and otherwise.
+    const double radius = Distance(this->Points[point], this->Points[ids[corner]]);
     const Vec3 offset = q - this->Points[point];
     const Vec3 arm = center - this->Points[point];
-    const double along = Dot(offset, outward) * Dot(arm, outward);
+    const double along = this->Plan.CutsArcs ? 0.5 * radius * (radius - distance)
+                                             : Dot(offset, outward) * Dot(arm, outward);
     const double across = Dot(offset, arm) - along;
     if (Norm(offset) < MatchRatio * height && along > 0.0 && along > across)
     {
