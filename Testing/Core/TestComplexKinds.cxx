@@ -504,7 +504,7 @@ TEST(ComplexKinds, TiltedPlates)
 
 TEST(ComplexKinds, SlabTetrahedra)
 {
-  EXPECT_EQ(MeshComplexes(ComplexKind::SlabTetrahedra, 4)[0].Missed.size(), 0u);
+  EXPECT_EQ(MeshComplexes(ComplexKind::SlabTetrahedra, 2)[0].Missed.size(), 0u);
 }
 
 TEST(ComplexKinds, SmallSlabs)

@@ -401,7 +401,7 @@ bool SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
     const Status status = refiner.Run();
     this->IsAborted = status.IsAborted();
     const bool isStoppedByNeedles =
-      refiner.HasTooManyNeedles() && output.NewPoints.size() < MostInThinLayers;
+      refiner.HasTooManyNeedles() && output.NewPoints.size() < 2 * MostNeedlesInThinLayers;
     if (this->IsAborted || this->IsStoppedByUser(output) ||
       !refiner.FindOverrefined(this->Options.StructuralEdges.IsExact))
     {
