@@ -206,8 +206,7 @@ bool BoundarySplits::Update()
   std::vector<Id> touched = this->Refinement.TakeTouched();
   const bool isResolved = std::none_of(
     touched.begin(), touched.end(), [this](Id t) { return this->Refinement.IsUnresolved(t); });
-  this->IsFull = this->Refinement.IsFull();
-  if (!isResolved || this->IsFull || next > this->FirstInside)
+  if (!isResolved || this->HasRunAway() || next > this->FirstInside)
   {
     return false;
   }

@@ -58,13 +58,14 @@ public:
    * surface that were moved, in the surface or in both. Triangles that have got a new point at them by then, and edges that are
    * split already, are left out. If the mesh has to be made anew, the lists keep what is left,
    * beginning with the split that failed. That happens when no reserved id is left, when
-   * rounding has made something that does not fit, or when the splits take far more points than they are. The object cannot be used any more then.
+   * rounding has made something that does not fit, or when the splits take far more points than they
+   * are. The object cannot be used any more then.
    */
   Status Run(const ChangedPoints& changed, std::vector<Id>& triangles, std::vector<EdgeIds>& edges,
     const ExecutionContext& context);
   bool IsUsable() const { return this->CanGoOn; }
   /** Whether that is because the last run took far more points than it had splits to make. */
-  bool HasRunAway() const { return this->IsFull; }
+  bool HasRunAway() const { return this->Refinement.IsFull(); }
   /** Interior points have got higher ids: DynamicTetrahedralization::ReservePoints(). */
   void SetFirstInside(Id firstInside) { this->FirstInside = firstInside; }
 
@@ -111,7 +112,6 @@ private:
   std::vector<StructuralEdge>& Edges;
   SurfaceRefinement Refinement;
   bool CanGoOn = true;
-  bool IsFull = false;
   /** SourceCells of the surface when the object was made. */
   const std::vector<Id> SourceCells;
   /** For each structural edge its segment in the refinement. */

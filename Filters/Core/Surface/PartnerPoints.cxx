@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Surface/PartnerPoints.h"
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/MatchingPoints.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
@@ -57,11 +58,6 @@ constexpr double LayerGapRatio = 0.1;
 constexpr double LayerEndRatio = 0.1;
 /** In stacks, how far a match leans toward steeper facets, as a part of what others bear. */
 constexpr double LeanRatio = 0.25;
-
-bool HaveCommonPoint(const EdgeIds& a, const EdgeIds& b)
-{
-  return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
-}
 } // namespace
 
 /**
@@ -117,7 +113,7 @@ bool PartnerPoints::PlaceOnLine(
     passing = -1.0;
     // Edges with a common corner do not pass each other there, as rounding may have it.
     if (AreForLayers(this->Rules) && squaredSine > PassingSquaredSine &&
-      !HaveCommonPoint(edges[other], edges[own]))
+      !Contains(edges[own], edges[other][0]) && !Contains(edges[own], edges[other][1]))
     {
       // Feet of the common perpendicular, here and on the other edge.
       const double foothold = way + distance;
