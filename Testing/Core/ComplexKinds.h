@@ -44,16 +44,19 @@ enum class ComplexKind
   /** A box cut by planes that are almost parallel. */
   TiltedPlates,
   /** Slabs as above, of at most eight points. */
-  SmallSlabs
+  SmallSlabs,
+  /** 30 points in a slab of 1 x 1 x 0.001. */
+  ManySheets
 };
-constexpr int NumberOfComplexKinds = 9;
+constexpr int NumberOfComplexKinds = 10;
 /** Seeds of one kind are so far apart. The kinds from there on take those of the first ones. */
 constexpr std::uint64_t SeedStep = 8;
 
 inline const char* GetComplexKindName(ComplexKind kind)
 {
   static const char* const names[NumberOfComplexKinds] = { "CubeTetrahedra", "GridTetrahedra",
-    "SlabTetrahedra", "Fan", "Pyramids", "VoronoiCells", "Boxes", "TiltedPlates", "SmallSlabs" };
+    "SlabTetrahedra", "Fan", "Pyramids", "VoronoiCells", "Boxes", "TiltedPlates", "SmallSlabs",
+    "ManySheets" };
   return names[static_cast<int>(kind)];
 }
 
@@ -91,6 +94,8 @@ public:
       case ComplexKind::SmallSlabs:
         return this->MakeTetrahedra(this->MakePoints(
           this->Choose(5, 8), { 1.0, 1.0, std::pow(10.0, -this->Pick(2.0, 5.0)) }));
+      case ComplexKind::ManySheets:
+        return this->MakeTetrahedra(this->MakePoints(30, { 1.0, 1.0, 1e-3 }));
     }
     return {};
   }

@@ -22,6 +22,13 @@ constexpr std::size_t ReportInterval = 256;
 constexpr std::size_t MostForSizes = 1000000;
 /** See SurfaceRefinementPlan::MostNeedles. */
 constexpr std::size_t NeedlePart = 4;
+/**
+ * Plans for stacks give up with more points in facets than this, and so many for each point on an
+ * edge. Those that ended had at most 13 for each; a slab with facets at 2e-7 radians, which cannot
+ * end, had 150 and took 100 s.
+ */
+constexpr std::size_t MostInFacets = 20000;
+constexpr std::size_t MostPerEdgePoint = 25;
 /** A point farther from a circumcenter than this, in circumradii, is certainly not cocircular. */
 constexpr double CocircularRadii = 1.0 + 1e-6;
 /**
@@ -675,6 +682,14 @@ void SurfaceRefinement::ProcessEdge()
   }
 }
 
+/** Whether a stack gets points in facets that do not match those on edges any more. */
+bool SurfaceRefinement::HasTooManyInFacets() const
+{
+  const std::size_t onEdges = static_cast<std::size_t>(this->NumberOfEdgePoints);
+  return this->Plan.GivesUp && this->Plan.Rules == MatchingRules::Stacks &&
+    this->NewPoints.size() > MostInFacets + (1 + MostPerEdgePoint) * onEdges;
+}
+
 Status SurfaceRefinement::Refine(const ExecutionContext& context)
 {
   // A step may leave more to do than before: what is reported never goes back.
@@ -693,7 +708,7 @@ Status SurfaceRefinement::Refine(const ExecutionContext& context)
     {
       return range;
     }
-    this->HasGivenUp = this->HasGivenUp || this->HasTooManyNeedles();
+    this->HasGivenUp = this->HasGivenUp || this->HasTooManyNeedles() || this->HasTooManyInFacets();
     if (this->IsFull() && !this->IsRescuing())
     {
       this->Plan.GivesUp ? this->GiveUp() : this->StartRescue();

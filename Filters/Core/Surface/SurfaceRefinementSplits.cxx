@@ -360,9 +360,26 @@ bool SurfaceRefinement::IsMatchedByEnd(Id segment, Id encroaching, const Vec3& p
 }
 
 /**
- * Whether a triangle with a corner of the input is too long, as seen from there: a point that
- * matches another of its points encroaches on it, as the match is not exact in the direction of the
- * corner.
+ * Whether the corner of a triangle matches an encroaching point, and the triangle's other points are
+ * equally far from there. A point at height h above the facet, and s along it from the corner, with s
+ * far below h, is outside of the sphere of what is shorter than h^2/s.
+ */
+bool SurfaceRefinement::IsMatchedByCorner(Id t, int corner, const Vec3& encroaching) const
+{
+  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+  const Vec3 first = this->Points[ids[(corner + 1) % 3]] - this->Points[ids[corner]];
+  const Vec3 second = this->Points[ids[(corner + 2) % 3]] - this->Points[ids[corner]];
+  const Vec3 arm = encroaching - this->Points[ids[corner]];
+  const Vec3 normal = Cross(first, second);
+  const Vec3 height = (Dot(arm, normal) / SquaredNorm(normal)) * normal;
+  const auto [shorter, longer] = std::minmax(Norm(first), Norm(second));
+  return longer <= EqualRadii * shorter && Norm(arm - height) < CloseMatchRatio * Norm(height);
+}
+
+/**
+ * Whether a triangle with a corner of the input is too long, as seen from there. The corner matches
+ * a point that is in the triangle's sphere all the same. Or a point that matches another corner is,
+ * as the match is not exact in the direction of this one.
  */
 bool SurfaceRefinement::IsTooLong(Id t, int corner, Id encroaching) const
 {
@@ -372,6 +389,10 @@ bool SurfaceRefinement::IsTooLong(Id t, int corner, Id encroaching) const
   }
   const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
   const Vec3& q = this->Points[encroaching];
+  if (this->IsMatchedByCorner(t, corner, q))
+  {
+    return true;
+  }
   const Vec3 first = this->Points[ids[(corner + 1) % 3]] - this->Points[ids[corner]];
   const Vec3 second = this->Points[ids[(corner + 2) % 3]] - this->Points[ids[corner]];
   const Vec3 normal = Cross(first, second);
