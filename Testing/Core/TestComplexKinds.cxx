@@ -528,6 +528,12 @@ TEST(ComplexKinds, SlabsOfManySheetsEnd)
   ExpectUnplacedFulfilled(ComplexKind::SlabTetrahedra, 6, 90000u);
 }
 
+/** Thirty points in a slab of 1e-3, which have 91,700 with 3.1 and 3.2. */
+TEST(ComplexKinds, ManySheets)
+{
+  ExpectUnplacedFulfilled(ComplexKind::ManySheets, 4, 110000u);
+}
+
 /** Five points in a slab of 4e-5: edges that pass each other were halved towards that place. */
 TEST(ComplexKinds, EdgesThatPassEachOtherAreSplitThere)
 {

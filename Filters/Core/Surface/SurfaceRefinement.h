@@ -281,7 +281,6 @@ private:
   Id FindPassingSegment(Id t, const Vec3& position);
   Vec3 FindCircumcenter(Id t) const;
   bool HasTooManyInFacets() const;
-  bool IsMatchedByCorner(Id t, int corner, const Vec3& encroaching) const;
   bool IsTooLong(Id t, int corner, Id encroaching) const;
   bool FindShellPoint(Id t, Id encroaching, Vec3& target) const;
   bool IsMatchedByEnd(Id segment, Id encroaching, const Vec3& position) const;

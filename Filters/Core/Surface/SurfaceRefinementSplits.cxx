@@ -36,6 +36,22 @@ constexpr double PassingSine = 0.5;
 constexpr double MatchRatio = 1.1;
 /** Distances from a corner that are as equal as that count as equal. */
 constexpr double EqualRadii = 1.01;
+
+/**
+ * Whether the corner of a triangle matches an encroaching point, and the triangle's other points are
+ * equally far from there. A point at height h above the facet, and s along it from the corner, with s
+ * far below h, is outside of the sphere of what is shorter than h^2/s.
+ * @param first,second from the corner to the triangle's other points
+ * @param encroaching from the corner to that point, at this height above the facet
+ */
+bool IsMatchedByCorner(
+  const Vec3& first, const Vec3& second, const Vec3& encroaching, double height)
+{
+  const auto [shorter, longer] = std::minmax({ Norm(first), Norm(second) });
+  // s^2 + h^2 with s below CloseMatchRatio h.
+  return longer <= EqualRadii * shorter &&
+    SquaredNorm(encroaching) < (1.0 + CloseMatchRatio * CloseMatchRatio) * height * height;
+}
 } // namespace
 
 bool SurfaceRefinement::SplitSegment(Id segment, Id encroaching)
@@ -360,23 +376,6 @@ bool SurfaceRefinement::IsMatchedByEnd(Id segment, Id encroaching, const Vec3& p
 }
 
 /**
- * Whether the corner of a triangle matches an encroaching point, and the triangle's other points are
- * equally far from there. A point at height h above the facet, and s along it from the corner, with s
- * far below h, is outside of the sphere of what is shorter than h^2/s.
- */
-bool SurfaceRefinement::IsMatchedByCorner(Id t, int corner, const Vec3& encroaching) const
-{
-  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-  const Vec3 first = this->Points[ids[(corner + 1) % 3]] - this->Points[ids[corner]];
-  const Vec3 second = this->Points[ids[(corner + 2) % 3]] - this->Points[ids[corner]];
-  const Vec3 arm = encroaching - this->Points[ids[corner]];
-  const Vec3 normal = Cross(first, second);
-  const Vec3 height = (Dot(arm, normal) / SquaredNorm(normal)) * normal;
-  const auto [shorter, longer] = std::minmax(Norm(first), Norm(second));
-  return longer <= EqualRadii * shorter && Norm(arm - height) < CloseMatchRatio * Norm(height);
-}
-
-/**
  * Whether a triangle with a corner of the input is too long, as seen from there. The corner matches
  * a point that is in the triangle's sphere all the same. Or a point that matches another corner is,
  * as the match is not exact in the direction of this one.
@@ -389,18 +388,19 @@ bool SurfaceRefinement::IsTooLong(Id t, int corner, Id encroaching) const
   }
   const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
   const Vec3& q = this->Points[encroaching];
-  if (this->IsMatchedByCorner(t, corner, q))
-  {
-    return true;
-  }
   const Vec3 first = this->Points[ids[(corner + 1) % 3]] - this->Points[ids[corner]];
   const Vec3 second = this->Points[ids[(corner + 2) % 3]] - this->Points[ids[corner]];
   const Vec3 normal = Cross(first, second);
-  const double height = std::abs(Dot(q - this->Points[ids[corner]], normal)) / Norm(normal);
+  const Vec3 fromCorner = q - this->Points[ids[corner]];
+  const double height = std::abs(Dot(fromCorner, normal)) / Norm(normal);
+  if (IsMatchedByCorner(first, second, fromCorner, height))
+  {
+    return true;
+  }
   Vec3 outward = (1.0 / Norm(first)) * first + (1.0 / Norm(second)) * second;
   outward = (1.0 / Norm(outward)) * outward;
   const Vec3 center = this->FindCircumcenter(t);
-  const double distance = Norm(q - this->Points[ids[corner]]);
+  const double distance = Norm(fromCorner);
   for (const Id point : { ids[(corner + 1) % 3], ids[(corner + 2) % 3] })
   {
     // How much nearer the match is to the circumcenter than the point: away from the corner, or by the
