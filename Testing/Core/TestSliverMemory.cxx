@@ -40,3 +40,18 @@ TEST(SliverMemory, SliversAreHopelessUntilAPointGetsOtherNeighbors)
   memory.SetChanged({ 1, 2, 3, 6 });
   EXPECT_FALSE(memory.IsHopeless(sliver, SliverAttempt::Move));
 }
+
+TEST(SliverMemory, FlatTetrahedraAreUnroundableUntilAPointGetsOtherNeighbors)
+{
+  SliverMemory memory;
+  const TetrahedronIds flat{ 4, 5, 6, 7 };
+  EXPECT_FALSE(memory.IsUnroundable(flat));
+  memory.SetUnroundable({ 7, 6, 5, 4 });
+  EXPECT_TRUE(memory.IsUnroundable(flat));
+  // That is another matter than slivers.
+  EXPECT_FALSE(memory.IsHopeless(flat, SliverAttempt::Move));
+  memory.SetChanged({ 1, 2, 3, 8 });
+  EXPECT_TRUE(memory.IsUnroundable(flat));
+  memory.SetChanged({ 1, 2, 3, 4 });
+  EXPECT_FALSE(memory.IsUnroundable(flat));
+}

@@ -27,17 +27,54 @@ constexpr double SameCellRatio = 1e-3;
 constexpr int MaximumSteps = 4;
 /** Distance of a sphere's center from the span of the others, in lengths of it, that is enough. */
 constexpr double EnoughMargin = 1.0;
+
+/** The circle through three points. */
+class Circle
+{
+public:
+  Circle(const Vec3& a, const Vec3& b, const Vec3& c)
+    : A(a), B(b), C(c), Normal(Cross(b - a, c - a))
+  {
+    // The radius is the product of all edges by twice the length of the normal.
+    const double height2 = 0.25 * SquaredNorm(b - a) * SquaredNorm(c - a) * SquaredNorm(b - c);
+    this->LargestHeight2 = RoundingRatio * RoundingRatio * height2;
+  }
+
+  /** Whether a point is on it but for rounding. Most are not even in the plane. */
+  bool IsOn(const Vec3& point) const
+  {
+    const double height = Dot(point - this->A, this->Normal);
+    if (!(height * height < this->LargestHeight2))
+    {
+      return false;
+    }
+    const Vec3 center = GetCircumcenter(this->A, this->B, this->C);
+    const double radius = Distance(center, this->A);
+    return std::abs(Distance(point, center) - radius) < RoundingRatio * radius;
+  }
+
+private:
+  const Vec3 A;
+  const Vec3 B;
+  const Vec3 C;
+  const Vec3 Normal;
+  /** Of a point in the plane, times the length of the normal, squared. */
+  double LargestHeight2;
+};
 } // namespace
 
-PointRounding::PointRounding(
-  const TetMesh& mesh, const TriangleMesh& surface, const std::vector<Id>& flat)
-  : Mesh(mesh), Surface(surface), Flat(flat), IsFlat(mesh.Tetrahedra.size(), 0)
+PointRounding::PointRounding(const TetMesh& mesh, const TriangleMesh& surface,
+  const std::vector<Id>& flat, const std::vector<Id>& wanted)
+  : Mesh(mesh), Surface(surface), Wanted(wanted), IsFlat(mesh.Tetrahedra.size(), 0)
 {
   const Id numberOfPoints = static_cast<Id>(surface.Points.size());
   std::vector<char> isUsed(surface.Points.size(), 0);
   for (Id t : flat)
   {
     this->IsFlat[t] = 1;
+  }
+  for (Id t : wanted)
+  {
     for (Id point : mesh.Tetrahedra[t])
     {
       isUsed[point] = 1;
@@ -178,21 +215,18 @@ std::vector<PointRounding::Quadrangle> PointRounding::FindQuadrangles(
     {
       // A facet at the point, and what lies with it on a circle.
       const std::array<Id, 2> ends{ others[i % 3], others[(i + 1) % 3] };
-      if (std::max(ends[0], ends[1]) >= numberOfPoints)
+      const Id beyond = neighbors[(place + 1 + (i + 2) % 3) % 4];
+      const bool isDone = beyond != NoId && beyond / 4 < t && !this->IsFlat[beyond / 4];
+      if (isDone || std::max(ends[0], ends[1]) >= numberOfPoints)
       {
         continue;
       }
       cells.assign(1, t);
-      addCell(neighbors[(place + 1 + (i + 2) % 3) % 4]);
-      const Vec3 normal = Cross(points[ends[0]] - points[point], points[ends[1]] - points[point]);
-      const Vec3 center = GetCircumcenter(points[point], points[ends[0]], points[ends[1]]);
-      const double radius = Distance(center, points[point]);
+      addCell(beyond);
+      const Circle circle(points[point], points[ends[0]], points[ends[1]]);
       for (Id other : around)
       {
-        const Vec3 way = points[other] - center;
-        if (other != ends[0] && other != ends[1] &&
-          std::abs(Dot(way, normal)) < RoundingRatio * radius * Norm(normal) &&
-          std::abs(Norm(way) - radius) < RoundingRatio * radius)
+        if (other != ends[0] && other != ends[1] && circle.IsOn(points[other]))
         {
           add({ ends[0], ends[1], other }, cells, cells.size() == 2);
         }
@@ -269,13 +303,15 @@ double PointRounding::Rate(
   return smallest;
 }
 
-void PointRounding::Move(const std::vector<char>& isFree, std::vector<Vec3>& points) const
+std::vector<Id> PointRounding::Move(
+  const std::vector<char>& isFree, std::vector<Vec3>& points) const
 {
   const double largest = GetLargestCoordinate(points);
   const double step =
     std::ldexp(std::numeric_limits<double>::epsilon(), largest > 0.0 ? std::ilogb(largest) : 0);
   std::vector<char> isMoved(points.size(), 0);
-  for (Id t : this->Flat)
+  std::vector<Id> left;
+  for (Id t : this->Wanted)
   {
     const TetrahedronIds& ids = this->Mesh.Tetrahedra[t];
     if (std::any_of(ids.begin(), ids.end(), [&](Id id) { return isMoved[id]; }))
@@ -308,11 +344,14 @@ void PointRounding::Move(const std::vector<char>& isFree, std::vector<Vec3>& poi
         }
       }
     }
-    if (moved != NoId)
+    if (moved == NoId)
     {
-      points[moved] = best;
-      isMoved[moved] = 1;
+      left.push_back(t);
+      continue;
     }
+    points[moved] = best;
+    isMoved[moved] = 1;
   }
+  return left;
 }
 } // namespace cdm

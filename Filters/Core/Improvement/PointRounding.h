@@ -16,8 +16,8 @@
  * that axis.
  *
  * Positions are rated in floating point: the choice does not decide topology.
- * Deterministic. Cost: O(n) for n tetrahedra, and about a hundred positions for each point of a flat
- * one.
+ * Deterministic. Cost: O(n) for n tetrahedra, and about a hundred positions for each point of a
+ * wanted one.
  */
 #ifndef cdmPointRounding_h
 #define cdmPointRounding_h
@@ -37,16 +37,19 @@ class PointRounding
 public:
   /**
    * @param mesh has the surface's points first; dead tetrahedra have the vertex NoId
-   * @param flat tetrahedra that are flat but for rounding, of points of the surface
+   * @param flat all tetrahedra that are flat but for rounding, of points of the surface
+   * @param wanted those of them that are to be removed
    */
-  PointRounding(const TetMesh& mesh, const TriangleMesh& surface, const std::vector<Id>& flat);
+  PointRounding(const TetMesh& mesh, const TriangleMesh& surface, const std::vector<Id>& flat,
+    const std::vector<Id>& wanted);
 
   /**
-   * Moves at most one point of each flat tetrahedron.
+   * Moves at most one point of each wanted tetrahedron.
    * @param isFree for each point of the surface: whether it may be moved
    * @param points of the surface, which are moved
+   * @return wanted tetrahedra for which no position is better
    */
-  void Move(const std::vector<char>& isFree, std::vector<Vec3>& points) const;
+  std::vector<Id> Move(const std::vector<char>& isFree, std::vector<Vec3>& points) const;
 
 private:
   /**
@@ -73,10 +76,10 @@ private:
 
   const TetMesh& Mesh;
   const TriangleMesh& Surface;
-  const std::vector<Id>& Flat;
+  const std::vector<Id>& Wanted;
   /** One for each tetrahedron. */
   std::vector<char> IsFlat;
-  /** Tetrahedra and triangles at points of flat tetrahedra. */
+  /** Tetrahedra and triangles at points of wanted tetrahedra. */
   IdLists Stars;
   IdLists Triangles;
 };

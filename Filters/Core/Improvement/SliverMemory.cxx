@@ -27,6 +27,12 @@ SliverMemory::Times& SliverMemory::Get(Id name)
   return times[place];
 }
 
+bool SliverMemory::HasChangedSince(std::int64_t time, const TetrahedronIds& names) const
+{
+  return std::any_of(
+    names.begin(), names.end(), [&](Id name) { return this->Get(name).Change > time; });
+}
+
 void SliverMemory::SetChanged(const TetrahedronIds& names)
 {
   ++this->Time;
@@ -56,8 +62,18 @@ bool SliverMemory::IsHopeless(const TetrahedronIds& names, SliverAttempt last) c
 {
   const auto failure = this->Failures.find(Sorted(names));
   return failure != this->Failures.end() && failure->second.Last >= last &&
-    std::none_of(names.begin(), names.end(),
-      [&](Id name) { return this->Get(name).Change > failure->second.Time; });
+    !this->HasChangedSince(failure->second.Time, names);
+}
+
+void SliverMemory::SetUnroundable(const TetrahedronIds& names)
+{
+  this->FailedRoundings[Sorted(names)] = this->Time;
+}
+
+bool SliverMemory::IsUnroundable(const TetrahedronIds& names) const
+{
+  const auto failure = this->FailedRoundings.find(Sorted(names));
+  return failure != this->FailedRoundings.end() && !this->HasChangedSince(failure->second, names);
 }
 
 void SliverMemory::SetImmovable(Id name)

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -740,11 +741,23 @@ std::vector<Vec3> MoveSurfacePoints(double target, const std::vector<char>& isFr
 }
 
 std::vector<Vec3> RoundSurfacePoints(
-  const std::vector<Id>& flat, const std::vector<char>& isFree, const RefinedMesh& mesh)
+  const std::vector<Id>& flat, const std::vector<char>& isFree, RefinedMesh& mesh)
 {
   const TriangleMesh& surface = mesh.GetBoundary().Surface;
+  SliverMemory& memory = mesh.GetMemory();
+  const auto getNames = [&mesh](Id t) { return mesh.GetNames(mesh.GetMesh().Tetrahedra[t]); };
   std::vector<Vec3> positions = surface.Points;
-  PointRounding(mesh.GetMesh(), surface, flat).Move(isFree, positions);
+  std::vector<Id> wanted;
+  std::copy_if(flat.begin(), flat.end(), std::back_inserter(wanted),
+    [&](Id t) { return !memory.IsUnroundable(getNames(t)); });
+  if (!wanted.empty())
+  {
+    const PointRounding rounding(mesh.GetMesh(), surface, flat, wanted);
+    for (Id t : rounding.Move(isFree, positions))
+    {
+      memory.SetUnroundable(getNames(t));
+    }
+  }
   return positions;
 }
 } // namespace cdm

@@ -169,13 +169,14 @@ std::vector<Vec3> MoveSurfacePoints(double target, const std::vector<char>& isFr
 
 /**
  * Perturbs the last bits of surface points, for tetrahedra that are flat but for rounding
- * (PointRounding.h).
+ * (PointRounding.h). Those for which that was in vain are tried again when something has changed at
+ * one of their points.
  * @param flat these tetrahedra
  * @param isFree one for each point of the surface, whether it may be moved
  * @return the new positions of the surface's points
  */
 std::vector<Vec3> RoundSurfacePoints(
-  const std::vector<Id>& flat, const std::vector<char>& isFree, const RefinedMesh& mesh);
+  const std::vector<Id>& flat, const std::vector<char>& isFree, RefinedMesh& mesh);
 } // namespace cdm
 
 #endif
