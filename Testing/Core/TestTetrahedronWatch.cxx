@@ -48,9 +48,11 @@ std::vector<Id> FindAll(const DynamicTetrahedralization& mesh)
   return found;
 }
 
-std::vector<Id> Update(const DynamicTetrahedralization& mesh, TetrahedronWatch& watch)
+std::vector<Id> Update(
+  const DynamicTetrahedralization& mesh, TetrahedronWatch& watch, int numberOfThreads = 1)
 {
-  std::vector<Id> found = watch.Update(mesh, [&](Id t) { return HasProperty(mesh, t); });
+  ThreadTeam team(numberOfThreads);
+  std::vector<Id> found = watch.Update(mesh, team, [&](Id t) { return HasProperty(mesh, t); });
   std::sort(found.begin(), found.end());
   return found;
 }
@@ -80,6 +82,20 @@ TEST(TetrahedronWatch, AsksForWhatIsNewOnly)
     EXPECT_EQ(watch.GetNumberOfTests() - before, changed);
     EXPECT_EQ(watch.GetNumberOfVisits() - visits, changed);
   }
+}
+
+TEST(TetrahedronWatch, AsksOnSeveralThreads)
+{
+  std::mt19937_64 generator(5);
+  DynamicTetrahedralization mesh(MakeRandomMesh(2000, generator));
+  TetrahedronWatch watch;
+  EXPECT_EQ(Update(mesh, watch, 4), FindAll(mesh));
+  EXPECT_EQ(watch.GetNumberOfTests(), mesh.GetNumberOfTetrahedra());
+  for (int i = 0; i < 100; ++i)
+  {
+    Insert(DrawPoint(generator), mesh);
+  }
+  EXPECT_EQ(Update(mesh, watch, 4), FindAll(mesh));
 }
 
 /** More changes than the mesh remembers, and more than it has tetrahedra. */

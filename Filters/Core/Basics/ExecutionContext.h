@@ -6,9 +6,10 @@
 #ifndef cdmExecutionContext_h
 #define cdmExecutionContext_h
 
-#include "Core/Basics/Threads.h"
+#include "Core/Basics/ThreadTeam.h"
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -27,17 +28,20 @@ public:
   /** Returns true if the stage is to stop as soon as possible. */
   using AbortFunction = std::function<bool()>;
 
-  ExecutionContext() = default;
+  ExecutionContext() : ExecutionContext(1) {}
   ExecutionContext(ProgressFunction progress, AbortFunction abort, int numberOfThreads = 1)
     : Progress(std::move(progress)), Abort(std::move(abort)),
-      NumberOfThreads(static_cast<int>(cdm::GetNumberOfThreads(numberOfThreads)))
+      Threads(
+        std::make_shared<ThreadTeam>(static_cast<int>(cdm::GetNumberOfThreads(numberOfThreads))))
   {
   }
   /** A silent context that cannot be aborted. Threads: 0: one for each processor core. */
   explicit ExecutionContext(int numberOfThreads) : ExecutionContext({}, {}, numberOfThreads) {}
 
   /** At least 1. */
-  int GetNumberOfThreads() const { return this->NumberOfThreads; }
+  int GetNumberOfThreads() const { return this->Threads->GetNumberOfThreads(); }
+  /** Threads for short pieces of work, shared by the contexts of all parts. */
+  const std::shared_ptr<ThreadTeam>& GetThreads() const { return this->Threads; }
 
   /** Report progress within this context's share; false if the stage has to return Aborted. */
   bool Continue(double fraction, const char* activity) const
@@ -76,7 +80,7 @@ private:
   AbortFunction Abort;
   double Begin = 0.0;
   double End = 1.0;
-  int NumberOfThreads = 1;
+  std::shared_ptr<ThreadTeam> Threads;
 };
 } // namespace cdm
 

@@ -14,7 +14,7 @@
 #define cdmParallelLoop_h
 
 #include "Core/Basics/ExecutionContext.h"
-#include "Core/Basics/Threads.h"
+#include "Core/Basics/ThreadTeam.h"
 
 #include <algorithm>
 #include <atomic>

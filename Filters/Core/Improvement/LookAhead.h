@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LookAhead.h
- * @brief Threads that search what is to be done about the next slivers of a list, before their turn
- *   comes.
+ * @brief Threads that search what is to be done about the next items of a list, before their turn
+ *   comes: slivers, or tetrahedra that break a limit.
  *
- * Slivers are mended one after the other, as each change of the mesh matters for those that follow.
- * But a search sees some hundred tetrahedra only, and few of these are replaced before it is the
- * sliver's turn.
+ * They are mended one after the other, as each change of the mesh matters for those that follow.
+ * But a search sees some ten or hundred tetrahedra only, and few of these are replaced before it is
+ * the item's turn.
  *
  * Method:
- *  1. the next slivers are searched at the same time, each by one thread, in the mesh as it is;
- *     the search notes which tetrahedra it has seen;
- *  2. in its turn, the change of a sliver is what was found, if all of these tetrahedra are still
+ *  1. the next items are searched at the same time, each by one thread, in the mesh as it is; the
+ *     search notes which tetrahedra it has seen;
+ *  2. in its turn, the change of an item is what was found, if all of these tetrahedra are still
  *     there; if not, the caller searches again.
  *
  * Guarantees: the changes are those of one thread, in the same order, whatever the number of
- * threads. Cost: one search in fourteen is repeated, in a mesh of 186,000 tetrahedra.
+ * threads. Cost: one search for a sliver in fourteen is repeated, in a mesh of 186,000 tetrahedra.
  */
 #ifndef cdmLookAhead_h
 #define cdmLookAhead_h
 
-#include "Core/Basics/Threads.h"
 #include "Core/Improvement/RefinedMesh.h"
 
 #include <algorithm>
@@ -46,76 +45,85 @@ public:
 
   explicit LookAhead(const RefinedMesh& mesh) : Mesh(mesh) {}
 
+  /** So many items are searched ahead at once: the closer they are, the more searches are late. */
+  std::size_t GetBatchSize() const
+  {
+    const std::size_t size = this->Mesh.GetMesh().Tetrahedra.size();
+    const auto threads = static_cast<std::size_t>(this->Mesh.GetThreads().GetNumberOfThreads());
+    const std::size_t most = std::clamp(size / TetrahedraPerItem, FewestItems, MostItems);
+    return threads > 1 ? std::max(most, WantedPerThread * threads) : 1;
+  }
+
   /** Forgets what was found: another list begins. */
-  void Clear() { this->Ahead.clear(); }
+  void Clear() { this->End = 0; }
 
   /**
    * The change of item i, or null if it has to be searched.
    * @param count number of items of the list
-   * @param numberOfThreads 1: nothing is searched ahead
    * @param isOpen (i): whether an item is worth a search
-   * @param find (thread, i): the Found of an item, in the mesh as it is; called on threads
+   * @param find (thread, i, found): finds the change of an item, in the mesh as it is; called on
+   *   threads. What found holds is of another item: its memory may be used again
    */
   template <typename IsOpen, typename Find>
-  const Change* Get(
-    std::size_t i, std::size_t count, int numberOfThreads, IsOpen&& isOpen, Find&& find)
+  const Change* Get(std::size_t i, std::size_t count, IsOpen&& isOpen, Find&& find)
   {
-    if (numberOfThreads < 2)
+    if (!this->HasThreads())
     {
       return nullptr;
     }
-    if (this->Ahead.empty() || i >= this->First + this->Ahead.size())
+    if (i >= this->End)
     {
-      this->Search(i, count, numberOfThreads, isOpen, find);
+      this->Search(i, count, isOpen, find);
     }
-    const Foreseen& foreseen = this->Ahead[i - this->First];
-    return foreseen.IsKnown && this->IsUnchanged(foreseen.Result.Visited) ? &foreseen.Result.What
-                                                                          : nullptr;
+    const auto open = std::lower_bound(this->Open.begin(), this->Open.end(), i);
+    if (!this->IsSearched || open == this->Open.end() || *open != i)
+    {
+      return nullptr;
+    }
+    const Found& found = this->Ahead[open - this->Open.begin()];
+    return this->IsUnchanged(found.Visited) ? &found.What : nullptr;
   }
 
 private:
-  struct Foreseen
-  {
-    bool IsKnown = false;
-    Found Result;
-  };
-  /** One sliver for so many tetrahedra is searched ahead: the closer, the more searches are late. */
   static constexpr std::size_t TetrahedraPerItem = 4000;
   static constexpr std::size_t FewestItems = 8;
   static constexpr std::size_t MostItems = 256;
+  static constexpr std::size_t WantedPerThread = 4;
+  /** Threads with fewer would hardly have started before the others are done. */
+  static constexpr std::size_t ItemsPerThread = 2;
+
+  bool HasThreads() const { return this->Mesh.GetThreads().GetNumberOfThreads() > 1; }
 
   template <typename IsOpen, typename Find>
-  void Search(
-    std::size_t first, std::size_t count, int numberOfThreads, IsOpen&& isOpen, Find&& find)
+  void Search(std::size_t first, std::size_t count, IsOpen&& isOpen, Find&& find)
   {
-    const std::size_t most = std::clamp(
-      this->Mesh.GetMesh().Tetrahedra.size() / TetrahedraPerItem, FewestItems, MostItems);
-    this->First = first;
+    const std::size_t most = this->GetBatchSize();
     this->NextStamp = this->Mesh.GetTetrahedra().GetNextStamp();
-    this->Ahead.clear();
-    std::vector<std::size_t> open;
-    for (std::size_t i = first; i < count && open.size() < most; ++i)
+    this->Open.clear();
+    for (this->End = first; this->End < count && this->Open.size() < most; ++this->End)
     {
-      this->Ahead.emplace_back();
-      if (isOpen(i))
+      if (isOpen(this->End))
       {
-        open.push_back(i);
+        this->Open.push_back(this->End);
       }
     }
-    const int threads = static_cast<int>(
-      std::min<std::size_t>(static_cast<std::size_t>(numberOfThreads), open.size()));
-    if (threads < 2)
+    this->Ahead.resize(std::max(this->Ahead.size(), this->Open.size()));
+    ThreadTeam& team = this->Mesh.GetThreads();
+    const int threads =
+      std::min(team.GetNumberOfThreads(), static_cast<int>(this->Open.size() / ItemsPerThread));
+    this->IsSearched = threads > 1;
+    if (!this->IsSearched)
     {
       return;
     }
     std::atomic<std::size_t> next{ 0 };
     this->Mesh.Freeze(true);
-    RunOnThreads(threads,
+    team.Run(threads,
       [&](int thread)
       {
-        for (std::size_t k = next++; k < open.size(); k = next++)
+        for (std::size_t k = next++; k < this->Open.size(); k = next++)
         {
-          this->Ahead[open[k] - first] = { true, find(thread, open[k]) };
+          find(thread, this->Open[k], this->Ahead[k]);
         }
       });
     this->Mesh.Freeze(false);
@@ -129,9 +137,12 @@ private:
   }
 
   const RefinedMesh& Mesh;
-  /** For the items from First on, and the stamp of the first tetrahedron made since then. */
-  std::vector<Foreseen> Ahead;
-  std::size_t First = 0;
+  /** The items before End that are searched, unless that is not worth while, and what was found. */
+  std::vector<std::size_t> Open;
+  bool IsSearched = false;
+  std::vector<Found> Ahead;
+  std::size_t End = 0;
+  /** The stamp of the first tetrahedron made since then. */
   std::int64_t NextStamp = 0;
 };
 } // namespace cdm

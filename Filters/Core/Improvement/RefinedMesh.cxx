@@ -44,13 +44,19 @@ RefinedMesh::RefinedMesh(TetMesh mesh, const RefinedBoundary& boundary,
   const RefinedMeshOptions& options)
   : Mesh(std::move(mesh)), Boundary(boundary), Limits(options.Limits),
     FirstInside(static_cast<Id>(boundary.Surface.Points.size())),
-    MaximumNewPoints(options.MaximumNewPoints), Memory(memory),
+    MaximumNewPoints(options.MaximumNewPoints),
+    Threads(options.Threads ? options.Threads : std::make_shared<ThreadTeam>(1)), Memory(memory),
     Shape(std::make_unique<BoundaryShape>(boundary.Surface, boundary.Edges, boundary.KeptEdges,
       options.SharpPlaneAngle, options.LayerAspectRatio)),
     Requests(boundary.Surface, boundary.KeptEdges,
       [this](Id point, double distance) { return distance >= this->GetClearance(point); }),
     Facts(this->Mesh, this->Limits)
 {
+  const int numberOfThreads = this->Threads->GetNumberOfThreads();
+  for (int i = 0; i < numberOfThreads; ++i)
+  {
+    this->Searches.push_back(this->Mesh.MakeSearch(numberOfThreads > 1));
+  }
   const std::vector<Vec3>& positions = boundary.Surface.Points;
   const std::vector<double>& sizes = options.SurfaceSizes;
   for (std::size_t p = 0; p < positions.size(); ++p)
@@ -354,8 +360,9 @@ std::vector<Id> RefinedMesh::FindFlatter(double target) const
     this->FlatterTarget = target;
     this->Flatter.Forget(0);
   }
+  this->Facts.MakeRoom();
   std::vector<Id> found = this->Flatter.Update(
-    this->Mesh, [this](Id t) { return this->GetAngle(t) < this->FlatterTarget; });
+    this->Mesh, *this->Threads, [this](Id t) { return this->GetAngle(t) < this->FlatterTarget; });
   found.erase(
     std::remove_if(found.begin(), found.end(), [&](Id t) { return !(this->GetAngle(t) < target); }),
     found.end());
@@ -403,7 +410,9 @@ const std::vector<Id>& RefinedMesh::FindFaulty(bool isShapeTested) const
     this->IsFaultyShape = isShapeTested;
     this->Faulty.Forget(0);
   }
-  return this->Faulty.Update(this->Mesh, [&](Id t) { return this->IsFaulty(t, isShapeTested); });
+  this->Facts.MakeRoom();
+  return this->Faulty.Update(
+    this->Mesh, *this->Threads, [&](Id t) { return this->IsFaulty(t, isShapeTested); });
 }
 
 bool RefinedMesh::BreaksLimit(Id tetrahedron) const
@@ -513,17 +522,17 @@ bool RefinedMesh::TouchesOpenFacet(const PointCavity& cavity) const
   return false;
 }
 
-void RefinedMesh::Insert(const Vec3& position)
+void RefinedMesh::Insert(const Vec3& position, const PointCavity& cavity)
 {
   double size = std::numeric_limits<double>::infinity();
-  for (const TriangleIds& facet : this->FoundCavity.Facets)
+  for (const TriangleIds& facet : cavity.Facets)
   {
     for (Id id : facet)
     {
       size = std::min(size, this->Points[id].Size + Distance(position, this->Mesh.GetPoint(id)));
     }
   }
-  this->ChangedInside.push_back(this->Mesh.Insert(position, this->FoundCavity));
+  this->ChangedInside.push_back(this->Mesh.Insert(position, cavity));
   this->Points.push_back({ position, size, true, NoId, this->Memory.MakeName() });
   this->NoteChanges();
   ++this->Report.InsertedPoints;

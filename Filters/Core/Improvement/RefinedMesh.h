@@ -24,6 +24,7 @@
 
 #include "Core/Basics/ExecutionContext.h"
 #include "Core/Basics/Status.h"
+#include "Core/Basics/ThreadTeam.h"
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 #include "Core/Improvement/BoundaryRequests.h"
 #include "Core/Improvement/BoundaryShape.h"
@@ -75,6 +76,8 @@ struct RefinedMeshOptions
   double LayerAspectRatio = 0.0;
   /** Sizes as in InteriorPoint::Size, one for each point of the surface, or empty. */
   std::vector<double> SurfaceSizes;
+  /** What looks ahead; null: nothing does. Results do not depend on it. */
+  std::shared_ptr<ThreadTeam> Threads;
 };
 
 struct RefinedMeshReport
@@ -116,6 +119,12 @@ public:
   bool IsFull() const { return this->Report.InsertedPoints >= this->MaximumNewPoints; }
   const TetrahedronLimits& GetLimits() const { return this->Limits; }
   const RefinedBoundary& GetBoundary() const { return this->Boundary; }
+  ThreadTeam& GetThreads() const { return *this->Threads; }
+  /**
+   * A search in the tetrahedra for each thread, which records if there are several. It lasts as long
+   * as the mesh, so that its marks, one for each tetrahedron, are not made for each pass.
+   */
+  CavitySearch& GetSearch(int thread) { return this->Searches[static_cast<std::size_t>(thread)]; }
   /** The shape of the current surface. */
   const BoundaryShape& GetShape() const { return *this->Shape; }
 
@@ -227,7 +236,8 @@ public:
   /** @param scratch gets what the position encroaches on, if that is why it does */
   bool EncroachesOnBoundary(
     const PointCavity& cavity, const Vec3& position, BoundarySpheres::Encroached& scratch) const;
-  void Insert(const Vec3& position);
+  void Insert(const Vec3& position) { this->Insert(position, this->FoundCavity); }
+  void Insert(const Vec3& position, const PointCavity& cavity);
   /** Inserts a free point again, which was removed, at another position. */
   void Restore(Id point, const Vec3& position);
   /** Notes that a free point has been moved in the tetrahedra. */
@@ -250,6 +260,8 @@ private:
    */
   Id FirstInside;
   Id MaximumNewPoints;
+  const std::shared_ptr<ThreadTeam> Threads;
+  std::vector<CavitySearch> Searches;
   SliverMemory& Memory;
   std::unique_ptr<BoundaryShape> Shape;
   std::unique_ptr<BoundarySplits> Splits;

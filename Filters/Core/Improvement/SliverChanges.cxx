@@ -24,9 +24,8 @@ double GetTangent2(double degrees)
 }
 } // namespace
 
-SliverChanges::SliverChanges(const SliverAim& aim, const RefinedMesh& mesh, bool isRecording)
-  : Goal(aim), Mesh(mesh), Search(mesh.GetTetrahedra().MakeSearch(isRecording)),
-    TargetTangent2(GetTangent2(aim.Target))
+SliverChanges::SliverChanges(const SliverAim& aim, const RefinedMesh& mesh, CavitySearch& search)
+  : Goal(aim), Mesh(mesh), Search(search), TargetTangent2(GetTangent2(aim.Target))
 {
 }
 

@@ -71,10 +71,10 @@ class SliverChanges
 {
 public:
   /**
-   * The mesh has to outlive the object.
-   * @param isRecording whether GetVisited() is needed
+   * Mesh and search have to outlive the object.
+   * @param search in the mesh's tetrahedra; no other one may use it at the same time
    */
-  SliverChanges(const SliverAim& aim, const RefinedMesh& mesh, bool isRecording = false);
+  SliverChanges(const SliverAim& aim, const RefinedMesh& mesh, CavitySearch& search);
 
   /** @param last attempts up to this one are made */
   SliverChange Find(Id tetrahedron, SliverAttempt last);
@@ -148,7 +148,7 @@ private:
 
   const SliverAim Goal;
   const RefinedMesh& Mesh;
-  CavitySearch Search;
+  CavitySearch& Search;
   PointCavity Found;
   /**
    * Smallest angles of the tetrahedra that would fill the cavity, facet by facet. Most of them are

@@ -19,7 +19,7 @@ constexpr std::size_t ReportInterval = 16;
 class Perturbation
 {
 public:
-  Perturbation(const SliverAim& aim, int numberOfThreads, RefinedMesh& mesh);
+  Perturbation(const SliverAim& aim, RefinedMesh& mesh);
 
   /** Begins with a list; slivers at or above the angle are not worth an insertion. */
   void Start(std::vector<Sliver> slivers, double insertedBelow);
@@ -45,12 +45,11 @@ private:
   LookAhead<SliverChange> Ahead;
 };
 
-Perturbation::Perturbation(const SliverAim& aim, int numberOfThreads, RefinedMesh& mesh)
-  : Mesh(mesh), Ahead(mesh)
+Perturbation::Perturbation(const SliverAim& aim, RefinedMesh& mesh) : Mesh(mesh), Ahead(mesh)
 {
-  for (int i = 0; i < numberOfThreads; ++i)
+  for (int i = 0; i < mesh.GetThreads().GetNumberOfThreads(); ++i)
   {
-    this->Changes.emplace_back(aim, mesh, numberOfThreads > 1);
+    this->Changes.emplace_back(aim, mesh, mesh.GetSearch(i));
   }
 }
 
@@ -68,22 +67,28 @@ bool Perturbation::IsHopeless(const Sliver& sliver) const
 
 SliverChange Perturbation::Find(std::size_t i)
 {
-  const auto find = [this](int thread, std::size_t k)
+  const auto find = [this](int thread, std::size_t k, LookAhead<SliverChange>::Found& result)
   {
     SliverChanges& changes = this->Changes[static_cast<std::size_t>(thread)];
     const Sliver& sliver = this->Slivers[k];
-    SliverChange change = changes.Find(sliver.Tetrahedron, this->GetLast(sliver));
-    return LookAhead<SliverChange>::Found{ std::move(change), changes.GetVisited() };
+    result.What = changes.Find(sliver.Tetrahedron, this->GetLast(sliver));
+    result.Visited = changes.GetVisited();
   };
   const SliverChange* const found = this->Ahead.Get(
-    i, this->Slivers.size(), static_cast<int>(this->Changes.size()),
+    i, this->Slivers.size(),
     [this](std::size_t k)
     { return !IsGone(this->Slivers[k], this->Mesh) && !this->IsHopeless(this->Slivers[k]); },
     find);
   // A mesh that was not full then may be full now.
   const bool isAllowed =
     found != nullptr && !(found->What == SliverChange::Kind::Insertion && this->Mesh.IsFull());
-  return isAllowed ? *found : find(0, i).What;
+  if (isAllowed)
+  {
+    return *found;
+  }
+  LookAhead<SliverChange>::Found result;
+  find(0, i, result);
+  return std::move(result.What);
 }
 
 void Perturbation::Make(const SliverChange& change, Id tetrahedron)
@@ -129,7 +134,7 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
   const ExecutionContext& context, RefinedMesh& mesh)
 {
   const SliverAim aim{ MoveRatio * target, false, means != SliverMeans::Moves, effort };
-  Perturbation perturbation(aim, context.GetNumberOfThreads(), mesh);
+  Perturbation perturbation(aim, mesh);
   const IdLists& pointTriangles = mesh.GetShape().PointTriangles;
   BoundaryRequests& requests = mesh.GetRequests();
   // First moves, then new points as well; when neither helps any more, requests.
@@ -201,7 +206,7 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
 Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh& mesh)
 {
   const SliverAim aim{ MoveRatio * target, true };
-  Perturbation perturbation(aim, context.GetNumberOfThreads(), mesh);
+  Perturbation perturbation(aim, mesh);
   perturbation.Start(FindSlivers(aim.Target, aim.IsSharp, mesh), 0.0);
   const std::size_t count = perturbation.GetNumberOfSlivers();
   for (std::size_t i = 0; i < count; ++i)

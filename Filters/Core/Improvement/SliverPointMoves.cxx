@@ -61,10 +61,12 @@ private:
   };
   Status TakeApart(const ExecutionContext& context, Parts& parts) const;
   Status KeepIntact(const ExecutionContext& context, Parts& parts) const;
-  RefinedMesh MakeMesh(Parts& parts) const
+  RefinedMesh MakeMesh(const ExecutionContext& context, Parts& parts) const
   {
+    RefinedMeshOptions options;
+    options.Threads = context.GetThreads();
     return RefinedMesh(parts.Mesh, { parts.Surface, parts.Structural.Edges, parts.IntactEdges },
-      parts.Interior, parts.Memory);
+      parts.Interior, parts.Memory, options);
   }
   void PutTogether(const Parts& parts, const TetMesh& moved);
 
@@ -170,7 +172,7 @@ Status SliverPointMoves::MoveInside(const ExecutionContext& context)
   {
     return status;
   }
-  RefinedMesh mesh = this->MakeMesh(parts);
+  RefinedMesh mesh = this->MakeMesh(context, parts);
   status =
     PerturbSlivers(this->Target, SliverMeans::Moves, SliverEffort, context.Part(0.1, 0.9), mesh);
   status = status.IsOk() ? PerturbSharp(this->Target, context.Part(0.9, 1.0), mesh) : status;
@@ -195,9 +197,8 @@ Status SliverPointMoves::MoveBoundary(const ExecutionContext& context, bool& isM
     {
       return Status::Aborted();
     }
-    RefinedMesh mesh = this->MakeMesh(parts);
-    const std::vector<Vec3> positions =
-      MoveSurfacePoints(this->Target, isFree, true, context.GetNumberOfThreads(), mesh);
+    RefinedMesh mesh = this->MakeMesh(context, parts);
+    const std::vector<Vec3> positions = MoveSurfacePoints(this->Target, isFree, true, mesh);
     std::vector<Vec3> points = this->Mesh.Points;
     std::vector<Id> moved;
     for (Id p = 0; p < static_cast<Id>(positions.size()); ++p)

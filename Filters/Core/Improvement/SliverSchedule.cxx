@@ -224,8 +224,7 @@ bool SliverSchedule::MoveSurfacePoints()
   this->SurfaceMoves.NoteTry();
   return this->Rounds.TakeSurfacePositions(
     cdm::MoveSurfacePoints(target, this->Rounds.GetFreeSurfacePoints(),
-      this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges,
-      this->Rounds.GetContext().GetNumberOfThreads(), this->GetMesh()));
+      this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges, this->GetMesh()));
 }
 
 Status SliverSchedule::RefineShapes()

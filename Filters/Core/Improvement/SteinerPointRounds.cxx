@@ -215,6 +215,7 @@ RefinedMeshOptions SteinerPointRounds::GetMeshOptions() const
   }
   options.LayerAspectRatio = this->Options.LayerAspectRatio;
   options.SurfaceSizes = this->SurfaceSizes;
+  options.Threads = this->Context.GetThreads();
   return options;
 }
 

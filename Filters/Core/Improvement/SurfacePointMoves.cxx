@@ -615,8 +615,8 @@ struct SurfaceMove
 class SliverSurfaceMoves
 {
 public:
-  SliverSurfaceMoves(double target, const std::vector<char>& isFree, bool areEdgesKept,
-    int numberOfThreads, RefinedMesh& mesh);
+  SliverSurfaceMoves(
+    double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh);
 
   /** Passes over all slivers until nothing is moved any more. */
   void Run();
@@ -643,8 +643,8 @@ private:
   LookAhead<SurfaceMove> Ahead;
 };
 
-SliverSurfaceMoves::SliverSurfaceMoves(double target, const std::vector<char>& isFree,
-  bool areEdgesKept, int numberOfThreads, RefinedMesh& mesh)
+SliverSurfaceMoves::SliverSurfaceMoves(
+  double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh)
   : Target(target), IsFree(isFree), Mesh(mesh), Points(mesh.GetBoundary().Surface.Points),
     Ahead(mesh)
 {
@@ -659,6 +659,7 @@ SliverSurfaceMoves::SliverSurfaceMoves(double target, const std::vector<char>& i
   rules.GetClearance = [&mesh](Id point) { return mesh.GetClearance(point); };
   rules.IsImmovable = [&mesh](Id point) { return mesh.IsImmovable(point); };
   const RefinedBoundary& boundary = mesh.GetBoundary();
+  const int numberOfThreads = mesh.GetThreads().GetNumberOfThreads();
   for (int i = 0; i < numberOfThreads; ++i)
   {
     this->Searches.emplace_back(mesh.GetTetrahedra(), boundary.Surface, this->Points,
@@ -669,7 +670,7 @@ SliverSurfaceMoves::SliverSurfaceMoves(double target, const std::vector<char>& i
 
 SurfaceMove SliverSurfaceMoves::Find(std::size_t i)
 {
-  const auto find = [this](int thread, std::size_t k)
+  const auto find = [this](int thread, std::size_t k, LookAhead<SurfaceMove>::Found& result)
   {
     SurfacePointMoves& search = this->Searches[static_cast<std::size_t>(thread)];
     const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[this->Slivers[k].Tetrahedron];
@@ -688,12 +689,18 @@ SurfaceMove SliverSurfaceMoves::Find(std::size_t i)
       }
       move.Immovable.push_back(id);
     }
-    return LookAhead<SurfaceMove>::Found{ move, search.TakeVisited() };
+    result = { std::move(move), search.TakeVisited() };
   };
   const SurfaceMove* const found = this->Ahead.Get(
-    i, this->Slivers.size(), static_cast<int>(this->Searches.size()),
-    [this](std::size_t k) { return this->IsOpen(this->Slivers[k]); }, find);
-  return found != nullptr ? *found : find(0, i).What;
+    i, this->Slivers.size(), [this](std::size_t k) { return this->IsOpen(this->Slivers[k]); },
+    find);
+  if (found != nullptr)
+  {
+    return *found;
+  }
+  LookAhead<SurfaceMove>::Found result;
+  find(0, i, result);
+  return std::move(result.What);
 }
 
 bool SliverSurfaceMoves::Mend(std::size_t i)
@@ -732,10 +739,10 @@ void SliverSurfaceMoves::Run()
 }
 } // namespace
 
-std::vector<Vec3> MoveSurfacePoints(double target, const std::vector<char>& isFree,
-  bool areEdgesKept, int numberOfThreads, RefinedMesh& mesh)
+std::vector<Vec3> MoveSurfacePoints(
+  double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh)
 {
-  SliverSurfaceMoves moves(target, isFree, areEdgesKept, numberOfThreads, mesh);
+  SliverSurfaceMoves moves(target, isFree, areEdgesKept, mesh);
   moves.Run();
   return std::move(moves.GetPoints());
 }

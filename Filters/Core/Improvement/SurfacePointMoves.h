@@ -159,13 +159,12 @@ private:
 /**
  * Moves points of the surface that are corners of slivers, also in the mesh.
  * @param target slivers have a dihedral angle below this. Degrees
- * @param numberOfThreads look ahead (LookAhead.h); the result does not depend on them
  * @param isFree one for each point of the surface, whether it may be moved
  * @param areEdgesKept whether smallest spheres of the kept edges stay empty, too
  * @return the new positions of the surface's points
  */
-std::vector<Vec3> MoveSurfacePoints(double target, const std::vector<char>& isFree,
-  bool areEdgesKept, int numberOfThreads, RefinedMesh& mesh);
+std::vector<Vec3> MoveSurfacePoints(
+  double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh);
 
 /**
  * Perturbs the last bits of surface points, for tetrahedra that are flat but for rounding

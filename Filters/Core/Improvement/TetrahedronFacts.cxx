@@ -20,7 +20,7 @@ TetrahedronFacts::Known& TetrahedronFacts::Get(Id tetrahedron, Known& scratch)
   }
   if (!isIn)
   {
-    this->Facts.resize(this->Mesh.GetMesh().Tetrahedra.size());
+    this->MakeRoom();
   }
   Known& known = this->Facts[tetrahedron];
   if (known.GetStamp() != stamp)

@@ -37,6 +37,11 @@ public:
   bool IsInLayer(Id tetrahedron, const BoundaryShape& shape);
   bool IsAcrossSharp(Id tetrahedron, const BoundaryShape& shape, SharpAngleUse use);
 
+  /**
+   * Makes room for all tetrahedra: until one is added, several threads may ask for facts, each of
+   * other tetrahedra.
+   */
+  void MakeRoom() { this->Facts.resize(this->Mesh.GetMesh().Tetrahedra.size()); }
   /** Forgets facts about tetrahedra with this stamp or a later one. */
   void Forget(std::int64_t first);
   /** Forgets all, and gives the memory back. */

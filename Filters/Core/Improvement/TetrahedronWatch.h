@@ -13,8 +13,12 @@
 #ifndef cdmTetrahedronWatch_h
 #define cdmTetrahedronWatch_h
 
+#include "Core/Basics/ThreadTeam.h"
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -25,27 +29,34 @@ class TetrahedronWatch
 public:
   /**
    * The tetrahedra that have the property, in no order.
+   * @param team on whose threads hasProperty is called if there are many new tetrahedra
    * @param hasProperty called with the id of each tetrahedron that is new since the last update
    */
   template <typename Property>
-  const std::vector<Id>& Update(const DynamicTetrahedralization& mesh, Property&& hasProperty)
+  const std::vector<Id>& Update(
+    const DynamicTetrahedralization& mesh, ThreadTeam& team, Property&& hasProperty)
   {
     this->Keep([&mesh](Id t, std::int64_t stamp) { return mesh.GetStamp(t) == stamp; });
+    this->New.clear();
     const auto visit = [&](Id t)
     {
       ++this->NumberOfVisits;
-      const std::int64_t stamp = mesh.GetStamp(t);
-      if (stamp >= this->NextStamp && !mesh.IsDead(t))
+      if (mesh.GetStamp(t) >= this->NextStamp && !mesh.IsDead(t))
       {
-        ++this->NumberOfTests;
-        if (hasProperty(t))
-        {
-          this->Found.push_back(t);
-          this->Stamps.push_back(stamp);
-        }
+        this->New.push_back(t);
       }
     };
-    mesh.VisitMadeSince(this->NumberMade, this->New, visit);
+    mesh.VisitMadeSince(this->NumberMade, this->Made, visit);
+    this->NumberOfTests += static_cast<std::int64_t>(this->New.size());
+    this->Test(team, hasProperty);
+    for (std::size_t i = 0; i < this->New.size(); ++i)
+    {
+      if (this->HasProperty[i] != 0)
+      {
+        this->Found.push_back(this->New[i]);
+        this->Stamps.push_back(mesh.GetStamp(this->New[i]));
+      }
+    }
     this->NumberMade = mesh.CountMade();
     this->NextStamp = mesh.GetNextStamp();
     return this->Found;
@@ -68,6 +79,31 @@ public:
   std::int64_t GetNumberOfVisits() const { return this->NumberOfVisits; }
 
 private:
+  /** A thread tests so many at a time, which takes some 50 microseconds. */
+  static constexpr std::size_t TestsAtOnce = 256;
+
+  /** Asks for the property of the new tetrahedra. */
+  template <typename Property>
+  void Test(ThreadTeam& team, Property&& hasProperty)
+  {
+    const std::size_t count = this->New.size();
+    this->HasProperty.resize(count);
+    const std::size_t parts = (count + TestsAtOnce - 1) / TestsAtOnce;
+    std::atomic<std::size_t> next{ 0 };
+    team.Run(static_cast<int>(std::min<std::size_t>(parts, team.GetNumberOfThreads())),
+      [&](int)
+      {
+        for (std::size_t part = next++; part < parts; part = next++)
+        {
+          const std::size_t end = std::min(count, (part + 1) * TestsAtOnce);
+          for (std::size_t i = part * TestsAtOnce; i < end; ++i)
+          {
+            this->HasProperty[i] = hasProperty(this->New[i]) ? 1 : 0;
+          }
+        }
+      });
+  }
+
   /** Drops all others of those that were found. */
   template <typename Condition>
   void Keep(const Condition& isKept)
@@ -93,8 +129,10 @@ private:
   std::int64_t NumberOfVisits = 0;
   /** How many tetrahedra the mesh had made at the last update; negative: all have to be visited. */
   std::int64_t NumberMade = -1;
-  /** Work space. */
+  /** Work space: tetrahedra that have been made, those of them that are new, and what these have. */
+  std::vector<Id> Made;
   std::vector<Id> New;
+  std::vector<char> HasProperty;
 };
 } // namespace cdm
 

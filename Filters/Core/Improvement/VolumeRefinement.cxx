@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/VolumeRefinement.h"
 
+#include "Core/Improvement/LookAhead.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -60,6 +62,7 @@ public:
     std::push_heap(this->Tasks.begin(), this->Tasks.end());
   }
 
+  const Task& GetFirst() const { return this->Tasks.front(); }
   Task Pop()
   {
     std::pop_heap(this->Tasks.begin(), this->Tasks.end());
@@ -76,6 +79,170 @@ private:
   std::vector<Task> Tasks;
   std::size_t Limit = SmallestLimit;
 };
+
+/** What is to be done about a tetrahedron: one of these, or nothing. */
+struct Remedy
+{
+  Vec3 Target;
+  /** If that is not empty, splits of the boundary are requested. */
+  BoundarySpheres::Encroached Encroached;
+  bool IsInsertion = false;
+  PointCavity Cavity;
+};
+
+/** Refines tetrahedra, the most urgent one first; threads look ahead. */
+class LimitRefinement
+{
+public:
+  LimitRefinement(bool isShapeTested, RefinedMesh& mesh)
+    : IsShapeTested(isShapeTested), Mesh(mesh), Tasks(mesh.GetTetrahedra()), Ahead(mesh)
+  {
+  }
+  Status Run(const ExecutionContext& context);
+
+private:
+  void Schedule(Id tetrahedron);
+  bool HasTasks();
+  void RunNext();
+  void Find(int thread, const Task& task, Remedy& remedy) const;
+  void Apply(const Task& task, const Remedy& remedy);
+
+  const bool IsShapeTested;
+  RefinedMesh& Mesh;
+  TaskQueue Tasks;
+  /** Tasks taken from the queue, ahead of their turn, and the place of the next one. */
+  std::vector<Task> Batch;
+  std::size_t Next = 0;
+  LookAhead<Remedy> Ahead;
+  /** Work space. */
+  Remedy Found;
+};
+
+void LimitRefinement::Schedule(Id tetrahedron)
+{
+  const DynamicTetrahedralization& tetrahedra = this->Mesh.GetTetrahedra();
+  Vec3 target;
+  double severity = 0.0;
+  const TetrahedronFault fault =
+    this->Mesh.GetLimits().Find(tetrahedra.GetCorners(tetrahedron), true, target, severity);
+  this->Tasks.Push({ severity, tetrahedra.GetStamp(tetrahedron), tetrahedron, fault });
+}
+
+/** Whether there is a task; if so, the batch has one. */
+bool LimitRefinement::HasTasks()
+{
+  if (this->Next == this->Batch.size())
+  {
+    this->Batch.clear();
+    this->Next = 0;
+    this->Ahead.Clear();
+    const std::size_t most = this->Ahead.GetBatchSize();
+    while (this->Batch.size() < most && !this->Tasks.IsEmpty())
+    {
+      const Task task = this->Tasks.Pop();
+      if (!this->Tasks.IsGone(task))
+      {
+        this->Batch.push_back(task);
+      }
+    }
+  }
+  return !this->Batch.empty();
+}
+
+/** Several threads may call it while the mesh does not change. */
+void LimitRefinement::Find(int thread, const Task& task, Remedy& remedy) const
+{
+  const DynamicTetrahedralization& tetrahedra = this->Mesh.GetTetrahedra();
+  CavitySearch& search = this->Mesh.GetSearch(thread);
+  search.StartRecord();
+  remedy.Encroached.Clear();
+  remedy.IsInsertion = false;
+  double severity = 0.0;
+  this->Mesh.GetLimits().Find(
+    tetrahedra.GetCorners(task.Tetrahedron), this->IsShapeTested, remedy.Target, severity);
+  if (!IsFinite(remedy.Target))
+  {
+    return;
+  }
+  this->Mesh.GetShape().Spheres.Find(remedy.Target, remedy.Encroached);
+  remedy.IsInsertion = remedy.Encroached.IsEmpty() &&
+    search.FindCavity(
+      remedy.Target, tetrahedra.GetNumberOfPoints(), task.Tetrahedron, remedy.Cavity) &&
+    (task.Fault != TetrahedronFault::Shape || this->Mesh.IsClear(remedy.Cavity, remedy.Target));
+}
+
+void LimitRefinement::Apply(const Task& task, const Remedy& remedy)
+{
+  if (!remedy.Encroached.IsEmpty())
+  {
+    this->Mesh.GetRequests().AddEncroached(
+      remedy.Target, remedy.Encroached, task.Fault == TetrahedronFault::Shape);
+  }
+  else if (remedy.IsInsertion)
+  {
+    this->Mesh.Insert(remedy.Target, remedy.Cavity);
+    for (Id t : this->Mesh.GetTetrahedra().GetChanged())
+    {
+      if (this->Mesh.IsFaulty(t, this->IsShapeTested))
+      {
+        this->Schedule(t);
+      }
+    }
+  }
+}
+
+/** The most urgent task is the next one of the batch, or one that is newer. */
+void LimitRefinement::RunNext()
+{
+  if (!this->Tasks.IsEmpty() && this->Batch[this->Next] < this->Tasks.GetFirst())
+  {
+    const Task task = this->Tasks.Pop();
+    if (!this->Tasks.IsGone(task))
+    {
+      this->Find(0, task, this->Found);
+      this->Apply(task, this->Found);
+    }
+    return;
+  }
+  const std::size_t i = this->Next++;
+  const Task task = this->Batch[i];
+  if (this->Tasks.IsGone(task))
+  {
+    return;
+  }
+  const Remedy* const found = this->Ahead.Get(
+    i, this->Batch.size(), [this](std::size_t k) { return !this->Tasks.IsGone(this->Batch[k]); },
+    [this](int thread, std::size_t k, LookAhead<Remedy>::Found& result)
+    {
+      this->Find(thread, this->Batch[k], result.What);
+      result.Visited = this->Mesh.GetSearch(thread).GetVisited();
+    });
+  if (found == nullptr)
+  {
+    this->Find(0, task, this->Found);
+  }
+  this->Apply(task, found != nullptr ? *found : this->Found);
+}
+
+Status LimitRefinement::Run(const ExecutionContext& context)
+{
+  for (Id t : this->Mesh.FindFaulty(this->IsShapeTested))
+  {
+    this->Schedule(t);
+  }
+  for (std::size_t done = 0; !this->Mesh.IsFull() && this->HasTasks(); ++done)
+  {
+    const std::size_t left = this->Tasks.GetSize() + this->Batch.size() - this->Next;
+    if (done % ReportInterval == 0 &&
+      !context.Continue(
+        static_cast<double>(done) / static_cast<double>(done + left), "Refining tetrahedra"))
+    {
+      return Status::Aborted();
+    }
+    this->RunNext();
+  }
+  return Status();
+}
 } // namespace
 
 void RemoveClosePoints(double smallest, const SizingField& sizing, RefinedMesh& mesh)
@@ -107,54 +274,6 @@ void RemoveClosePoints(double smallest, const SizingField& sizing, RefinedMesh& 
 
 Status RefineByLimits(bool isShapeTested, const ExecutionContext& context, RefinedMesh& mesh)
 {
-  const DynamicTetrahedralization& tetrahedra = mesh.GetTetrahedra();
-  TaskQueue tasks(tetrahedra);
-  const auto schedule = [&](Id t)
-  {
-    Vec3 target;
-    double severity = 0.0;
-    const TetrahedronFault fault =
-      mesh.GetLimits().Find(tetrahedra.GetCorners(t), true, target, severity);
-    tasks.Push({ severity, tetrahedra.GetStamp(t), t, fault });
-  };
-  for (Id t : mesh.FindFaulty(isShapeTested))
-  {
-    schedule(t);
-  }
-  for (std::size_t done = 0; !tasks.IsEmpty() && !mesh.IsFull(); ++done)
-  {
-    if (done % ReportInterval == 0 &&
-      !context.Continue(static_cast<double>(done) / static_cast<double>(done + tasks.GetSize()),
-        "Refining tetrahedra"))
-    {
-      return Status::Aborted();
-    }
-    const Task task = tasks.Pop();
-    if (tasks.IsGone(task))
-    {
-      continue;
-    }
-    Vec3 target;
-    double severity = 0.0;
-    mesh.GetLimits().Find(tetrahedra.GetCorners(task.Tetrahedron), isShapeTested, target, severity);
-    if (!IsFinite(target))
-    {
-      continue;
-    }
-    const bool isSizeKept = task.Fault == TetrahedronFault::Shape;
-    if (!mesh.RequestEncroached(target, isSizeKept) && mesh.FindCavity(target, task.Tetrahedron) &&
-      (!isSizeKept || mesh.IsClear(mesh.GetCavity(), target)))
-    {
-      mesh.Insert(target);
-      for (Id t : tetrahedra.GetChanged())
-      {
-        if (mesh.IsFaulty(t, isShapeTested))
-        {
-          schedule(t);
-        }
-      }
-    }
-  }
-  return Status();
+  return LimitRefinement(isShapeTested, mesh).Run(context);
 }
 } // namespace cdm

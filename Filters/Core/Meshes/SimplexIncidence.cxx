@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Meshes/SimplexIncidence.h"
 
-#include "Core/Basics/Threads.h"
+#include "Core/Basics/ThreadTeam.h"
 
 #include <numeric>
 
