@@ -43,15 +43,20 @@ public:
     std::vector<Id> Visited;
   };
 
-  explicit LookAhead(const RefinedMesh& mesh) : Mesh(mesh) {}
+  /**
+   * @param itemsPerThread at least so many: threads with fewer would hardly have started before the
+   *   others are done
+   */
+  LookAhead(const RefinedMesh& mesh, std::size_t itemsPerThread)
+    : Mesh(mesh), ItemsPerThread(itemsPerThread)
+  {
+  }
 
   /** So many items are searched ahead at once: the closer they are, the more searches are late. */
   std::size_t GetBatchSize() const
   {
     const std::size_t size = this->Mesh.GetMesh().Tetrahedra.size();
-    const auto threads = static_cast<std::size_t>(this->Mesh.GetThreads().GetNumberOfThreads());
-    const std::size_t most = std::clamp(size / TetrahedraPerItem, FewestItems, MostItems);
-    return threads > 1 ? std::max(most, WantedPerThread * threads) : 1;
+    return this->HasThreads() ? std::clamp(size / TetrahedraPerItem, FewestItems, MostItems) : 1;
   }
 
   /** Forgets what was found: another list begins. */
@@ -88,9 +93,6 @@ private:
   static constexpr std::size_t TetrahedraPerItem = 4000;
   static constexpr std::size_t FewestItems = 8;
   static constexpr std::size_t MostItems = 256;
-  static constexpr std::size_t WantedPerThread = 4;
-  /** Threads with fewer would hardly have started before the others are done. */
-  static constexpr std::size_t ItemsPerThread = 2;
 
   bool HasThreads() const { return this->Mesh.GetThreads().GetNumberOfThreads() > 1; }
 
@@ -109,8 +111,8 @@ private:
     }
     this->Ahead.resize(std::max(this->Ahead.size(), this->Open.size()));
     ThreadTeam& team = this->Mesh.GetThreads();
-    const int threads =
-      std::min(team.GetNumberOfThreads(), static_cast<int>(this->Open.size() / ItemsPerThread));
+    const int threads = std::min(
+      team.GetNumberOfThreads(), static_cast<int>(this->Open.size() / this->ItemsPerThread));
     this->IsSearched = threads > 1;
     if (!this->IsSearched)
     {
@@ -137,6 +139,7 @@ private:
   }
 
   const RefinedMesh& Mesh;
+  const std::size_t ItemsPerThread;
   /** The items before End that are searched, unless that is not worth while, and what was found. */
   std::vector<std::size_t> Open;
   bool IsSearched = false;

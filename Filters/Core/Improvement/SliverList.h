@@ -32,6 +32,9 @@ constexpr SearchEffort SliverEffort{ 3, 2 };
 /** Passes over the slivers that are left. */
 constexpr int MaximumSliverPasses = 20;
 
+/** Threads search at least so many, each some 100 microseconds. */
+constexpr std::size_t SliversPerThread = 2;
+
 struct Sliver
 {
   /** The smallest dihedral angle, in degrees. */

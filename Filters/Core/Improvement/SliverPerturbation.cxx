@@ -45,7 +45,8 @@ private:
   LookAhead<SliverChange> Ahead;
 };
 
-Perturbation::Perturbation(const SliverAim& aim, RefinedMesh& mesh) : Mesh(mesh), Ahead(mesh)
+Perturbation::Perturbation(const SliverAim& aim, RefinedMesh& mesh)
+  : Mesh(mesh), Ahead(mesh, SliversPerThread)
 {
   for (int i = 0; i < mesh.GetThreads().GetNumberOfThreads(); ++i)
   {

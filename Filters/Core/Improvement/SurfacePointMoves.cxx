@@ -646,7 +646,7 @@ private:
 SliverSurfaceMoves::SliverSurfaceMoves(
   double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh)
   : Target(target), IsFree(isFree), Mesh(mesh), Points(mesh.GetBoundary().Surface.Points),
-    Ahead(mesh)
+    Ahead(mesh, SliversPerThread)
 {
   const BoundaryShape& shape = mesh.GetShape();
   SurfacePointMoves::Rules rules;
