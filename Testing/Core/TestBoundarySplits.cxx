@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "ComplexKinds.h"
 #include "Core/Basics/SortedIds.h"
 #include "Core/Improvement/BoundaryShape.h"
 #include "Core/Improvement/BoundarySpheres.h"
@@ -212,6 +213,7 @@ public:
     }
   }
 
+  bool HaveRunAway() const { return this->Splits->HasRunAway(); }
   std::size_t GetNumberOfSurfacePoints() const { return this->Surface.Points.size(); }
 
   Id GetNumberOfTetrahedra() const { return this->Mesh->GetNumberOfTetrahedra(); }
@@ -375,6 +377,26 @@ TEST(BoundarySplits, TheFirstOneThatFailsIsStillToBeDone)
     std::mt19937_64 generator(1);
     GrowingMesh mesh(MakeStraightBoxes(), SurfaceCriterion::SmallestSphere, 0, generator);
     EXPECT_FALSE(mesh.Split(triangles, edges));
+    mesh.ExpectAsMadeAnew();
+  }
+}
+
+/**
+ * Splits of stacks may lead to ever more splits. They end when they have taken far more points than they
+ * are; without that limit they go on until there are no places for points any more.
+ */
+TEST(BoundarySplits, RunawaysEndAndTheMeshStays)
+{
+  for (const std::uint64_t seed : { 20, 24, 25 })
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 generator(seed);
+    GrowingMesh mesh(ComplexMaker(ComplexKind::SmallSlabs, seed).Make(),
+      SurfaceCriterion::SmallestSphere, 100000, generator, 0.0);
+    const std::size_t before = mesh.GetNumberOfSurfacePoints();
+    EXPECT_FALSE(mesh.Split(5, 5));
+    EXPECT_TRUE(mesh.HaveRunAway());
+    EXPECT_LE(mesh.GetNumberOfSurfacePoints(), before + 1200);
     mesh.ExpectAsMadeAnew();
   }
 }
