@@ -544,6 +544,16 @@ TEST(ComplexKinds, EdgesThatPassEachOtherAreSplitThere)
 }
 
 /**
+ * Five and six points in slabs. Points above a corner cut arcs around it ever shorter: these took 327 points
+ * instead of 110, and more than 90 s instead of 0.3.
+ */
+TEST(ComplexKinds, PointsAboveCornersAreMatchedByThem)
+{
+  ExpectUnplacedFulfilled(ComplexKind::SmallSlabs, 106, 200u);
+  ExpectUnplacedFulfilled(ComplexKind::SmallSlabs, 257, 400u);
+}
+
+/**
  * Seven triangles (25, 39) and 19 to 22 (2, 3, 28) in slabs. Criterion 3.2 missed all and 3.1 the
  * last three: edges halved each other, and a point of an edge was matched for one of the facets
  * there only.

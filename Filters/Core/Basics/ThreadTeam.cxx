@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Basics/ThreadTeam.h"
 
+#include <utility>
+
 namespace cdm
 {
 namespace
@@ -29,10 +31,13 @@ ThreadTeam::~ThreadTeam()
     const std::lock_guard<std::mutex> lock(this->Mutex);
     this->IsEnding = true;
   }
-  this->HasTask.notify_all();
-  for (std::thread& thread : this->Threads)
+  for (const std::unique_ptr<Member>& member : this->Members)
   {
-    thread.join();
+    member->HasTask.notify_one();
+  }
+  for (const std::unique_ptr<Member>& member : this->Members)
+  {
+    member->Thread.join();
   }
 }
 
@@ -55,25 +60,30 @@ void ThreadTeam::RunTask(const Task& task)
     return;
   }
   this->Exceptions.assign(static_cast<std::size_t>(task.Count), nullptr);
-  if (task.Count > 1)
+  const auto others = static_cast<std::size_t>(task.Count - 1);
+  while (this->Members.size() < others)
   {
-    // New threads are in none of the tasks so far: these had fewer.
-    while (static_cast<int>(this->Threads.size()) + 1 < task.Count)
+    auto member = std::make_unique<Member>();
+    const int i = static_cast<int>(this->Members.size()) + 1;
+    member->Thread = std::thread([this, &own = *member, i] { this->Serve(own, i); });
+    this->Members.push_back(std::move(member));
+  }
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->Current = task;
+    this->Open = task.Count - 1;
+    for (std::size_t i = 0; i < others; ++i)
     {
-      const int i = static_cast<int>(this->Threads.size()) + 1;
-      this->Threads.emplace_back([this, i] { this->Serve(i); });
+      ++this->Members[i]->Given;
     }
-    {
-      const std::lock_guard<std::mutex> lock(this->Mutex);
-      this->Current = task;
-      this->Open = task.Count - 1;
-      ++this->Number;
-    }
-    this->HasTask.notify_all();
+  }
+  for (std::size_t i = 0; i < others; ++i)
+  {
+    this->Members[i]->HasTask.notify_one();
   }
   this->RunGuarded(task, 0);
   const auto isDone = [this] { return this->Open == 0; };
-  if (task.Count > 1 && !LookFor(isDone))
+  if (!LookFor(isDone))
   {
     std::unique_lock<std::mutex> lock(this->Mutex);
     this->IsDone.wait(lock, isDone);
@@ -87,33 +97,29 @@ void ThreadTeam::RunTask(const Task& task)
   }
 }
 
-void ThreadTeam::Serve(int i)
+void ThreadTeam::Serve(Member& member, int i)
 {
-  std::uint64_t last = 0;
-  const auto isAwaited = [this, &last] { return this->IsEnding || this->Number != last; };
-  for (;;)
+  std::uint64_t done = 0;
+  const auto isAwaited = [&] { return this->IsEnding || member.Given != done; };
+  for (;; ++done)
   {
     LookFor(isAwaited);
     Task task;
     {
       std::unique_lock<std::mutex> lock(this->Mutex);
-      this->HasTask.wait(lock, isAwaited);
+      member.HasTask.wait(lock, isAwaited);
       if (this->IsEnding)
       {
         return;
       }
       task = this->Current;
-      last = this->Number;
     }
-    if (i < task.Count)
+    this->RunGuarded(task, i);
+    if (--this->Open == 0)
     {
-      this->RunGuarded(task, i);
-      if (--this->Open == 0)
-      {
-        // With the lock: the caller must not fall asleep between its last look and this.
-        const std::lock_guard<std::mutex> lock(this->Mutex);
-        this->IsDone.notify_one();
-      }
+      // With the lock: the caller must not fall asleep between its last look and this.
+      const std::lock_guard<std::mutex> lock(this->Mutex);
+      this->IsDone.notify_one();
     }
   }
 }

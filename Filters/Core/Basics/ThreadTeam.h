@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -62,19 +63,25 @@ private:
     void (*Call)(const void* what, int i);
     const void* What;
   };
+  /** A thread, and what it waits for: only those are woken that have something to do. */
+  struct Member
+  {
+    std::thread Thread;
+    std::condition_variable HasTask;
+    /** How many tasks it has been given. */
+    std::atomic<std::uint64_t> Given{ 0 };
+  };
   void RunTask(const Task& task);
   void RunGuarded(const Task& task, int i);
-  void Serve(int i);
+  void Serve(Member& member, int i);
 
   const int NumberOfThreads;
-  std::vector<std::thread> Threads;
+  /** Thread i is member i - 1. */
+  std::vector<std::unique_ptr<Member>> Members;
   std::vector<std::exception_ptr> Exceptions;
   std::mutex Mutex;
-  std::condition_variable HasTask;
   std::condition_variable IsDone;
-  /** The last task, and its number. */
   Task Current{};
-  std::atomic<std::uint64_t> Number{ 0 };
   /** Threads that have not finished it. */
   std::atomic<int> Open{ 0 };
   std::atomic<bool> IsEnding{ false };

@@ -7,7 +7,7 @@
  * (TetrahedronLimits.h), the largest first, then the worst shaped. If the point would encroach on
  * triangles or structural edges of the boundary (BoundarySpheres.h), a split of the one it
  * encroaches on most is requested instead. RefinedMesh.h says which tetrahedra are left as they
- * are.
+ * are. Threads look ahead (LookAhead.h): the result does not depend on them.
  *
  * Reference: J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998,
  * doi:10.1145/276884.276894 (what is split instead, and why it ends).
