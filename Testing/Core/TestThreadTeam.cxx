@@ -56,6 +56,38 @@ TEST(ThreadTeam, TasksFollowEachOther)
   }
 }
 
+/** Threads that come too late are left out; all pieces are done when the call returns. */
+TEST(ThreadTeam, SharedWorkIsDone)
+{
+  std::mt19937_64 generator(2);
+  ThreadTeam team(4);
+  for (int task = 0; task < 5000; ++task)
+  {
+    const int count = 1 + static_cast<int>(generator() % 4);
+    const int pieces = static_cast<int>(generator() % 20);
+    std::vector<int> done(20, 0);
+    std::vector<std::atomic<int>> calls(4);
+    std::atomic<int> next{ 0 };
+    team.RunShared(count,
+      [&](int i)
+      {
+        ++calls[static_cast<std::size_t>(i)];
+        for (int piece = next++; piece < pieces; piece = next++)
+        {
+          ++done[static_cast<std::size_t>(piece)];
+        }
+      });
+    for (int piece = 0; piece < 20; ++piece)
+    {
+      EXPECT_EQ(done[static_cast<std::size_t>(piece)], piece < pieces ? 1 : 0);
+    }
+    for (int i = 0; i < 4; ++i)
+    {
+      EXPECT_LE(calls[static_cast<std::size_t>(i)], i < count ? 1 : 0);
+    }
+  }
+}
+
 TEST(ThreadTeam, ExceptionsReachTheCaller)
 {
   ThreadTeam team(3);

@@ -53,7 +53,7 @@ void ThreadTeam::RunGuarded(const Task& task, int i)
   }
 }
 
-void ThreadTeam::RunTask(const Task& task)
+void ThreadTeam::RunTask(const Task& task, bool isShared)
 {
   if (task.Count < 1)
   {
@@ -74,7 +74,7 @@ void ThreadTeam::RunTask(const Task& task)
     this->Open = task.Count - 1;
     for (std::size_t i = 0; i < others; ++i)
     {
-      ++this->Members[i]->Given;
+      this->Members[i]->IsGiven = true;
     }
   }
   for (std::size_t i = 0; i < others; ++i)
@@ -82,6 +82,17 @@ void ThreadTeam::RunTask(const Task& task)
     this->Members[i]->HasTask.notify_one();
   }
   this->RunGuarded(task, 0);
+  if (isShared)
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    for (std::size_t i = 0; i < others; ++i)
+    {
+      if (this->Members[i]->IsGiven.exchange(false))
+      {
+        --this->Open;
+      }
+    }
+  }
   const auto isDone = [this] { return this->Open == 0; };
   if (!LookFor(isDone))
   {
@@ -99,9 +110,8 @@ void ThreadTeam::RunTask(const Task& task)
 
 void ThreadTeam::Serve(Member& member, int i)
 {
-  std::uint64_t done = 0;
-  const auto isAwaited = [&] { return this->IsEnding || member.Given != done; };
-  for (;; ++done)
+  const auto isAwaited = [&] { return this->IsEnding || member.IsGiven; };
+  for (;;)
   {
     LookFor(isAwaited);
     Task task;
@@ -112,6 +122,7 @@ void ThreadTeam::Serve(Member& member, int i)
       {
         return;
       }
+      member.IsGiven = false;
       task = this->Current;
     }
     this->RunGuarded(task, i);

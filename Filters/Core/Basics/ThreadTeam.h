@@ -17,7 +17,6 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstddef>
-#include <cstdint>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -52,8 +51,16 @@ public:
   template <typename Work>
   void Run(int count, const Work& work)
   {
-    this->RunTask(
-      { count, [](const void* what, int i) { (*static_cast<const Work*>(what))(i); }, &work });
+    this->RunTask(MakeTask(count, work), false);
+  }
+  /**
+   * The same for work that takes its pieces from a common list: when none is left, threads that have not
+   * begun are not waited for, and not called. On a busy machine they may wake milliseconds later.
+   */
+  template <typename Work>
+  void RunShared(int count, const Work& work)
+  {
+    this->RunTask(MakeTask(count, work), true);
   }
 
 private:
@@ -63,15 +70,21 @@ private:
     void (*Call)(const void* what, int i);
     const void* What;
   };
+  template <typename Work>
+  static Task MakeTask(int count, const Work& work)
+  {
+    return { count, [](const void* what, int i) { (*static_cast<const Work*>(what))(i); }, &work };
+  }
+
   /** A thread, and what it waits for: only those are woken that have something to do. */
   struct Member
   {
     std::thread Thread;
     std::condition_variable HasTask;
-    /** How many tasks it has been given. */
-    std::atomic<std::uint64_t> Given{ 0 };
+    /** Whether it has been given the current task, and has not begun. Changes with the lock only. */
+    std::atomic<bool> IsGiven{ false };
   };
-  void RunTask(const Task& task);
+  void RunTask(const Task& task, bool isShared);
   void RunGuarded(const Task& task, int i);
   void Serve(Member& member, int i);
 

@@ -120,7 +120,7 @@ private:
     }
     std::atomic<std::size_t> next{ 0 };
     this->Mesh.Freeze(true);
-    team.Run(threads,
+    team.RunShared(threads,
       [&](int thread)
       {
         for (std::size_t k = next++; k < this->Open.size(); k = next++)

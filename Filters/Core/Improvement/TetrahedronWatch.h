@@ -90,7 +90,7 @@ private:
     this->HasProperty.resize(count);
     const std::size_t parts = (count + TestsAtOnce - 1) / TestsAtOnce;
     std::atomic<std::size_t> next{ 0 };
-    team.Run(static_cast<int>(std::min<std::size_t>(parts, team.GetNumberOfThreads())),
+    team.RunShared(static_cast<int>(std::min<std::size_t>(parts, team.GetNumberOfThreads())),
       [&](int)
       {
         for (std::size_t part = next++; part < parts; part = next++)
