@@ -48,7 +48,7 @@ TEST(SliverMemory, FlatTetrahedraAreUnroundableUntilAPointGetsOtherNeighbors)
   EXPECT_FALSE(memory.IsUnroundable(flat));
   memory.SetUnroundable({ 7, 6, 5, 4 });
   EXPECT_TRUE(memory.IsUnroundable(flat));
-  // That is another matter than slivers.
+  // A failed rounding says nothing about moves of the tetrahedron's points.
   EXPECT_FALSE(memory.IsHopeless(flat, SliverAttempt::Move));
   memory.SetChanged({ 1, 2, 3, 8 });
   EXPECT_TRUE(memory.IsUnroundable(flat));

@@ -56,34 +56,37 @@ TEST(ThreadTeam, TasksFollowEachOther)
   }
 }
 
-/** Threads that come too late are left out; all pieces are done when the call returns. */
-TEST(ThreadTeam, SharedWorkIsDone)
+/** Threads that come too late are left out; all blocks are done when the call returns. */
+TEST(ThreadTeam, BlocksAreDoneOnce)
 {
   std::mt19937_64 generator(2);
   ThreadTeam team(4);
   for (int task = 0; task < 5000; ++task)
   {
-    const int count = 1 + static_cast<int>(generator() % 4);
-    const int pieces = static_cast<int>(generator() % 20);
+    const int threads = 1 + static_cast<int>(generator() % 4);
+    const std::size_t size = generator() % 20;
+    const std::size_t blockSize = 1 + generator() % 3;
     std::vector<int> done(20, 0);
-    std::vector<std::atomic<int>> calls(4);
-    std::atomic<int> next{ 0 };
-    team.RunShared(count,
-      [&](int i)
+    std::vector<std::thread::id> ids(4);
+    std::atomic<int> wrong{ 0 };
+    team.RunBlocks(threads, size, blockSize,
+      [&](std::size_t begin, std::size_t end, int thread)
       {
-        ++calls[static_cast<std::size_t>(i)];
-        for (int piece = next++; piece < pieces; piece = next++)
+        wrong += thread < 0 || thread >= threads || begin >= end || end - begin > blockSize ||
+          begin % blockSize != 0;
+        // No two threads have the same number.
+        std::thread::id& id = ids[static_cast<std::size_t>(thread)];
+        wrong += id != std::thread::id() && id != std::this_thread::get_id();
+        id = std::this_thread::get_id();
+        for (std::size_t i = begin; i < end; ++i)
         {
-          ++done[static_cast<std::size_t>(piece)];
+          ++done[i];
         }
       });
-    for (int piece = 0; piece < 20; ++piece)
+    EXPECT_EQ(wrong, 0);
+    for (std::size_t i = 0; i < 20; ++i)
     {
-      EXPECT_EQ(done[static_cast<std::size_t>(piece)], piece < pieces ? 1 : 0);
-    }
-    for (int i = 0; i < 4; ++i)
-    {
-      EXPECT_LE(calls[static_cast<std::size_t>(i)], i < count ? 1 : 0);
+      EXPECT_EQ(done[i], i < size ? 1 : 0);
     }
   }
 }

@@ -28,19 +28,22 @@ public:
   /** Returns true if the stage is to stop as soon as possible. */
   using AbortFunction = std::function<bool()>;
 
-  ExecutionContext() : ExecutionContext(1) {}
+  ExecutionContext() = default;
   ExecutionContext(ProgressFunction progress, AbortFunction abort, int numberOfThreads = 1)
-    : Progress(std::move(progress)), Abort(std::move(abort)),
-      Threads(
-        std::make_shared<ThreadTeam>(static_cast<int>(cdm::GetNumberOfThreads(numberOfThreads))))
+    : Progress(std::move(progress)), Abort(std::move(abort))
   {
+    const int count = static_cast<int>(cdm::GetNumberOfThreads(numberOfThreads));
+    this->Threads = count > 1 ? std::make_shared<ThreadTeam>(count) : nullptr;
   }
   /** A silent context that cannot be aborted. Threads: 0: one for each processor core. */
   explicit ExecutionContext(int numberOfThreads) : ExecutionContext({}, {}, numberOfThreads) {}
 
   /** At least 1. */
-  int GetNumberOfThreads() const { return this->Threads->GetNumberOfThreads(); }
-  /** Threads for short pieces of work, shared by the contexts of all parts. */
+  int GetNumberOfThreads() const { return this->Threads ? this->Threads->GetNumberOfThreads() : 1; }
+  /**
+   * Threads for short pieces of work, shared by the contexts of all parts; null: the calling thread
+   * is the only one.
+   */
   const std::shared_ptr<ThreadTeam>& GetThreads() const { return this->Threads; }
 
   /** Report progress within this context's share; false if the stage has to return Aborted. */

@@ -53,7 +53,7 @@ void ThreadTeam::RunGuarded(const Task& task, int i)
   }
 }
 
-void ThreadTeam::RunTask(const Task& task, bool isShared)
+void ThreadTeam::RunTask(const Task& task, bool mayBeLate)
 {
   if (task.Count < 1)
   {
@@ -82,7 +82,7 @@ void ThreadTeam::RunTask(const Task& task, bool isShared)
     this->Members[i]->HasTask.notify_one();
   }
   this->RunGuarded(task, 0);
-  if (isShared)
+  if (mayBeLate)
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
     for (std::size_t i = 0; i < others; ++i)
@@ -128,7 +128,7 @@ void ThreadTeam::Serve(Member& member, int i)
     this->RunGuarded(task, i);
     if (--this->Open == 0)
     {
-      // With the lock: the caller must not fall asleep between its last look and this.
+      // The lock keeps the caller from falling asleep between its last look at Open and this notice.
       const std::lock_guard<std::mutex> lock(this->Mutex);
       this->IsDone.notify_one();
     }

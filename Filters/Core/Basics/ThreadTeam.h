@@ -54,13 +54,25 @@ public:
     this->RunTask(MakeTask(count, work), false);
   }
   /**
-   * The same for work that takes its pieces from a common list: when none is left, threads that have not
-   * begun are not waited for, and not called. On a busy machine they may wake milliseconds later.
+   * Calls work(begin, end, thread) for blocks of the numbers below size; each thread takes the next
+   * block until none is left. Threads that have not begun by then are not waited for: on a busy
+   * machine they may wake milliseconds later.
+   * @param most threads work at the same time
    */
   template <typename Work>
-  void RunShared(int count, const Work& work)
+  void RunBlocks(int most, std::size_t size, std::size_t blockSize, const Work& work)
   {
-    this->RunTask(MakeTask(count, work), true);
+    const std::size_t count = (size + blockSize - 1) / blockSize;
+    std::atomic<std::size_t> next{ 0 };
+    const auto takeBlocks = [&](int thread)
+    {
+      for (std::size_t block = next++; block < count; block = next++)
+      {
+        work(block * blockSize, std::min(size, (block + 1) * blockSize), thread);
+      }
+    };
+    const auto threads = std::min<std::size_t>(static_cast<std::size_t>(most), count);
+    this->RunTask(MakeTask(static_cast<int>(threads), takeBlocks), true);
   }
 
 private:
@@ -84,7 +96,8 @@ private:
     /** Whether it has been given the current task, and has not begun. Changes with the lock only. */
     std::atomic<bool> IsGiven{ false };
   };
-  void RunTask(const Task& task, bool isShared);
+  /** @param mayBeLate whether threads that have not begun when the caller is done are left out */
+  void RunTask(const Task& task, bool mayBeLate);
   void RunGuarded(const Task& task, int i);
   void Serve(Member& member, int i);
 
@@ -100,7 +113,10 @@ private:
   std::atomic<bool> IsEnding{ false };
 };
 
-/** The same with threads that end when the work is done. For loops there is ParallelLoop.h. */
+/**
+ * Does what ThreadTeam::Run() does, with threads that end with the work. For loops there is
+ * ParallelLoop.h.
+ */
 template <typename Work>
 void RunOnThreads(int count, const Work& work)
 {

@@ -12,7 +12,7 @@
  *  1. the next items are searched at the same time, each by one thread, in the mesh as it is; the
  *     search notes which tetrahedra it has seen;
  *  2. in its turn, the change of an item is what was found, if all of these tetrahedra are still
- *     there; if not, the caller searches again.
+ *     there; if not, it is searched again.
  *
  * Guarantees: the changes are those of one thread, in the same order, whatever the number of
  * threads. Cost: one search for a sliver in fourteen is repeated, in a mesh of 186,000 tetrahedra.
@@ -23,10 +23,8 @@
 #include "Core/Improvement/RefinedMesh.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 namespace cdm
@@ -60,33 +58,45 @@ public:
   }
 
   /** Forgets what was found: another list begins. */
-  void Clear() { this->End = 0; }
+  void Clear()
+  {
+    this->Searched.clear();
+    this->End = 0;
+  }
 
   /**
-   * The change of item i, or null if it has to be searched.
+   * The change of item i: what was found ahead, or else what is found now on the calling thread. It
+   * stays until the next call.
    * @param count number of items of the list
    * @param isOpen (i): whether an item is worth a search
    * @param find (thread, i, found): finds the change of an item, in the mesh as it is; called on
    *   threads. What found holds is of another item: its memory may be used again
+   * @param holds (change): whether a change that was found ahead may still be made, as far as that
+   *   does not depend on the tetrahedra
    */
-  template <typename IsOpen, typename Find>
-  const Change* Get(std::size_t i, std::size_t count, IsOpen&& isOpen, Find&& find)
+  template <typename IsOpen, typename Find, typename Holds>
+  const Change& Get(std::size_t i, std::size_t count, IsOpen&& isOpen, Find&& find, Holds&& holds)
   {
-    if (!this->HasThreads())
-    {
-      return nullptr;
-    }
-    if (i >= this->End)
+    if (this->HasThreads() && i >= this->End)
     {
       this->Search(i, count, isOpen, find);
     }
-    const auto open = std::lower_bound(this->Open.begin(), this->Open.end(), i);
-    if (!this->IsSearched || open == this->Open.end() || *open != i)
+    const auto place = std::lower_bound(this->Searched.begin(), this->Searched.end(), i);
+    if (place != this->Searched.end() && *place == i)
     {
-      return nullptr;
+      const Found& found = this->Ahead[place - this->Searched.begin()];
+      if (this->IsUnchanged(found.Visited) && holds(found.What))
+      {
+        return found.What;
+      }
     }
-    const Found& found = this->Ahead[open - this->Open.begin()];
-    return this->IsUnchanged(found.Visited) ? &found.What : nullptr;
+    find(0, i, this->Now);
+    return this->Now.What;
+  }
+  template <typename IsOpen, typename Find>
+  const Change& Get(std::size_t i, std::size_t count, IsOpen&& isOpen, Find&& find)
+  {
+    return this->Get(i, count, isOpen, find, [](const Change&) { return true; });
   }
 
 private:
@@ -101,33 +111,27 @@ private:
   {
     const std::size_t most = this->GetBatchSize();
     this->NextStamp = this->Mesh.GetTetrahedra().GetNextStamp();
-    this->Open.clear();
-    for (this->End = first; this->End < count && this->Open.size() < most; ++this->End)
+    this->Searched.clear();
+    for (this->End = first; this->End < count && this->Searched.size() < most; ++this->End)
     {
       if (isOpen(this->End))
       {
-        this->Open.push_back(this->End);
+        this->Searched.push_back(this->End);
       }
     }
-    this->Ahead.resize(std::max(this->Ahead.size(), this->Open.size()));
     ThreadTeam& team = this->Mesh.GetThreads();
     const int threads = std::min(
-      team.GetNumberOfThreads(), static_cast<int>(this->Open.size() / this->ItemsPerThread));
-    this->IsSearched = threads > 1;
-    if (!this->IsSearched)
+      team.GetNumberOfThreads(), static_cast<int>(this->Searched.size() / this->ItemsPerThread));
+    if (threads < 2)
     {
+      this->Searched.clear();
       return;
     }
-    std::atomic<std::size_t> next{ 0 };
+    this->Ahead.resize(std::max(this->Ahead.size(), this->Searched.size()));
     this->Mesh.Freeze(true);
-    team.RunShared(threads,
-      [&](int thread)
-      {
-        for (std::size_t k = next++; k < this->Open.size(); k = next++)
-        {
-          find(thread, this->Open[k], this->Ahead[k]);
-        }
-      });
+    team.RunBlocks(threads, this->Searched.size(), 1,
+      [&](std::size_t k, std::size_t, int thread)
+      { find(thread, this->Searched[k], this->Ahead[k]); });
     this->Mesh.Freeze(false);
   }
 
@@ -140,12 +144,13 @@ private:
 
   const RefinedMesh& Mesh;
   const std::size_t ItemsPerThread;
-  /** The items before End that are searched, unless that is not worth while, and what was found. */
-  std::vector<std::size_t> Open;
-  bool IsSearched = false;
+  /** The items before End that have been searched ahead, ascending, and what was found for each. */
+  std::vector<std::size_t> Searched;
   std::vector<Found> Ahead;
   std::size_t End = 0;
-  /** The stamp of the first tetrahedron made since then. */
+  /** What was found for an item in its turn. */
+  Found Now;
+  /** Tetrahedra with this stamp or a later one have been made since the searches. */
   std::int64_t NextStamp = 0;
 };
 } // namespace cdm

@@ -58,7 +58,9 @@ private:
   const Vec3 B;
   const Vec3 C;
   const Vec3 Normal;
-  /** Of a point in the plane, times the length of the normal, squared. */
+  /**
+   * The largest height above the plane that counts as none, times the length of the normal, squared.
+   */
   double LargestHeight2;
 };
 } // namespace

@@ -76,7 +76,7 @@ struct RefinedMeshOptions
   double LayerAspectRatio = 0.0;
   /** Sizes as in InteriorPoint::Size, one for each point of the surface, or empty. */
   std::vector<double> SurfaceSizes;
-  /** What looks ahead; null: nothing does. Results do not depend on it. */
+  /** The threads that look ahead; null: the calling thread is the only one. Results are the same. */
   std::shared_ptr<ThreadTeam> Threads;
 };
 

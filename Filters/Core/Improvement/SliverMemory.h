@@ -50,7 +50,7 @@ public:
   /** Notes that all attempts up to this one have failed for the tetrahedron. */
   void SetHopeless(const TetrahedronIds& names, SliverAttempt last);
   bool IsHopeless(const TetrahedronIds& names, SliverAttempt last) const;
-  /** The same for the rounding of a flat tetrahedron's points (PointRounding.h). */
+  /** Notes that no rounding of its points (PointRounding.h) does away with a flat tetrahedron. */
   void SetUnroundable(const TetrahedronIds& names);
   bool IsUnroundable(const TetrahedronIds& names) const;
   /** Notes that no better position was found for a point. */
@@ -85,7 +85,7 @@ private:
   };
   /** The last failure for each sliver, whose key are the sorted names of its points. */
   std::unordered_map<TetrahedronIds, Failure, NamesHash> Failures;
-  /** The same for roundings: the time. */
+  /** When the last rounding failed for each flat tetrahedron, by the sorted names of its points. */
   std::unordered_map<TetrahedronIds, std::int64_t, NamesHash> FailedRoundings;
 };
 } // namespace cdm

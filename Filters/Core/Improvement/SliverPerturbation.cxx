@@ -34,7 +34,7 @@ private:
     return sliver.Angle < this->InsertedBelow ? SliverAttempt::Insertion : SliverAttempt::Move;
   }
   bool IsHopeless(const Sliver& sliver) const;
-  SliverChange Find(std::size_t i);
+  const SliverChange& Find(std::size_t i);
   void Make(const SliverChange& change, Id tetrahedron);
 
   RefinedMesh& Mesh;
@@ -66,7 +66,7 @@ bool Perturbation::IsHopeless(const Sliver& sliver) const
   return cdm::IsHopeless(sliver, this->GetLast(sliver), this->Mesh);
 }
 
-SliverChange Perturbation::Find(std::size_t i)
+const SliverChange& Perturbation::Find(std::size_t i)
 {
   const auto find = [this](int thread, std::size_t k, LookAhead<SliverChange>::Found& result)
   {
@@ -75,21 +75,14 @@ SliverChange Perturbation::Find(std::size_t i)
     result.What = changes.Find(sliver.Tetrahedron, this->GetLast(sliver));
     result.Visited = changes.GetVisited();
   };
-  const SliverChange* const found = this->Ahead.Get(
+  return this->Ahead.Get(
     i, this->Slivers.size(),
     [this](std::size_t k)
     { return !IsGone(this->Slivers[k], this->Mesh) && !this->IsHopeless(this->Slivers[k]); },
-    find);
-  // A mesh that was not full then may be full now.
-  const bool isAllowed =
-    found != nullptr && !(found->What == SliverChange::Kind::Insertion && this->Mesh.IsFull());
-  if (isAllowed)
-  {
-    return *found;
-  }
-  LookAhead<SliverChange>::Found result;
-  find(0, i, result);
-  return std::move(result.What);
+    find,
+    // A mesh that was not full then may be full now.
+    [this](const SliverChange& change)
+    { return change.What != SliverChange::Kind::Insertion || !this->Mesh.IsFull(); });
 }
 
 void Perturbation::Make(const SliverChange& change, Id tetrahedron)
@@ -119,7 +112,7 @@ bool Perturbation::Mend(std::size_t i)
   {
     return false;
   }
-  const SliverChange change = this->Find(i);
+  const SliverChange& change = this->Find(i);
   this->Mesh.SetImmovable(change.Immovable);
   if (change.What == SliverChange::Kind::None)
   {

@@ -629,7 +629,7 @@ private:
     return !IsGone(sliver, this->Mesh) &&
       !IsHopeless(sliver, SliverAttempt::SurfaceMove, this->Mesh);
   }
-  SurfaceMove Find(std::size_t i);
+  const SurfaceMove& Find(std::size_t i);
   bool Mend(std::size_t i);
 
   const double Target;
@@ -668,7 +668,7 @@ SliverSurfaceMoves::SliverSurfaceMoves(
   }
 }
 
-SurfaceMove SliverSurfaceMoves::Find(std::size_t i)
+const SurfaceMove& SliverSurfaceMoves::Find(std::size_t i)
 {
   const auto find = [this](int thread, std::size_t k, LookAhead<SurfaceMove>::Found& result)
   {
@@ -691,16 +691,9 @@ SurfaceMove SliverSurfaceMoves::Find(std::size_t i)
     }
     result = { std::move(move), search.TakeVisited() };
   };
-  const SurfaceMove* const found = this->Ahead.Get(
+  return this->Ahead.Get(
     i, this->Slivers.size(), [this](std::size_t k) { return this->IsOpen(this->Slivers[k]); },
     find);
-  if (found != nullptr)
-  {
-    return *found;
-  }
-  LookAhead<SurfaceMove>::Found result;
-  find(0, i, result);
-  return std::move(result.What);
 }
 
 bool SliverSurfaceMoves::Mend(std::size_t i)
@@ -710,7 +703,7 @@ bool SliverSurfaceMoves::Mend(std::size_t i)
   {
     return false;
   }
-  const SurfaceMove move = this->Find(i);
+  const SurfaceMove& move = this->Find(i);
   this->Mesh.SetImmovable(move.Immovable);
   if (move.Point == NoId)
   {

@@ -16,8 +16,6 @@
 #include "Core/Basics/ThreadTeam.h"
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 
-#include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -86,20 +84,13 @@ private:
   template <typename Property>
   void Test(ThreadTeam& team, Property&& hasProperty)
   {
-    const std::size_t count = this->New.size();
-    this->HasProperty.resize(count);
-    const std::size_t parts = (count + TestsAtOnce - 1) / TestsAtOnce;
-    std::atomic<std::size_t> next{ 0 };
-    team.RunShared(static_cast<int>(std::min<std::size_t>(parts, team.GetNumberOfThreads())),
-      [&](int)
+    this->HasProperty.resize(this->New.size());
+    team.RunBlocks(team.GetNumberOfThreads(), this->New.size(), TestsAtOnce,
+      [&](std::size_t begin, std::size_t end, int)
       {
-        for (std::size_t part = next++; part < parts; part = next++)
+        for (std::size_t i = begin; i < end; ++i)
         {
-          const std::size_t end = std::min(count, (part + 1) * TestsAtOnce);
-          for (std::size_t i = part * TestsAtOnce; i < end; ++i)
-          {
-            this->HasProperty[i] = hasProperty(this->New[i]) ? 1 : 0;
-          }
+          this->HasProperty[i] = hasProperty(this->New[i]) ? 1 : 0;
         }
       });
   }

@@ -117,8 +117,8 @@ private:
   std::vector<Task> Batch;
   std::size_t Next = 0;
   LookAhead<Remedy> Ahead;
-  /** Work space. */
-  Remedy Found;
+  /** What is to be done about a task that came before the batch's next one. */
+  Remedy Urgent;
 };
 
 void LimitRefinement::Schedule(Id tetrahedron)
@@ -202,8 +202,8 @@ void LimitRefinement::RunNext()
     const Task task = this->Tasks.Pop();
     if (!this->Tasks.IsGone(task))
     {
-      this->Find(0, task, this->Found);
-      this->Apply(task, this->Found);
+      this->Find(0, task, this->Urgent);
+      this->Apply(task, this->Urgent);
     }
     return;
   }
@@ -213,18 +213,14 @@ void LimitRefinement::RunNext()
   {
     return;
   }
-  const Remedy* const found = this->Ahead.Get(
+  const Remedy& remedy = this->Ahead.Get(
     i, this->Batch.size(), [this](std::size_t k) { return !this->Tasks.IsGone(this->Batch[k]); },
     [this](int thread, std::size_t k, LookAhead<Remedy>::Found& result)
     {
       this->Find(thread, this->Batch[k], result.What);
       result.Visited = this->Mesh.GetSearch(thread).GetVisited();
     });
-  if (found == nullptr)
-  {
-    this->Find(0, task, this->Found);
-  }
-  this->Apply(task, found != nullptr ? *found : this->Found);
+  this->Apply(task, remedy);
 }
 
 Status LimitRefinement::Run(const ExecutionContext& context)

@@ -48,7 +48,7 @@ bool IsMatchedByCorner(
   const Vec3& first, const Vec3& second, const Vec3& encroaching, double height)
 {
   const auto [shorter, longer] = std::minmax({ Norm(first), Norm(second) });
-  // s^2 + h^2 with s below CloseMatchRatio h.
+  // The squared distance is s^2 + h^2, and s has to be below CloseMatchRatio h.
   return longer <= EqualRadii * shorter &&
     SquaredNorm(encroaching) < (1.0 + CloseMatchRatio * CloseMatchRatio) * height * height;
 }
