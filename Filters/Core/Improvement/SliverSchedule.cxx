@@ -24,6 +24,10 @@ constexpr int MaximumRoundings = 3;
 constexpr double RoundingGain = 0.75;
 /** How many times sizes are halved for what is left. */
 constexpr int MaximumHalvings = 5;
+/** Where more than this part of the tetrahedra is left, sizes are not halved again in vain. */
+constexpr double FewLeftRatio = 0.0005;
+/** A halving that leaves this part of what was left, or more, is in vain. */
+constexpr double HalvingGain = 0.75;
 /** Passes over slivers and shapes, alternating, when the boundary stays as it is. */
 constexpr int MaximumLastPasses = 5;
 } // namespace
@@ -31,7 +35,8 @@ constexpr int MaximumLastPasses = 5;
 SliverSchedule::SliverSchedule(const SteinerPointRefinerOptions& options,
   SteinerPointRounds& rounds, SteinerPointRefinerReport& report)
   : Options(options), Rounds(rounds), Report(report), Roundings(MaximumRoundings, RoundingGain),
-    SurfaceMoves(MaximumMoves), SliverRounds(MaximumSliverRounds), Couplings(MaximumCouplingRounds)
+    SurfaceMoves(MaximumMoves), SliverRounds(MaximumSliverRounds), Couplings(MaximumCouplingRounds),
+    ManyHalvings(1, HalvingGain)
 {
 }
 
@@ -126,6 +131,15 @@ std::vector<Id> SliverSchedule::FindWhatIsLeft() const
   return left;
 }
 
+/** Whether another halving of sizes is worth its points. */
+bool SliverSchedule::MayHalveSizes(const std::vector<Id>& left)
+{
+  const double few =
+    FewLeftRatio * static_cast<double>(this->GetMesh().GetMesh().Tetrahedra.size());
+  const bool isInVain = this->ManyHalvings.IsOver(left.size());
+  return !left.empty() && (!isInVain || static_cast<double>(left.size()) <= few);
+}
+
 /** Means 9. */
 RoundResult SliverSchedule::MendWhatIsLeft()
 {
@@ -133,11 +147,12 @@ RoundResult SliverSchedule::MendWhatIsLeft()
   while (status.IsOk() && this->Halvings < MaximumHalvings && !this->GetMesh().IsFull())
   {
     const std::vector<Id> left = this->FindWhatIsLeft();
-    if (left.empty())
+    if (!this->MayHalveSizes(left))
     {
       break;
     }
     ++this->Halvings;
+    this->ManyHalvings.NoteTry();
     // What is made now may make other couplings negative.
     this->Couplings.Renew();
     this->Rounds.HalveSizes(left);

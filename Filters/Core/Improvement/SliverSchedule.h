@@ -29,7 +29,9 @@
  *    Each try lets 1 to 5 begin anew, as splits make new slivers. It comes before 7, which takes
  *    long;
  *  - 9 halves the sizes there, which only keep the refinement from going on without end, and searches
- *    longer, up to five times in all: it is needed for one to three tetrahedra of a million;
+ *    longer, up to five times in all: it is needed for one to three tetrahedra of a million. Where
+ *    more than one in 2000 is left, it is given up after a halving that left three quarters of them:
+ *    beside sharp angles each halving only makes half as many more;
  *  - 1 to 5 are left out after forty rounds in a row that moved or split the boundary for slivers
  *    in vain. They and 7 are left out if no dihedral angle is asked for.
  */
@@ -94,6 +96,7 @@ private:
   RoundResult MendCouplings();
   RoundResult MendWhatIsLeft();
   std::vector<Id> FindWhatIsLeft() const;
+  bool MayHalveSizes(const std::vector<Id>& left);
   bool RoundFlatTetrahedraAway();
   bool MoveSurfacePoints();
   Status RefineShapes();
@@ -116,6 +119,8 @@ private:
   std::vector<TetrahedronIds> LeftFlat;
   /** Whether points at sharp angles have been moved. */
   bool IsSharpPerturbed = false;
+  /** Limits the halvings of sizes where they are for more than a few tetrahedra. */
+  Patience ManyHalvings;
   /** How many times sizes have been halved. */
   int Halvings = 0;
 };

@@ -344,7 +344,7 @@ bool PartnerPoints::RotateAboutCorner(Id t, Id encroaching, Vec3& target) const
   // back to it; that of an edge has no other facet in which it would have to be met again.
   const Vec3 own = this->GetNormalAt(encroaching);
   const double cosine = Dot(own, normal);
-  if (this->Rules == MatchingRules::Usual || std::abs(cosine) < MirrorCosine)
+  if (std::abs(cosine) < MirrorCosine)
   {
     target = this->Points[corner] + (nearest / Norm(inPlane)) * inPlane;
   }

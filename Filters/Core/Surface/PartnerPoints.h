@@ -15,8 +15,9 @@
  *     two of the unit of length (concentric shells), so that all edges there end up alike;
  *     otherwise in the middle.
  *  2. Partner in a facet: the encroaching point is rotated about the edge that the two facets
- *     share, or about a corner that they share, or projected along the normal, in this order. In
- *     stacks it is mirrored between the two planes, wherever they meet.
+ *     share, or mirrored between the two planes if they share a corner, or projected along the
+ *     normal, in this order. In stacks it is always mirrored between the two planes, wherever they
+ *     meet.
  *  3. The last bits are chosen so that the two points match exactly (MatchingPoints.h).
  *
  * Cost: constant, but for the search of shared edges and corners.
@@ -43,8 +44,8 @@ enum class MatchingRules : char
   /** Feet on edges, projections in facets: fewest points where sheets and edges are few. */
   Usual,
   /**
-   * For bodies that touch in corners and edges. A partner is as far from a common corner as the
-   * encroaching point, and mirrored at the plane midway between two facets.
+   * For bodies that touch in corners and edges. A partner on an edge, too, is as far from a common
+   * corner as the encroaching point in a facet.
    */
   Corners,
   /**
