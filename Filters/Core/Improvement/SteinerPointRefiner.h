@@ -11,8 +11,9 @@
  * are inserted in tetrahedra that are too large, then also in badly shaped ones, where each comes
  * no closer to others than a twentieth of the shortest edge that was there before. If a point would
  * encroach on the boundary, a split of the boundary is requested instead (VolumeRefinement.h). Where
- * these are many, triangles of the boundary that are too narrow for the limit of shapes are split
- * as well, before the next mesh is made: that spares half of the rounds with many splits. When
+ * these are for an eighth of the boundary, triangles of it that are too narrow for the limit of
+ * shapes are split as well, before the next mesh is made: that spares half of the rounds with many
+ * splits. When
  * little is requested any more, points of slivers are moved, taken out or added, first those
  * inside, then those of the surface within their facets and along their edges; and the boundary is
  * split for slivers that nothing else helps. At last edges of the boundary with a negative coupling

@@ -148,6 +148,8 @@ private:
   std::vector<char> IsSurfaceFree;
   /** Points of the surface that have been moved in this round. */
   std::vector<Id> MovedPoints;
+  /** Whether narrow triangles have been split all at once. */
+  bool IsShaped = false;
   /** Whether narrow triangles took too many points, or spoilt the criterion. */
   bool HasFailedToShape = false;
   bool HasSplitNothing = false;
