@@ -4,7 +4,8 @@
 //
 // CDM_COMPLEXES=12500 build/bin/TestComplexKinds makes so many of each kind, CDM_FIRST_SEED other
 // ones, CDM_UNPLACED=1 leaves them as they are made, neither turned nor moved nor scaled, and
-// CDM_STEINER_COMPLEXES=1000 makes so many with Steiner points.
+// CDM_STEINER_COMPLEXES=1000 makes so many with Steiner points, of which CDM_SECONDS=100 leaves out
+// those that take longer.
 #include "ComplexKinds.h"
 #include "Core/Certificate/MeshCertificate.h"
 #include "Core/Improvement/SteinerPointRefiner.h"
@@ -16,6 +17,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -46,6 +48,15 @@ std::uint64_t GetFromEnvironment(const char* name, std::uint64_t otherwise)
 {
   const char* const text = std::getenv(name);
   return text != nullptr ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+void PrintSeeds(const char* text, const std::vector<std::uint64_t>& seeds)
+{
+  std::printf("%s", text);
+  for (std::uint64_t seed : seeds)
+  {
+    std::printf(" %llu", static_cast<unsigned long long>(seed));
+  }
 }
 
 /** Refines, meshes and lets the checker judge. Returns the points of the surface. */
@@ -180,10 +191,7 @@ KindCounts MeshComplexes(ComplexKind kind, std::uint64_t usualCount)
       GetComplexKindName(kind), criterion, own.Complexes, own.Fulfilled,
       own.Ratios.empty() ? 0.0 : own.Ratios[own.Ratios.size() / 2],
       own.Ratios.empty() ? 0.0 : own.Ratios.back());
-    for (std::uint64_t seed : own.Missed)
-    {
-      std::printf(" %llu", static_cast<unsigned long long>(seed));
-    }
+    PrintSeeds("", own.Missed);
     std::printf("\n");
     std::fflush(stdout);
   }
@@ -199,9 +207,23 @@ struct SteinerCounts
   /** With no triangle in fault, and no tetrahedron but at sharp angles and in thin layers. */
   int Clean = 0;
   std::vector<std::uint64_t> Missed;
+  /** Not done in time. */
+  std::vector<std::uint64_t> Late;
   /** New points on the boundaries of all. */
   Id BoundaryPoints = 0;
 };
+
+/** Aborts after CDM_SECONDS, if these are given. */
+ExecutionContext MakeTimedContext()
+{
+  const std::uint64_t seconds = GetFromEnvironment("CDM_SECONDS", 0);
+  if (seconds == 0)
+  {
+    return {};
+  }
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
+  return ExecutionContext({}, [end] { return std::chrono::steady_clock::now() > end; });
+}
 
 /** Puts Steiner points into a complex; what the report says is what the checker finds. */
 void RefineComplex(const TriangleMesh& surface, const SteinerPointRefinerOptions& options,
@@ -222,7 +244,12 @@ void RefineComplex(const TriangleMesh& surface, const SteinerPointRefinerOptions
   steinerInput.Mesh = &mesh.Mesh;
   steinerInput.Boundary = &mesh.Boundary;
   SteinerPointRefinerOutput output;
-  const Status status = RefineBySteinerPoints(steinerInput, options, {}, output);
+  const Status status = RefineBySteinerPoints(steinerInput, options, MakeTimedContext(), output);
+  if (status.IsAborted())
+  {
+    counts.Late.push_back(seed);
+    return;
+  }
   ASSERT_TRUE(status.IsOk()) << status.Message;
   MeshCertificate check;
   EXPECT_TRUE(CertifyMesh(output.Mesh, &output.Boundary, {}, check).IsOk());
@@ -270,14 +297,11 @@ void RefineComplexes(ComplexKind kind, std::uint64_t usualCount)
       options.MaximumNewPoints = kind == ComplexKind::SlabTetrahedra ? 2000 : 0;
       RefineComplex(triangulated.Surface, options, seed, counts);
     }
-    std::printf("%-14s criterion %d, Steiner points: %d meshed, %d fulfil it, %d are clean; missed "
-                "by seeds",
+    std::printf("%-14s criterion %d, Steiner points: %d meshed, %d fulfil it, %d are clean",
       GetComplexKindName(kind), static_cast<int>(criterion), counts.Complexes, counts.Fulfilled,
       counts.Clean);
-    for (std::uint64_t seed : counts.Missed)
-    {
-      std::printf(" %llu", static_cast<unsigned long long>(seed));
-    }
+    PrintSeeds("; missed by seeds", counts.Missed);
+    PrintSeeds("; late are", counts.Late);
     std::printf("\n");
     std::fflush(stdout);
   }
