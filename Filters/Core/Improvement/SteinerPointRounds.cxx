@@ -32,6 +32,8 @@ constexpr double BoundaryEdgeRatio = 1.15;
  */
 constexpr double TetrahedraPerSplit = 42.0;
 constexpr double TetrahedraPerTriangle = 5.4;
+/** The same for a split in rounds for sizes, most of whose new points are inside. */
+constexpr double TetrahedraPerSizeSplit = 32.0;
 /**
  * Narrow triangles are split all at once where splits are requested for this part of the triangles,
  * or of the tetrahedra. With fewer, some of them were split in vain: 869 tetrahedra instead of 104.
@@ -507,7 +509,9 @@ bool SteinerPointRounds::CanSplitInPlace() const
     requests >= ShapedRatio * std::min(triangles, tetrahedra);
   return this->Options.StructuralEdges.AccuracyAngle == 0.0 &&
     this->Report.UnresolvedTriangles == 0 && !isToBeShaped &&
-    TetrahedraPerSplit * requests < tetrahedra + TetrahedraPerTriangle * triangles;
+    (this->SurfaceSizes.empty()
+        ? TetrahedraPerSizeSplit * requests < tetrahedra
+        : TetrahedraPerSplit * requests < tetrahedra + TetrahedraPerTriangle * triangles);
 }
 
 /** Splits the boundary in the mesh itself; what cannot be done there is done in a new mesh. */
