@@ -13,9 +13,8 @@
  * encroach on the boundary, a split of the boundary is requested instead (VolumeRefinement.h). Where
  * these are for an eighth of the boundary, triangles of it that are too narrow for the limit of
  * shapes are split as well, before the next mesh is made: that spares half of the rounds with many
- * splits. When
- * little is requested any more, points of slivers are moved, taken out or added, first those
- * inside, then those of the surface within their facets and along their edges; and the boundary is
+ * splits. When little is requested any more, points of slivers are moved, taken out or added, first
+ * those inside, then those of the surface within their facets and along their edges; and the boundary is
  * split for slivers that nothing else helps. At last edges of the boundary with a negative coupling
  * are split (SliverSchedule.h). If rounds of smoothing are asked for, points inside are then moved to
  * where fewer circumcenters lie outside (OptimalDelaunaySmoothing.h).

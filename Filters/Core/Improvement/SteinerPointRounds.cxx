@@ -32,7 +32,7 @@ constexpr double BoundaryEdgeRatio = 1.15;
  */
 constexpr double TetrahedraPerSplit = 42.0;
 constexpr double TetrahedraPerTriangle = 5.4;
-/** The same for a split in rounds for sizes, most of whose new points are inside. */
+/** In rounds for sizes only tetrahedra count: the costs above were measured in rounds for shapes. */
 constexpr double TetrahedraPerSizeSplit = 32.0;
 /**
  * Narrow triangles are split all at once where splits are requested for this part of the triangles,
@@ -298,6 +298,13 @@ Status SteinerPointRounds::RemakeMesh()
   return status;
 }
 
+/** Whether all facets are plane and fulfil the criterion. */
+bool SteinerPointRounds::HasPlaneBoundary() const
+{
+  return this->Options.StructuralEdges.AccuracyAngle == 0.0 &&
+    this->Report.UnresolvedTriangles == 0;
+}
+
 /**
  * Whether narrow triangles may be split before a mesh is made. Each tetrahedron at a triangle has a
  * circumradius at least as large, and no longer shortest edge: so narrow ones would have to be split
@@ -306,8 +313,7 @@ Status SteinerPointRounds::RemakeMesh()
 bool SteinerPointRounds::MayShapeSurface() const
 {
   return !this->HasFailedToShape && !this->SurfaceSizes.empty() &&
-    this->Options.RadiusEdgeRatio > 0.0 && this->Options.StructuralEdges.AccuracyAngle == 0.0 &&
-    this->Report.UnresolvedTriangles == 0;
+    this->Options.RadiusEdgeRatio > 0.0 && this->HasPlaneBoundary();
 }
 
 /** How many points narrow triangles may take; with more, they are left to the rounds. */
@@ -331,7 +337,7 @@ Status SteinerPointRounds::RefineSurface(
   DelaunaySurfaceRefinerOptions options = this->GetSurfaceOptions();
   options.StructuralEdges.Facets = this->GetFacets();
   const bool isShaped = this->Mesh && !this->CanSplitInPlace() && this->MayShapeSurface();
-  this->IsShaped = this->IsShaped || isShaped;
+  this->HasShaped = this->HasShaped || isShaped;
   if (this->Mesh)
   {
     input.ExcusedTriangles = isShaped ? this->Mesh->FindExcusedTriangles() : std::vector<char>();
@@ -505,13 +511,12 @@ bool SteinerPointRounds::CanSplitInPlace() const
   const auto requests = static_cast<double>(this->CountRequests());
   const auto triangles = static_cast<double>(this->Surface.Triangles.size());
   const auto tetrahedra = static_cast<double>(this->Mesh->GetMesh().Tetrahedra.size());
-  const bool isToBeShaped = !this->IsShaped && this->MayShapeSurface() &&
+  const bool isToBeShaped = !this->HasShaped && this->MayShapeSurface() &&
     requests >= ShapedRatio * std::min(triangles, tetrahedra);
-  return this->Options.StructuralEdges.AccuracyAngle == 0.0 &&
-    this->Report.UnresolvedTriangles == 0 && !isToBeShaped &&
-    (this->SurfaceSizes.empty()
-        ? TetrahedraPerSizeSplit * requests < tetrahedra
-        : TetrahedraPerSplit * requests < tetrahedra + TetrahedraPerTriangle * triangles);
+  const bool isCheaper = this->SurfaceSizes.empty()
+    ? TetrahedraPerSizeSplit * requests < tetrahedra
+    : TetrahedraPerSplit * requests < tetrahedra + TetrahedraPerTriangle * triangles;
+  return this->HasPlaneBoundary() && isCheaper && !isToBeShaped;
 }
 
 /** Splits the boundary in the mesh itself; what cannot be done there is done in a new mesh. */

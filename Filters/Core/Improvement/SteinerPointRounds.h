@@ -112,6 +112,7 @@ private:
   void TakeMesh(
     AdvancingFrontTetrahedralizerOutput made, const std::vector<InteriorPoint>& interior);
   Status RestoreState(const ExecutionContext& context);
+  bool HasPlaneBoundary() const;
   bool CanSplitInPlace() const;
   bool MayShapeSurface() const;
   Id GetMaximumOfShapes() const;
@@ -149,7 +150,7 @@ private:
   /** Points of the surface that have been moved in this round. */
   std::vector<Id> MovedPoints;
   /** Whether narrow triangles have been split all at once. */
-  bool IsShaped = false;
+  bool HasShaped = false;
   /** Whether narrow triangles took too many points, or spoilt the criterion. */
   bool HasFailedToShape = false;
   bool HasSplitNothing = false;
