@@ -23,11 +23,21 @@ Ids Sorted(Ids ids)
   return ids;
 }
 
-/** Whether an id is in a list, or one of a few, in any order. */
+/**
+ * Whether an id is in a list, or one of a few, in any order. A loop, which compilers unroll for a
+ * few ids: std::find, which they do not, took one percent of the time of small meshes.
+ */
 template <typename Ids>
 bool Contains(const Ids& ids, Id id)
 {
-  return std::find(ids.begin(), ids.end(), id) != ids.end();
+  for (const Id other : ids)
+  {
+    if (other == id)
+    {
+      return true;
+    }
+  }
+  return false;
 }
 
 /**

@@ -214,6 +214,12 @@ public:
       Multiply(this->GetMinor<Int128>(0, 1), this->Values[2][2]));
   }
 
+  /** Sign of the determinant of two coordinates of the first two differences. */
+  int GetProjectedOrientation(int u, int v) const
+  {
+    return GetSign(this->GetMinor<Int128>(0, 1, u, v));
+  }
+
   /** Sign of the determinant of all four and their squares. */
   int GetInSphere() const
   {
@@ -518,6 +524,18 @@ int ProjectedOrientation(int axis, const Vec3& a, const Vec3& b, const Vec3& c)
   {
     return area.GetSign();
   }
+  if ((a[u] == b[u] || a[v] == c[v]) && (a[v] == b[v] || a[u] == c[u]))
+  {
+    // On a line along an axis.
+    return 0;
+  }
+#ifdef CDM_HAS_WIDE_INTEGERS
+  IntegerDifferences difference;
+  if (difference.Set({ &a, &b, &c }))
+  {
+    return difference.GetProjectedOrientation(u, v);
+  }
+#endif
   return static_cast<int>(CGAL::orientation(Project(axis, a), Project(axis, b), Project(axis, c)));
 }
 } // namespace cdm

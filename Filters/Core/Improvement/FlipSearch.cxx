@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/FlipSearch.h"
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Predicates.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace cdm
@@ -20,25 +22,53 @@ bool AreBetter(const std::vector<AngleKey>& first, const std::vector<AngleKey>& 
   return difference.second != second.end() &&
     (difference.first == first.end() || *difference.first > *difference.second);
 }
-} // namespace
 
-/** Whether the new tetrahedron has the circumsphere of one of the old ones. */
-bool FlipSearch::IsDelaunay(const TetrahedronIds& ids, const std::vector<Id>& old) const
+/**
+ * Which points of a ring lie on the circumsphere of which of its tetrahedra. Each is asked for once
+ * at most: parts of a ring have most points in common, and the test is slow where it holds.
+ */
+class RingSpheres
 {
-  return std::any_of(old.begin(), old.end(),
-    [&](Id other)
+public:
+  RingSpheres(const FlippableMesh& mesh, const EdgeRing& ring) : Mesh(mesh), Ring(ring) {}
+
+  /** Whether the circumsphere of a tetrahedron of the ring goes through all three points. */
+  bool HasSphereThrough(int i, int j, int k)
+  {
+    for (std::size_t sphere = 0; sphere < this->Ring.Tetrahedra.size(); ++sphere)
     {
-      const TetrahedronIds& otherIds = this->Mesh.GetMesh().Tetrahedra[other];
-      return std::all_of(ids.begin(), ids.end(),
-        [&](Id point)
-        {
-          return std::find(otherIds.begin(), otherIds.end(), point) != otherIds.end() ||
-            InSphere(this->Mesh.GetPoint(otherIds[0]), this->Mesh.GetPoint(otherIds[1]),
-              this->Mesh.GetPoint(otherIds[2]), this->Mesh.GetPoint(otherIds[3]),
-              this->Mesh.GetPoint(point)) == 0;
-        });
-    });
-}
+      if (this->IsOn(sphere, i) && this->IsOn(sphere, j) && this->IsOn(sphere, k))
+      {
+        return true;
+      }
+    }
+    return false;
+  }
+
+private:
+  bool IsOn(std::size_t sphere, int i)
+  {
+    bool& isKnown = this->IsKnown[sphere][i];
+    if (!isKnown)
+    {
+      const Id point = this->Ring.Points[i];
+      const TetrahedronIds& ids = this->Mesh.GetMesh().Tetrahedra[this->Ring.Tetrahedra[sphere]];
+      const auto [a, b, c, d] = GetCorners(this->Mesh.GetMesh().Points, ids);
+      this->IsOnSphere[sphere][i] =
+        Contains(ids, point) || InSphere(a, b, c, d, this->Mesh.GetPoint(point)) == 0;
+      isKnown = true;
+    }
+    return this->IsOnSphere[sphere][i];
+  }
+
+  using Table = std::array<std::array<bool, MaximumRingSize>, MaximumRingSize>;
+
+  const FlippableMesh& Mesh;
+  const EdgeRing& Ring;
+  Table IsKnown{};
+  Table IsOnSphere{};
+};
+} // namespace
 
 AngleKey FlipSearch::GetSmallestKey(const std::vector<Id>& tetrahedra) const
 {
@@ -50,19 +80,13 @@ AngleKey FlipSearch::GetSmallestKey(const std::vector<Id>& tetrahedra) const
   return GetAngleKey(smallest);
 }
 
-/**
- * Smallest dihedral angle of a new tetrahedron; negative if it is less than required or if the
- * tetrahedron must not be made. The angle comes first: it spares most of the exact tests, which are
- * slow where all points are cospherical.
- */
-AngleKey FlipSearch::Rate(
-  const TetrahedronIds& ids, const std::vector<Id>& old, AngleKey required) const
+/** Smallest dihedral angle of a new tetrahedron; negative if it is less than required or none. */
+AngleKey FlipSearch::Rate(const TetrahedronIds& ids, AngleKey required) const
 {
   const AngleKey key = GetAngleKey(this->Mesh.MeasureAngle(ids));
   const bool isAllowed = key >= required &&
     Orientation(this->Mesh.GetPoint(ids[0]), this->Mesh.GetPoint(ids[1]),
-      this->Mesh.GetPoint(ids[2]), this->Mesh.GetPoint(ids[3])) > 0 &&
-    (this->IsAnyShapeAllowed || this->IsDelaunay(ids, old));
+      this->Mesh.GetPoint(ids[2]), this->Mesh.GetPoint(ids[3])) > 0;
   return isAllowed ? key : -1;
 }
 
@@ -86,7 +110,7 @@ void FlipSearch::Keep(Flip& flip, Flip& best) const
   }
 }
 
-/** The 2-3 flip at an open facet. */
+/** The 2-3 flip at an open facet: all five points lie on one sphere if they have to. */
 void FlipSearch::TryFacet(Id tetrahedron, int facet, Flip& best) const
 {
   const Id neighbor = this->Mesh.GetMesh().Neighbors[tetrahedron][facet];
@@ -99,7 +123,7 @@ void FlipSearch::TryFacet(Id tetrahedron, int facet, Flip& best) const
   for (int i = 0; i < 3; ++i)
   {
     flip.New.push_back({ p, q, triangle[i], triangle[(i + 1) % 3] });
-    if (this->Rate(flip.New.back(), flip.Old, required) < 0)
+    if (this->Rate(flip.New.back(), required) < 0)
     {
       return;
     }
@@ -110,12 +134,14 @@ void FlipSearch::TryFacet(Id tetrahedron, int facet, Flip& best) const
 /**
  * The triangulation of a ring whose tetrahedra have the best smallest angle, by dynamic
  * programming; false if none is good enough. middle: for each part of the ring, from its i-th to
- * its k-th point, the point that makes a triangle with both.
+ * its k-th point, the point that makes a triangle with both. Angles come first: they spare most of
+ * the exact tests of spheres.
  */
 bool FlipSearch::TriangulateRing(const EdgeRing& ring, RingMiddles& middle) const
 {
   const int size = static_cast<int>(ring.Points.size());
   const AngleKey required = this->GetSmallestKey(ring.Tetrahedra);
+  RingSpheres spheres(this->Mesh, ring);
   // Best smallest angle for each part.
   std::array<std::array<AngleKey, MaximumRingSize>, MaximumRingSize> angle{};
   for (int i = 0; i + 1 < size; ++i)
@@ -135,10 +161,11 @@ bool FlipSearch::TriangulateRing(const EdgeRing& ring, RingMiddles& middle) cons
         {
           if (smallest > angle[i][k])
           {
-            smallest = std::min(smallest, this->Rate(ids, ring.Tetrahedra, required));
+            smallest = std::min(smallest, this->Rate(ids, required));
           }
         }
-        if (smallest > angle[i][k])
+        if (smallest > angle[i][k] &&
+          (this->IsAnyShapeAllowed || spheres.HasSphereThrough(i, j, k)))
         {
           angle[i][k] = smallest;
           middle[i][k] = j;

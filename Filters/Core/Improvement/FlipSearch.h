@@ -26,6 +26,9 @@
 
 namespace cdm
 {
+/** Edges with more tetrahedra around them are left alone: their removal hardly ever pays. */
+constexpr int MaximumRingSize = 8;
+
 class FlipSearch
 {
 public:
@@ -41,13 +44,10 @@ public:
   void TryEdge(Id tetrahedron, int edge, Flip& best) const;
 
 private:
-  /** Edges with more tetrahedra around them are left alone: their removal hardly ever pays. */
-  static constexpr int MaximumRingSize = 8;
   using RingMiddles = std::array<std::array<int, MaximumRingSize>, MaximumRingSize>;
 
-  bool IsDelaunay(const TetrahedronIds& ids, const std::vector<Id>& old) const;
   AngleKey GetSmallestKey(const std::vector<Id>& tetrahedra) const;
-  AngleKey Rate(const TetrahedronIds& ids, const std::vector<Id>& old, AngleKey required) const;
+  AngleKey Rate(const TetrahedronIds& ids, AngleKey required) const;
   void Keep(Flip& flip, Flip& best) const;
   bool IsOpen(Id tetrahedron, int facet) const;
   void TryFacet(Id tetrahedron, int facet, Flip& best) const;

@@ -1,36 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Meshes/FacetPolygons.h"
 
-#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Predicates.h"
+#include "Core/Meshes/EdgeUses.h"
 
 namespace cdm
 {
-FacetPolygons::FacetPolygons(const TriangleMesh& surface) : Surface(surface)
+FacetPolygons::FacetPolygons(const TriangleMesh& surface, std::size_t numberOfPoints)
+  : Surface(surface), Others(3 * surface.Triangles.size(), NoId)
 {
-  for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
+  const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, numberOfPoints);
+  for (std::size_t begin = 0; begin < uses.size();)
   {
-    for (int i = 0; i < 3; ++i)
+    std::size_t end = begin + 1;
+    while (end < uses.size() && uses[end].Edge == uses[begin].Edge)
     {
-      const Id a = surface.Triangles[t][i];
-      const Id b = surface.Triangles[t][(i + 1) % 3];
-      this->Uses.push_back({ MakeEdge(a, b), static_cast<Id>(t) });
+      ++end;
     }
+    if (end - begin == 2)
+    {
+      this->Others[uses[begin].Use] = uses[begin + 1].Use / 3;
+      this->Others[uses[begin + 1].Use] = uses[begin].Use / 3;
+    }
+    begin = end;
   }
-  std::sort(this->Uses.begin(), this->Uses.end());
-}
-
-/** The other triangle at the edge, or NoId if there is not exactly one. */
-Id FacetPolygons::GetOther(Id triangle, Id a, Id b) const
-{
-  const std::pair<EdgeIds, Id> key{ MakeEdge(a, b), 0 };
-  const auto first = std::lower_bound(this->Uses.begin(), this->Uses.end(), key);
-  auto last = first;
-  while (last != this->Uses.end() && last->first == key.first)
-  {
-    ++last;
-  }
-  return last - first != 2 ? NoId : first->second == triangle ? (first + 1)->second : first->second;
 }
 
 bool FacetPolygons::HaveSameLabels(Id s, Id t, Id a, Id b) const

@@ -4,7 +4,7 @@
  * @brief Convex polygons of cocircular triangles in a flat surface facet. In a mesh their diagonals
  * have to be those of the pulling rule (thesis 6.4.3, "flip triangles on the fly").
  *
- * Cost: O(n log n) to build; 16 bytes per side of a triangle.
+ * Cost: O(n) to build for a bounded number of triangles at a point; 4 bytes per side of a triangle.
  */
 #ifndef cdmFacetPolygons_h
 #define cdmFacetPolygons_h
@@ -12,7 +12,7 @@
 #include "Core/Meshes/TriangleMesh.h"
 
 #include <algorithm>
-#include <utility>
+#include <cstddef>
 #include <vector>
 
 namespace cdm
@@ -20,8 +20,11 @@ namespace cdm
 class FacetPolygons
 {
 public:
-  /** The surface has to outlive this; diagonals may be flipped within their polygons. */
-  explicit FacetPolygons(const TriangleMesh& surface);
+  /**
+   * The surface has to outlive this; diagonals may be flipped within their polygons. Its own points
+   * are not looked at.
+   */
+  FacetPolygons(const TriangleMesh& surface, std::size_t numberOfPoints);
 
   /**
    * Triangles of the polygon around a triangle: crosses an edge of two triangles with the same
@@ -41,7 +44,7 @@ public:
       {
         const Id a = ids[e];
         const Id b = ids[(e + 1) % 3];
-        const Id other = this->GetOther(triangles[i], a, b);
+        const Id other = this->Others[3 * triangles[i] + e];
         if (other == NoId || !this->HaveSameLabels(triangles[i], other, a, b) ||
           std::find(triangles.begin(), triangles.end(), other) != triangles.end())
         {
@@ -64,11 +67,11 @@ public:
   }
 
 private:
-  Id GetOther(Id triangle, Id a, Id b) const;
   bool HaveSameLabels(Id s, Id t, Id a, Id b) const;
 
   const TriangleMesh& Surface;
-  std::vector<std::pair<EdgeIds, Id>> Uses;
+  /** At each side of each triangle the other one, or NoId if there is not exactly one. */
+  std::vector<Id> Others;
 };
 
 /**

@@ -14,9 +14,6 @@ namespace
 {
 using Corners = std::array<Vec3, 3>;
 
-// The abort function is asked once in so many triangles.
-constexpr Id StepsBetweenChecks = 1024;
-
 Corners GetCorners(const std::vector<Vec3>& points, const TriangleIds& t)
 {
   return { points[t[0]], points[t[1]], points[t[2]] };
@@ -51,16 +48,6 @@ bool IsInCoplanarTriangle(const Corners& t, const Vec3& p)
   return ProjectedOrientation(axis, t[0], t[1], p) * sign >= 0 &&
     ProjectedOrientation(axis, t[1], t[2], p) * sign >= 0 &&
     ProjectedOrientation(axis, t[2], t[0], p) * sign >= 0;
-}
-
-/** Whether direction apex->p lies in the closed cone of directions apex->c to apex->d, coplanar. */
-bool IsInCoplanarCone(
-  int axis, int sign, const Vec3& apex, const Vec3& c, const Vec3& d, const Vec3& p)
-{
-  const int left = ProjectedOrientation(axis, apex, c, p) * sign;
-  const int right = ProjectedOrientation(axis, apex, p, d) * sign;
-  // Both vanish only where p is the apex: c and d are not collinear with it.
-  return left >= 0 && right >= 0;
 }
 
 std::array<int, 3> GetSides(const Corners& plane, const Corners& t)
@@ -118,36 +105,59 @@ bool DoesAnEdgeMeet(const Corners& s, const std::array<int, 3>& sides, const Cor
   return false;
 }
 
-/** Whether two coplanar closed segments have a common point, in a projection that keeps lines. */
-bool DoCoplanarSegmentsMeet(int axis, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+/**
+ * Whether a line along an edge of s separates the triangles in a projection: t lies beyond it,
+ * without touching. sign: the orientation of s there.
+ */
+bool IsSeparatedByAnEdge(const Corners& s, int axis, int sign, const Corners& t)
 {
-  const int abc = ProjectedOrientation(axis, a, b, c);
-  const int abd = ProjectedOrientation(axis, a, b, d);
-  const int cda = ProjectedOrientation(axis, c, d, a);
-  const int cdb = ProjectedOrientation(axis, c, d, b);
-  if (abc == 0 && abd == 0)
+  for (int i = 0; i < 3; ++i)
   {
-    // On one line, where the lexicographic order is the order along it.
-    return !(std::min(std::max(a, b), std::max(c, d)) < std::max(std::min(a, b), std::min(c, d)));
+    const Vec3& p = s[i];
+    const Vec3& q = s[(i + 1) % 3];
+    const auto isBeyond = [&](const Vec3& r)
+    { return ProjectedOrientation(axis, p, q, r) * sign < 0; };
+    if (isBeyond(t[0]) && isBeyond(t[1]) && isBeyond(t[2]))
+    {
+      return true;
+    }
   }
-  return abc * abd <= 0 && cda * cdb <= 0;
+  return false;
 }
 
+/** Convex polygons in a plane have a common point unless a line along an edge separates them. */
 bool DoCoplanarTrianglesMeet(const Corners& s, const Corners& t)
 {
   int sign = 0;
   const int axis = GetProjectionAxis(s, sign);
-  for (int i = 0; i < 3; ++i)
-  {
-    for (int j = 0; j < 3; ++j)
-    {
-      if (DoCoplanarSegmentsMeet(axis, s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3]))
-      {
-        return true;
-      }
-    }
-  }
-  return IsInCoplanarTriangle(s, t[0]) || IsInCoplanarTriangle(t, s[0]);
+  return !IsSeparatedByAnEdge(s, axis, sign, t) &&
+    !IsSeparatedByAnEdge(t, axis, ProjectedOrientation(axis, t[0], t[1], t[2]), s);
+}
+
+/**
+ * Whether the closed cones of directions from v to a and b, and to c and d, all in a plane, have a
+ * direction in common: then a border of one lies in the other one.
+ */
+bool DoCoplanarConesMeet(const Vec3& v, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  int first = 0;
+  const int axis = GetProjectionAxis({ v, a, b }, first);
+  const int second = ProjectedOrientation(axis, v, c, d);
+  const int ac = ProjectedOrientation(axis, v, a, c);
+  const int ad = ProjectedOrientation(axis, v, a, d);
+  const int bc = ProjectedOrientation(axis, v, b, c);
+  const int bd = ProjectedOrientation(axis, v, b, d);
+  return (ac * first >= 0 && bc * first <= 0) || (ad * first >= 0 && bd * first <= 0) ||
+    (ac * second <= 0 && ad * second >= 0) || (bc * second <= 0 && bd * second >= 0);
+}
+
+/** Whether the direction from v to p is one of the closed cone to c and d, all in a plane. */
+bool IsInCoplanarCone(const Vec3& v, const Vec3& c, const Vec3& d, const Vec3& p)
+{
+  int sign = 0;
+  const int axis = GetProjectionAxis({ v, c, d }, sign);
+  return ProjectedOrientation(axis, v, c, p) * sign >= 0 &&
+    ProjectedOrientation(axis, v, p, d) * sign >= 0;
 }
 
 /** Common edge (u, v), third vertices p and q. */
@@ -175,11 +185,7 @@ TriangleContact ClassifyAtVertex(Vec3 v, Vec3 a, Vec3 b, const Vec3& c, const Ve
   bool meet = false;
   if (sideC == 0 && sideD == 0)
   {
-    int signS = 0;
-    const int axis = GetProjectionAxis({ v, a, b }, signS);
-    const int signT = ProjectedOrientation(axis, v, c, d);
-    meet = IsInCoplanarCone(axis, signS, v, a, b, c) || IsInCoplanarCone(axis, signS, v, a, b, d) ||
-      IsInCoplanarCone(axis, signT, v, c, d, a) || IsInCoplanarCone(axis, signT, v, c, d, b);
+    meet = DoCoplanarConesMeet(v, a, b, c, d);
   }
   else
   {
@@ -191,9 +197,7 @@ TriangleContact ClassifyAtVertex(Vec3 v, Vec3 a, Vec3 b, const Vec3& c, const Ve
     }
     if (sideA == 0 || sideB == 0)
     {
-      int sign = 0;
-      const int axis = GetProjectionAxis({ v, c, d }, sign);
-      meet = IsInCoplanarCone(axis, sign, v, c, d, sideA == 0 ? a : b);
+      meet = IsInCoplanarCone(v, c, d, sideA == 0 ? a : b);
     }
     else
     {
@@ -401,47 +405,29 @@ void FindIntersectionSegment(const std::vector<Vec3>& points, const TriangleIds&
     }
   }
 }
+
 bool FindIntersectingPairs(const std::vector<Vec3>& points,
   const std::vector<TriangleIds>& triangles, const std::vector<char>& active,
   const ExecutionContext& context, std::vector<TrianglePair>& pairs)
 {
   pairs.clear();
-  const Id n = static_cast<Id>(triangles.size());
-  const std::vector<Box> boxes = MakeBoxes(points, triangles);
-  const BoxTree tree(boxes);
+  const BoxTree tree(MakeBoxes(points, triangles));
   const auto isActive = [&active](Id t) { return active.empty() || active[t]; };
-  std::vector<Id> candidates;
-  for (Id t = 0; t < n && pairs.size() < MaximumNumberOfPairs; ++t)
+  const auto add = [&](Id s, Id t)
   {
-    if (t % StepsBetweenChecks == 0 &&
-      !context.Continue(static_cast<double>(t) / n, "Looking for self-intersections"))
+    if ((isActive(s) || isActive(t)) &&
+      ClassifyTriangles(points, triangles[s], triangles[t]) == TriangleContact::Intersection)
     {
-      return false;
+      pairs.push_back({ std::min(s, t), std::max(s, t) });
     }
-    if (!isActive(t))
-    {
-      continue;
-    }
-    candidates.clear();
-    tree.VisitOverlaps(boxes[t],
-      [&](Id other)
-      {
-        if (other > t || (other < t && !isActive(other)))
-        {
-          candidates.push_back(other);
-        }
-      });
-    std::sort(candidates.begin(), candidates.end());
-    for (const Id other : candidates)
-    {
-      if (ClassifyTriangles(points, triangles[t], triangles[other]) ==
-        TriangleContact::Intersection)
-      {
-        pairs.push_back({ std::min(t, other), std::max(t, other) });
-      }
-    }
-  }
+  };
+  const auto mayGoOn = [&](double progress)
+  {
+    return pairs.size() < MaximumNumberOfPairs &&
+      context.Continue(progress, "Looking for self-intersections");
+  };
+  const bool isDone = tree.VisitPairs(add, mayGoOn);
   std::sort(pairs.begin(), pairs.end());
-  return true;
+  return isDone || pairs.size() >= MaximumNumberOfPairs;
 }
 } // namespace cdm

@@ -45,6 +45,13 @@ public:
   }
 
   /**
+   * Calls visit(a, b) once for each two boxes that overlap. mayGoOn(progress), with a progress from
+   * 0 to 1, is asked now and then; false if it says so, and then pairs are missing.
+   */
+  template <class Function, class Condition>
+  bool VisitPairs(Function&& visit, const Condition& mayGoOn) const;
+
+  /**
    * The smallest getDistance(id) of what is in the boxes, or the limit if that is smaller. No
    * distance is smaller than that of the box.
    */
@@ -64,6 +71,8 @@ private:
   };
 
   void Build(const std::vector<Box>& boxes, Id begin, Id end);
+  template <class Function>
+  void VisitPairsOfLeaves(const Node& a, const Node& b, Function&& visit) const;
   template <class Condition, class Function>
   void Visit(const Condition& isWanted, Function&& visit) const;
 
@@ -110,6 +119,76 @@ void BoxTree::Visit(const Condition& isWanted, Function&& visit) const
       }
     }
     index = size > 0 ? stack[--size] : NoId;
+  }
+}
+
+template <class Function, class Condition>
+bool BoxTree::VisitPairs(Function&& visit, const Condition& mayGoOn) const
+{
+  constexpr int StepsBetweenQuestions = 1024;
+  int steps = 0;
+  Id done = 0;
+  // Pairs of nodes that overlap, or twice the same one.
+  std::vector<std::pair<Id, Id>> stack;
+  if (!this->Nodes.empty())
+  {
+    stack.emplace_back(0, 0);
+  }
+  while (!stack.empty())
+  {
+    const auto [first, second] = stack.back();
+    stack.pop_back();
+    const Node& a = this->Nodes[first];
+    const Node& b = this->Nodes[second];
+    if (steps++ % StepsBetweenQuestions == 0 &&
+      !mayGoOn(static_cast<double>(done) / this->Order.size()))
+    {
+      return false;
+    }
+    const auto push = [&](Id left, Id right)
+    {
+      if (this->Nodes[left].Bounds.Overlaps(this->Nodes[right].Bounds))
+      {
+        stack.emplace_back(left, right);
+      }
+    };
+    if (a.Right == NoId && b.Right == NoId)
+    {
+      this->VisitPairsOfLeaves(a, b, visit);
+      done = std::max(done, a.End);
+    }
+    else if (first == second)
+    {
+      stack.emplace_back(a.Right, a.Right);
+      push(first + 1, a.Right);
+      stack.emplace_back(first + 1, first + 1);
+    }
+    else if (b.Right == NoId || (a.Right != NoId && a.End - a.Begin >= b.End - b.Begin))
+    {
+      push(a.Right, second);
+      push(first + 1, second);
+    }
+    else
+    {
+      push(first, b.Right);
+      push(first, second + 1);
+    }
+  }
+  return true;
+}
+
+template <class Function>
+void BoxTree::VisitPairsOfLeaves(const Node& a, const Node& b, Function&& visit) const
+{
+  for (Id i = a.Begin; i < a.End; ++i)
+  {
+    for (Id j = &a == &b ? i + 1 : b.Begin; j < b.End; ++j)
+    {
+      if (this->Boxes[i].Overlaps(this->Boxes[j]))
+      {
+        visit(this->Order[i], this->Order[j]);
+      }
+    }
   }
 }
 

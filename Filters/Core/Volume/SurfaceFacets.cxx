@@ -41,14 +41,13 @@ public:
   Status Run();
 
 private:
-  void FindFacets();
+  void FindFacets(const std::vector<Id>& triangles);
   bool IsSurelyStronglyDelaunay(Id triangle) const;
-  Status TurnDiagonals(const std::vector<Id>& doubtful);
+  Status TurnDiagonals(const std::vector<Id>& doubtful, std::vector<Id>& changed);
   bool IsBeyondHull(Id tetrahedron) const
   {
     const TetrahedronIds& ids = this->Input.All.Tetrahedra[tetrahedron];
-    return std::find(ids.begin(), ids.end(), static_cast<Id>(this->Input.Order.size())) !=
-      ids.end();
+    return Contains(ids, static_cast<Id>(this->Input.Order.size()));
   }
 
   const SurfaceFacetsInput& Input;
@@ -66,8 +65,11 @@ Status SurfaceFacetFinder::Run()
                                 "surface with the boundary triangulator first.",
       { duplicates.front().Triangle });
   }
-  this->FindFacets();
   const Id numberOfTriangles = static_cast<Id>(this->Surface.Triangles.size());
+  std::vector<Id> all(numberOfTriangles);
+  std::iota(all.begin(), all.end(), 0);
+  this->Output.Sides.resize(2 * this->Surface.Triangles.size());
+  this->FindFacets(all);
   std::vector<Id> doubtful;
   for (Id t = 0; t < numberOfTriangles; ++t)
   {
@@ -78,12 +80,13 @@ Status SurfaceFacetFinder::Run()
   }
   if (!doubtful.empty())
   {
-    const Status status = this->TurnDiagonals(doubtful);
+    std::vector<Id> changed;
+    const Status status = this->TurnDiagonals(doubtful, changed);
     if (!status.IsOk())
     {
       return status;
     }
-    this->FindFacets();
+    this->FindFacets(changed);
   }
   for (Id side = 0; side < 2 * numberOfTriangles; ++side)
   {
@@ -95,10 +98,11 @@ Status SurfaceFacetFinder::Run()
   return Status();
 }
 
-Status SurfaceFacetFinder::TurnDiagonals(const std::vector<Id>& doubtful)
+/** changed: gets the triangles that have other points or another orientation now. */
+Status SurfaceFacetFinder::TurnDiagonals(const std::vector<Id>& doubtful, std::vector<Id>& changed)
 {
   const bool hasLabels = !this->Surface.Labels.empty();
-  const FacetPolygons polygons(this->Surface);
+  const FacetPolygons polygons(this->Surface, this->Input.Points.size());
   PointOctree octree;
   for (Id point : this->Input.Order)
   {
@@ -149,12 +153,13 @@ Status SurfaceFacetFinder::TurnDiagonals(const std::vector<Id>& doubtful)
     for (std::size_t k = 0; k < fan.size(); ++k)
     {
       const Id triangle = polygonTriangles[k];
-      TriangleIds before = this->Surface.Triangles[triangle];
-      TriangleIds after = fan[k];
-      std::sort(before.begin(), before.end());
-      std::sort(after.begin(), after.end());
-      this->Output.TurnedDiagonals += before != after;
-      this->Surface.Triangles[triangle] = fan[k];
+      const TriangleIds before = std::exchange(this->Surface.Triangles[triangle], fan[k]);
+      const bool isTurned = Sorted(before) != Sorted(fan[k]);
+      this->Output.TurnedDiagonals += isTurned ? 1 : 0;
+      if (isTurned || GetRelativeTurn(before, fan[k]) < 0)
+      {
+        changed.push_back(triangle);
+      }
       if (hasLabels)
       {
         this->Surface.Labels[triangle] = labels;
@@ -174,8 +179,13 @@ Status SurfaceFacetFinder::TurnDiagonals(const std::vector<Id>& doubtful)
   return Status();
 }
 
-void SurfaceFacetFinder::FindFacets()
+/** Finds both sides of these triangles. */
+void SurfaceFacetFinder::FindFacets(const std::vector<Id>& triangles)
 {
+  if (triangles.empty())
+  {
+    return;
+  }
   // The triangles by their first vertex, with the other two in order.
   const std::size_t count = this->Input.Order.size();
   std::vector<Id> vertices(this->Input.Points.size(), NoId);
@@ -194,9 +204,10 @@ void SurfaceFacetFinder::FindFacets()
   };
   std::vector<Id> starts(count + 2, 0);
   std::vector<char> isOnSurface(count + 1, 0);
-  for (const TriangleIds& triangle : this->Surface.Triangles)
+  for (const Id t : triangles)
   {
-    const TriangleIds ids = getVertices(triangle);
+    this->Output.Sides[2 * t] = this->Output.Sides[2 * t + 1] = NoId;
+    const TriangleIds ids = getVertices(this->Surface.Triangles[t]);
     ++starts[ids[0] + 2];
     for (Id vertex : ids)
     {
@@ -204,14 +215,13 @@ void SurfaceFacetFinder::FindFacets()
     }
   }
   std::partial_sum(starts.begin(), starts.end(), starts.begin());
-  std::vector<Candidate> candidates(this->Surface.Triangles.size());
-  for (Id t = 0; t < static_cast<Id>(candidates.size()); ++t)
+  std::vector<Candidate> candidates(triangles.size());
+  for (const Id t : triangles)
   {
     const TriangleIds ids = getVertices(this->Surface.Triangles[t]);
     candidates[starts[ids[0] + 1]++] = { ids[1], ids[2], t };
   }
 
-  this->Output.Sides.assign(2 * this->Surface.Triangles.size(), NoId);
   const auto find = [&](std::size_t t)
   {
     const TetrahedronIds& tetrahedron = this->Input.All.Tetrahedra[t];

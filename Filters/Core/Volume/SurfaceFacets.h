@@ -8,7 +8,7 @@
  *  2. a triangle at a tetrahedron whose cell has four points only is strongly Delaunay. The others
  *     are tested by the double sphere (SurfaceDelaunayTest.h), and diagonals inside of cocircular
  *     facets are flipped to those of the pulling rule (FacetPolygons.h, thesis 6.4.3);
- *  3. if there were any, facets are compared once more.
+ *  3. the triangles of flipped diagonals are compared once more.
  *
  * Inputs: the invariants of TriangleMesh.h.
  * Guarantees: on Ok each side of each triangle has its facet; labels are exchanged with the
