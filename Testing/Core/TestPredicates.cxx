@@ -38,6 +38,15 @@ int GetOrientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
   return sgn(GetDeterminant(GetDifference(b, a), GetDifference(c, a), GetDifference(d, a)));
 }
 
+int GetProjectedOrientation(int axis, const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  const int x = (axis + 1) % 3;
+  const int y = (axis + 2) % 3;
+  const Vector u = GetDifference(b, a);
+  const Vector v = GetDifference(c, a);
+  return sgn(u[x] * v[y] - u[y] * v[x]);
+}
+
 int GetInSphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e)
 {
   const std::array<Vector, 4> p{ GetDifference(a, e), GetDifference(b, e), GetDifference(c, e),
@@ -142,6 +151,7 @@ TEST(Predicates, AreExact)
   int zeros = 0;
   int equatorialZeros = 0;
   int diametralZeros = 0;
+  int projectedZeros = 0;
   for (int i = 0; i < 50000; ++i)
   {
     const auto [a, b, c, d, e] = sets.Get();
@@ -155,6 +165,16 @@ TEST(Predicates, AreExact)
     const int diametral = GetInDiametralSphere(a, b, c);
     ASSERT_EQ(InDiametralSphere(a, b, c), diametral) << i;
     diametralZeros += diametral == 0 ? 1 : 0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      // The middle of two points is on a line with them, but for rounding.
+      for (const Vec3& p : { c, 0.5 * (a + b) })
+      {
+        const int projected = GetProjectedOrientation(axis, a, b, p);
+        ASSERT_EQ(ProjectedOrientation(axis, a, b, p), projected) << i;
+        projectedZeros += projected == 0 ? 1 : 0;
+      }
+    }
     if (!AreCollinear(a, b, c))
     {
       const int equatorial = GetInEquatorialSphere(a, b, c, d);
@@ -165,6 +185,7 @@ TEST(Predicates, AreExact)
   EXPECT_GT(zeros, 5000);
   EXPECT_GT(diametralZeros, 1000);
   EXPECT_GT(equatorialZeros, 1000);
+  EXPECT_GT(projectedZeros, 20000);
 }
 
 TEST(Predicates, HaveTheSignsTheyAreDocumentedWith)

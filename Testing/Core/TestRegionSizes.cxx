@@ -4,7 +4,6 @@
 #include "Core/Geometry/Measures.h"
 #include "Core/Pipeline/ConformingMesher.h"
 #include "Core/Repair/BoundaryTriangulator.h"
-#include "Core/Search/BoxTree.h"
 #include "Core/Sizing/RegionLocator.h"
 #include "Core/Sizing/RegionSizes.h"
 
@@ -268,34 +267,4 @@ TEST(RegionSizes, RefuseWhatMakesNoSense)
   }
   EXPECT_EQ(getCode({ 3, 0.5 }, 0.3), StatusCode::InvalidOption);
   EXPECT_EQ(getCode({ OutsideRegion, 0.5 }, 0.3), StatusCode::InvalidOption);
-}
-
-TEST(BoxTree, FindsTheNearest)
-{
-  std::mt19937_64 generator(3);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  const auto pick = [&] {
-    return Vec3{ uniform(generator), uniform(generator), uniform(generator) };
-  };
-  std::vector<Vec3> points;
-  std::vector<Box> boxes;
-  for (int i = 0; i < 500; ++i)
-  {
-    points.push_back(pick());
-    boxes.push_back(Box::MakeAround(points.back(), 0.0));
-  }
-  const BoxTree tree(boxes);
-  for (int i = 0; i < 500; ++i)
-  {
-    const Vec3 p = pick();
-    double expected = std::numeric_limits<double>::infinity();
-    for (const Vec3& point : points)
-    {
-      expected = std::min(expected, Distance(p, point));
-    }
-    const auto getDistance = [&](Id id) { return Distance(p, points[id]); };
-    EXPECT_EQ(tree.FindDistance(p, 2.0, getDistance), expected);
-    EXPECT_EQ(tree.FindDistance(p, 0.5 * expected, getDistance), 0.5 * expected);
-  }
-  EXPECT_EQ(BoxTree({}).FindDistance({}, 0.5, [](Id) { return 0.0; }), 0.5);
 }

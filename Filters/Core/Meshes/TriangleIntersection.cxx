@@ -105,6 +105,43 @@ bool DoesAnEdgeMeet(const Corners& s, const std::array<int, 3>& sides, const Cor
   return false;
 }
 
+bool HaveNoneInPlane(const std::array<int, 3>& sides)
+{
+  return sides[0] != 0 && sides[1] != 0 && sides[2] != 0;
+}
+
+/** The corners, beginning with the one that is alone on its side. */
+Corners BeginWithLoneCorner(const Corners& t, const std::array<int, 3>& sides, int& side)
+{
+  const int first = sides[1] == sides[2] ? 0 : sides[0] == sides[2] ? 1 : 2;
+  side = sides[first];
+  return { t[first], t[(first + 1) % 3], t[(first + 2) % 3] };
+}
+
+/**
+ * Two triangles that cross each other's planes and have no corner in them. Both cut the line where
+ * the planes meet; two signs tell whether their pieces of it overlap (P. Guigue, O. Devillers, Fast
+ * and robust triangle-triangle overlap test using orientation predicates, 2003).
+ */
+bool DoCrossingTrianglesMeet(const Corners& s, const std::array<int, 3>& sidesS, const Corners& t,
+  const std::array<int, 3>& sidesT)
+{
+  int sideS = 0;
+  int sideT = 0;
+  Corners first = BeginWithLoneCorner(s, sidesS, sideS);
+  Corners second = BeginWithLoneCorner(t, sidesT, sideT);
+  if (sideS < 0)
+  {
+    std::swap(second[1], second[2]);
+  }
+  if (sideT < 0)
+  {
+    std::swap(first[1], first[2]);
+  }
+  return Orientation(first[0], first[1], second[0], second[1]) <= 0 &&
+    Orientation(first[0], first[2], second[2], second[0]) <= 0;
+}
+
 /**
  * Whether a line along an edge of s separates the triangles in a projection: t lies beyond it,
  * without touching. sign: the orientation of s there.
@@ -227,10 +264,15 @@ TriangleContact ClassifySeparate(const Corners& s, const Corners& t)
   else
   {
     const std::array<int, 3> sidesS = GetSides(t, s);
+    if (AreStrictlyOnOneSide(sidesS))
+    {
+      return TriangleContact::Disjoint;
+    }
     // An end of the common segment is where an edge of one triangle leaves the other's plane; an
     // edge that lies in the plane ends where another one does that.
-    meet = !AreStrictlyOnOneSide(sidesS) &&
-      (DoesAnEdgeMeet(s, sidesS, t) || DoesAnEdgeMeet(t, sidesT, s));
+    meet = HaveNoneInPlane(sidesS) && HaveNoneInPlane(sidesT)
+      ? DoCrossingTrianglesMeet(s, sidesS, t, sidesT)
+      : DoesAnEdgeMeet(s, sidesS, t) || DoesAnEdgeMeet(t, sidesT, s);
   }
   return meet ? TriangleContact::Intersection : TriangleContact::Disjoint;
 }

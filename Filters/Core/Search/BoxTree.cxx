@@ -16,8 +16,15 @@ BoxTree::BoxTree(const std::vector<Box>& boxes) : Order(boxes.size())
   std::iota(this->Order.begin(), this->Order.end(), 0);
   if (!this->Order.empty())
   {
+    std::vector<Vec3> centers;
+    centers.reserve(boxes.size());
+    for (const Box& box : boxes)
+    {
+      // Halves first: the sum of large coordinates may overflow.
+      centers.push_back(0.5 * box.Low + 0.5 * box.High);
+    }
     this->Nodes.reserve(this->Order.size());
-    this->Build(boxes, 0, static_cast<Id>(this->Order.size()));
+    this->Build(boxes, centers, 0, static_cast<Id>(this->Order.size()));
   }
   this->Boxes.reserve(boxes.size());
   for (const Id id : this->Order)
@@ -26,7 +33,8 @@ BoxTree::BoxTree(const std::vector<Box>& boxes) : Order(boxes.size())
   }
 }
 
-void BoxTree::Build(const std::vector<Box>& boxes, Id begin, Id end)
+void BoxTree::Build(
+  const std::vector<Box>& boxes, const std::vector<Vec3>& centers, Id begin, Id end)
 {
   const std::size_t index = this->Nodes.size();
   this->Nodes.emplace_back();
@@ -44,16 +52,15 @@ void BoxTree::Build(const std::vector<Box>& boxes, Id begin, Id end)
     const Id middle = begin + (end - begin) / 2;
     std::nth_element(this->Order.begin() + begin, this->Order.begin() + middle,
       this->Order.begin() + end,
-      [&boxes, axis](Id a, Id b)
+      [&centers, axis](Id a, Id b)
       {
-        // Halves first: the sum of large coordinates may overflow.
-        const double left = 0.5 * boxes[a].Low[axis] + 0.5 * boxes[a].High[axis];
-        const double right = 0.5 * boxes[b].Low[axis] + 0.5 * boxes[b].High[axis];
+        const double left = centers[a][axis];
+        const double right = centers[b][axis];
         return left != right ? left < right : a < b;
       });
-    this->Build(boxes, begin, middle);
+    this->Build(boxes, centers, begin, middle);
     node.Right = static_cast<Id>(this->Nodes.size());
-    this->Build(boxes, middle, end);
+    this->Build(boxes, centers, middle, end);
   }
   this->Nodes[index] = node;
 }

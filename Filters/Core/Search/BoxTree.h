@@ -70,7 +70,7 @@ private:
     Id Right = NoId;
   };
 
-  void Build(const std::vector<Box>& boxes, Id begin, Id end);
+  void Build(const std::vector<Box>& boxes, const std::vector<Vec3>& centers, Id begin, Id end);
   template <class Function>
   void VisitPairsOfLeaves(const Node& a, const Node& b, Function&& visit) const;
   template <class Condition, class Function>

@@ -343,7 +343,7 @@ cdm::Status DistributedSurface::Check()
     }
     this->SideRegions.push_back(regions);
   }
-  const cdm::FacetPolygons polygons(this->Mesh);
+  const cdm::FacetPolygons polygons(this->Mesh, this->Mesh.Points.size());
   std::vector<char> isDone(triangles.size(), 0);
   std::vector<cdm::Id> polygon;
   for (std::size_t t = 0; t < triangles.size() && status.IsOk(); ++t)
