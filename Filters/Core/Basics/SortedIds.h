@@ -24,15 +24,15 @@ Ids Sorted(Ids ids)
 }
 
 /**
- * Whether an id is in a list, or one of a few, in any order. A loop, which compilers unroll for a
- * few ids: std::find, which they do not, took one percent of the time of small meshes.
+ * Whether an item is in a list, in any order. A loop, which compilers unroll for the few ids of a
+ * simplex: std::find, which they do not, took one percent of the time of small meshes.
  */
-template <typename Ids>
-bool Contains(const Ids& ids, Id id)
+template <typename List, typename Item>
+bool Contains(const List& list, const Item& item)
 {
-  for (const Id other : ids)
+  for (const auto& other : list)
   {
-    if (other == id)
+    if (other == item)
     {
       return true;
     }

@@ -3,6 +3,7 @@
 
 #include "Core/Basics/IdLimits.h"
 #include "Core/Basics/ParallelLoop.h"
+#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Meshes/SimplexIncidence.h"
 #include "Core/Meshes/VoronoiMeasures.h"
@@ -134,7 +135,7 @@ void Calculator::AddCouplings(const EdgeIds& edge, RecordIterator begin, RecordI
   for (auto record = begin; record != end; ++record)
   {
     const Id region = this->Mesh.Regions[record->Simplex / 6];
-    if (std::find(regions.begin(), regions.end(), region) == regions.end())
+    if (!Contains(regions, region))
     {
       regions.push_back(region);
     }

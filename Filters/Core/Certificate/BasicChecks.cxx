@@ -326,8 +326,7 @@ Checker::Region* Checker::FindRegion(Id region)
 void Checker::AddExample(Id tetrahedron)
 {
   std::vector<Id>& examples = this->Report.Examples;
-  if (examples.size() < MaximumNumberOfExamples &&
-    std::find(examples.begin(), examples.end(), tetrahedron) == examples.end())
+  if (examples.size() < MaximumNumberOfExamples && !Contains(examples, tetrahedron))
   {
     examples.push_back(tetrahedron);
   }

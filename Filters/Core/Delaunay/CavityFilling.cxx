@@ -143,7 +143,7 @@ private:
   bool IsOutside(Id t) const
   {
     const TetrahedronIds& vertices = this->Local.Tetrahedra[t];
-    return std::find(vertices.begin(), vertices.end(), this->Infinite) != vertices.end();
+    return Contains(vertices, this->Infinite);
   }
 
   /** Visits a facet from the tetrahedra on its sides, as 4 * tetrahedron + facet. False: none. */

@@ -2,6 +2,7 @@
 #include "Core/Delaunay/DelaunayTetrahedralization.h"
 
 #include "Core/Basics/ParallelLoop.h"
+#include "Core/Basics/SortedIds.h"
 #include "Core/Delaunay/VertexInsertion.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Meshes/TetMesh.h"
@@ -144,7 +145,7 @@ bool Builder::HandOver(Worker& from, std::size_t next, Worker& to)
       isFound = this->Insertion.LocateWithinPart(from.Todo[i], from.Space, start) &&
         this->Insertion.IsOwned(start, part);
       const TetrahedronIds& ids = this->Output.Tetrahedra[isFound ? start : 0];
-      isFound = isFound && std::find(ids.begin(), ids.end(), this->Infinite) == ids.end();
+      isFound = isFound && !Contains(ids, this->Infinite);
     }
     return isFound;
   };
@@ -468,7 +469,7 @@ Id LocateInTetrahedralization(const RawVector<Vec3>& points,
   const auto isInfinite = [&](Id t)
   {
     const TetrahedronIds& ids = tetrahedralization.Tetrahedra[t];
-    return std::find(ids.begin(), ids.end(), infinite) != ids.end();
+    return Contains(ids, infinite);
   };
   Id t = 0;
   while (tetrahedralization.Tetrahedra[t][0] == NoId || isInfinite(t))

@@ -2,6 +2,7 @@
 #include "Core/Delaunay/GridBlock.h"
 
 #include "Core/Basics/ParallelLoop.h"
+#include "Core/Basics/SortedIds.h"
 #include "Core/Meshes/TetMesh.h"
 
 #include <algorithm>
@@ -121,7 +122,7 @@ public:
     {
       const std::array<Id, 3> place{ lines[0].OfPoints[i], lines[1].OfPoints[i],
         lines[2].OfPoints[i] };
-      if (std::find(place.begin(), place.end(), NoId) == place.end())
+      if (!Contains(place, NoId))
       {
         this->GetPoint(place) = static_cast<Id>(i);
       }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Delaunay/PartConflicts.h"
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Delaunay/FacetForm.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Geometry/PulledSphere.h"
@@ -113,7 +114,7 @@ bool IsInConflict(const ConflictQuery& query, const NumberedPoint& point)
     std::swap(v[1], v[2]);
     std::swap(numbers[1], numbers[2]);
   }
-  if (std::find(numbers.begin(), numbers.end(), point.Number) != numbers.end())
+  if (Contains(numbers, point.Number))
   {
     return false;
   }

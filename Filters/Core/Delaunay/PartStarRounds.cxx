@@ -125,9 +125,9 @@ bool PartStarRounds::HasInStar(const ConflictQuery& query, const TetrahedronIds&
     [&](Id tetrahedron, int)
     {
       const TetrahedronIds& other = this->Stars->Mesh.Tetrahedra[tetrahedron];
-      const auto common = std::count_if(other.begin(), other.end(),
-        [&](Id id) { return std::find(ids.begin(), ids.end(), id) != ids.end(); });
-      const bool hasApex = std::find(other.begin(), other.end(), ids[3]) != other.end();
+      const auto common =
+        std::count_if(other.begin(), other.end(), [&](Id id) { return Contains(ids, id); });
+      const bool hasApex = Contains(other, ids[3]);
       hasSame = hasSame || common == 4;
       hasBeyond = hasBeyond || (query.IsFacet != 0 && common == 3 && !hasApex);
       neighbors.insert(neighbors.end(), other.begin(), other.end());
@@ -161,7 +161,7 @@ Status PartStarRounds::AnswerOne(
     }
   }
   const Id center = this->FindSmallestStar(query, ids);
-  const bool isKnown = std::find(ids.begin(), ids.end(), NoId) == ids.end();
+  const bool isKnown = !Contains(ids, NoId);
   hasConflict = true;
   if (!isKnown && this->Stars->Incidence.CountTetrahedra(center) > LargestStar)
   {
@@ -175,11 +175,7 @@ Status PartStarRounds::AnswerOne(
   }
   SortUnique(neighbors);
   std::copy_if(neighbors.begin(), neighbors.end(), std::back_inserter(found),
-    [&](Id id)
-    {
-      return std::find(ids.begin(), ids.end(), id) == ids.end() &&
-        IsInConflict(query, this->Points[id]);
-    });
+    [&](Id id) { return !Contains(ids, id) && IsInConflict(query, this->Points[id]); });
   return isKnown && query.IsFacet == 0 && found.empty()
     ? Status::InternalError("Parts of the mesh do not agree on a tetrahedron.")
     : Status();

@@ -124,9 +124,9 @@ bool BoundaryRequests::AddEdgeOfTwoTriangles(
     for (Id t : pointTriangles[ends[0]])
     {
       const TriangleIds& triangle = this->Surface.Triangles[t];
-      count += std::all_of(triangle.begin(), triangle.end(),
-                 [&](Id id) { return std::find(ids.begin(), ids.end(), id) != ids.end(); }) &&
-        std::find(triangle.begin(), triangle.end(), ends[1]) != triangle.end();
+      count +=
+        std::all_of(triangle.begin(), triangle.end(), [&](Id id) { return Contains(ids, id); }) &&
+        Contains(triangle, ends[1]);
     }
     if (count == 2 && this->AddEdge(static_cast<Id>(edge - this->SurfaceEdges.data()), true))
     {
@@ -148,7 +148,7 @@ void BoundaryRequests::AddEdgeOrTriangle(
   for (Id t : pointTriangles[ends[0]])
   {
     const TriangleIds& corners = this->Surface.Triangles[t];
-    if (std::find(corners.begin(), corners.end(), ends[1]) != corners.end())
+    if (Contains(corners, ends[1]))
     {
       triangles.push_back(t);
     }

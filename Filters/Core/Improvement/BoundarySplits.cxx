@@ -341,7 +341,7 @@ void BoundarySplits::Visit(Id tetrahedron, Id point, const Vec3& position)
   const auto [a, b, c, d] = GetCorners(mesh.Points, ids);
   const int side = InSphere(a, b, c, d, position);
   this->IsNoCone = this->IsNoCone || side == 0;
-  if (side < 0 && std::find(ids.begin(), ids.end(), point) == ids.end())
+  if (side < 0 && !Contains(ids, point))
   {
     return;
   }

@@ -232,7 +232,7 @@ Flip FlipSearch::FindBest(Id tetrahedron) const
     isOpen[facet] = this->IsOpen(tetrahedron, facet);
   }
   Flip best;
-  if (std::find(isOpen.begin(), isOpen.end(), true) == isOpen.end())
+  if (!Contains(isOpen, true))
   {
     return best;
   }

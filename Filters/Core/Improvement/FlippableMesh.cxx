@@ -131,8 +131,7 @@ std::vector<FlippableMesh::OpenFacet> FlippableMesh::FindFacetsAround(
     for (int facet = 0; facet < 4; ++facet)
     {
       const Id neighbor = this->Mesh.Neighbors[tetrahedron][facet];
-      if (neighbor == NoId ||
-        std::find(tetrahedra.begin(), tetrahedra.end(), neighbor / 4) == tetrahedra.end())
+      if (neighbor == NoId || !Contains(tetrahedra, neighbor / 4))
       {
         facets.push_back({ GetSortedFacet(this->Mesh.Tetrahedra[tetrahedron], facet), neighbor });
       }

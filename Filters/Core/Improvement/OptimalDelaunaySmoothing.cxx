@@ -202,7 +202,7 @@ bool Smoothing::MakesNegativeCoupling(const std::vector<Id>& tetrahedra) const
     {
       const EdgeIds edge = MakeEdge(ids[TetrahedronEdges[i][0]], ids[TetrahedronEdges[i][1]]);
       if (this->Mesh.IsInside(edge[1]) || !IsBoundaryEdge(surface, pointTriangles, edge) ||
-        std::find(tested.begin(), tested.end(), edge) != tested.end())
+        Contains(tested, edge))
       {
         continue;
       }

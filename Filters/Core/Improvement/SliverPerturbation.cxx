@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/SliverPerturbation.h"
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Improvement/LookAhead.h"
 #include "Core/Improvement/SliverChanges.h"
@@ -186,8 +187,7 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
     std::vector<Id> near;
     for (const TetrahedronIds& ids : unmet)
     {
-      if (std::none_of(ids.begin(), ids.end(),
-            [&near](Id id) { return std::find(near.begin(), near.end(), id) != near.end(); }))
+      if (std::none_of(ids.begin(), ids.end(), [&near](Id id) { return Contains(near, id); }))
       {
         requests.AddLargestTriangle(ids, pointTriangles);
         near.insert(near.end(), ids.begin(), ids.end());

@@ -221,7 +221,7 @@ Status SliverPointMoves::MoveBoundary(const ExecutionContext& context, bool& isM
       isIntact = false;
       for (Id p : moved)
       {
-        const bool isCorner = std::find(ids.begin(), ids.end(), p) != ids.end();
+        const bool isCorner = Contains(ids, p);
         isFree[p] &= isCorner || isInside(positions[p]) ? 0 : 1;
       }
     };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/StarSmoothing.h"
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Search/PlaceSearch.h"
@@ -30,7 +31,7 @@ bool FindStar(const FlippableMesh& mesh, Id point, Id first, std::vector<Id>& st
       {
         return false;
       }
-      if (std::find(star.begin(), star.end(), neighbor / 4) == star.end())
+      if (!Contains(star, neighbor / 4))
       {
         star.push_back(neighbor / 4);
       }

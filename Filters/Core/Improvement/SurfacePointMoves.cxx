@@ -133,9 +133,8 @@ bool SurfacePointMoves::ArePlanar(Id point, const std::vector<Id>& ends) const
       const TriangleIds& others = this->Surface.Triangles[other];
       // Neighbors share an edge at the point that is no structural one.
       const bool areNeighbors = std::any_of(others.begin(), others.end(),
-        [&](Id id)
-        {
-          return id != point && std::find(ids.begin(), ids.end(), id) != ids.end() &&
+        [&](Id id) {
+          return id != point && Contains(ids, id) &&
             !std::binary_search(ends.begin(), ends.end(), id);
         });
       if (areNeighbors &&
@@ -317,8 +316,7 @@ bool SurfacePointMoves::CollectFacets(Id point, Surroundings& around) const
   cavity.Walls.clear();
   around.Outer.clear();
   around.Triangles.clear();
-  const auto isAtPoint = [&](const TriangleIds& ids)
-  { return std::find(ids.begin(), ids.end(), point) != ids.end(); };
+  const auto isAtPoint = [&](const TriangleIds& ids) { return Contains(ids, point); };
   for (Id t : this->Tetrahedra)
   {
     const TetrahedronIds& ids = mesh.Tetrahedra[t];
@@ -422,14 +420,13 @@ bool SurfacePointMoves::AreSpheresEmpty(Id point, const Vec3& position, Surround
   const auto getPoint = [&](Id id) { return id == point ? position : this->Points[id]; };
   const auto isEmpty = [&](const auto& ids, const auto& isInside)
   {
-    if (std::find(ids.begin(), ids.end(), point) == ids.end())
+    if (!Contains(ids, point))
     {
       return !isInside(position);
     }
     for (std::size_t i = 0; i < cavity.Numbers.size(); ++i)
     {
-      if (std::find(ids.begin(), ids.end(), cavity.Numbers[i]) == ids.end() &&
-        isInside(cavity.Points[i]))
+      if (!Contains(ids, cavity.Numbers[i]) && isInside(cavity.Points[i]))
       {
         return false;
       }
@@ -509,7 +506,7 @@ bool SurfacePointMoves::IsFlatAgain(Id point, const Vec3& position, double requi
   }
   for (std::size_t i = 0; i < cavity.Numbers.size(); ++i)
   {
-    if (std::find(ids.begin(), ids.end(), cavity.Numbers[i]) == ids.end() &&
+    if (!Contains(ids, cavity.Numbers[i]) &&
       InSphere(v[0], v[1], v[2], v[3], cavity.Points[i]) >= 0)
     {
       return false;
@@ -535,7 +532,7 @@ double SurfacePointMoves::Rate(Id point, const Vec3& position, double required)
   {
     smallest =
       this->GetSmallerAngle(smallest, ids, region, this->GetMovedCorners(ids, point, position));
-    if (smallest <= required && std::find(ids.begin(), ids.end(), point) != ids.end())
+    if (smallest <= required && Contains(ids, point))
     {
       this->Flat = { ids, region };
     }

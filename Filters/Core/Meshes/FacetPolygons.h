@@ -9,6 +9,7 @@
 #ifndef cdmFacetPolygons_h
 #define cdmFacetPolygons_h
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Meshes/TriangleMesh.h"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ public:
         const Id b = ids[(e + 1) % 3];
         const Id other = this->Others[3 * triangles[i] + e];
         if (other == NoId || !this->HaveSameLabels(triangles[i], other, a, b) ||
-          std::find(triangles.begin(), triangles.end(), other) != triangles.end())
+          Contains(triangles, other))
         {
           continue;
         }

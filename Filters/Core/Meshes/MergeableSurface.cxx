@@ -23,7 +23,7 @@ MergeableSurface::MergeableSurface(TriangleMesh& surface)
 bool MergeableSurface::Has(Id triangle, Id point) const
 {
   const TriangleIds& ids = this->Surface.Triangles[triangle];
-  return std::find(ids.begin(), ids.end(), point) != ids.end();
+  return Contains(ids, point);
 }
 
 std::vector<Id> MergeableSurface::GetNeighbors(Id point) const

@@ -62,8 +62,7 @@ double GetSolidAngle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
 
 bool HaveCommonPoint(const TriangleIds& s, const TriangleIds& t)
 {
-  return std::any_of(
-    s.begin(), s.end(), [&t](Id id) { return std::find(t.begin(), t.end(), id) != t.end(); });
+  return std::any_of(s.begin(), s.end(), [&t](Id id) { return Contains(t, id); });
 }
 
 /** Whether each region's labels enclose a positive volume. */
@@ -746,9 +745,8 @@ void Remeshing::FindTetrahedronSources()
       for (const Id candidate : tetrahedra[origin])
       {
         const TetrahedronIds& ids = before.Tetrahedra[candidate];
-        const std::ptrdiff_t common = std::count_if(ids.begin(), ids.end(),
-          [&origins](Id id)
-          { return std::find(origins.begin(), origins.end(), id) != origins.end(); });
+        const std::ptrdiff_t common = std::count_if(
+          ids.begin(), ids.end(), [&origins](Id id) { return Contains(origins, id); });
         if (before.Regions[candidate] == after.Regions[i] && common > most)
         {
           most = common;

@@ -362,9 +362,7 @@ bool ChangeableSurface::KeepsBends(const SurfaceChange& change, double smallestC
     for (int i = 0; i < 3; ++i)
     {
       const EdgeIds edge = MakeEdge(added.Points[i], added.Points[(i + 1) % 3]);
-      if (this->FindEdge(edge) != NoId ||
-        std::find(change.AddedEdges.begin(), change.AddedEdges.end(), edge) !=
-          change.AddedEdges.end())
+      if (this->FindEdge(edge) != NoId || Contains(change.AddedEdges, edge))
       {
         continue;
       }

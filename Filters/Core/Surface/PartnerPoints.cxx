@@ -451,7 +451,7 @@ bool PartnerPoints::PlaceInFacet(Id t, Id encroaching, Vec3& target) const
 {
   // The point lies in the same (curved) facet: matches would come ever closer to it.
   const IdLists::Range facets = this->Incidences.GetFacets(encroaching);
-  if (std::find(facets.begin(), facets.end(), this->Surface.GetTriangle(t).Facet) != facets.end())
+  if (Contains(facets, this->Surface.GetTriangle(t).Facet))
   {
     return false;
   }

@@ -41,11 +41,6 @@ bool IsSharp(const StructuralEdge& edge)
   return edge.DihedralAngle >= 0.0 && edge.DihedralAngle < SharpDihedralAngle;
 }
 
-bool HasId(const IdLists::Range& ids, Id id)
-{
-  return std::find(ids.begin(), ids.end(), id) != ids.end();
-}
-
 /** Cosine of the angle of a direction and the closest one between two others; all of length one. */
 double GetSectorCosine(const Vec3& direction, const Vec3& first, const Vec3& second)
 {
@@ -270,7 +265,7 @@ void SharpAngles::FindTipsAt(Id corner, const IdLists::Range& triangles, const I
     for (Id t : triangles)
     {
       const TriangleIds& ids = this->Surface.Triangles[t];
-      if (std::find(ids.begin(), ids.end(), end) != ids.end())
+      if (Contains(ids, end))
       {
         edgeFacets.emplace_back(end, facets[t]);
         for (std::size_t i = first; i + 1 < edgeFacets.size(); ++i)
@@ -379,7 +374,7 @@ void SharpAngles::FindShadows(Id corner, Id first, Id other, const IdLists::Rang
   for (Id t : triangles)
   {
     const TriangleIds& ids = this->Surface.Triangles[t];
-    if (std::find(ids.begin(), ids.end(), other) != ids.end())
+    if (Contains(ids, other))
     {
       own.push_back(this->Facets[t]);
     }
@@ -389,8 +384,7 @@ void SharpAngles::FindShadows(Id corner, Id first, Id other, const IdLists::Rang
     const TriangleIds& ids = this->Surface.Triangles[t];
     const auto apex =
       std::find_if(ids.begin(), ids.end(), [&](Id id) { return id != corner && id != first; });
-    if (std::find(ids.begin(), ids.end(), first) != ids.end() &&
-      std::find(own.begin(), own.end(), this->Facets[t]) == own.end() && isOnSide(getHeight(*apex)))
+    if (Contains(ids, first) && !Contains(own, this->Facets[t]) && isOnSide(getHeight(*apex)))
     {
       shadows.push_back({ this->Facets[t], sine });
     }
@@ -493,7 +487,7 @@ bool SharpAngles::AreAcrossFacets(Id p, Id q, const PlaneLimit& limit) const
   {
     for (Id g : second)
     {
-      if (HasId(second, f) || HasId(first, g))
+      if (Contains(second, f) || Contains(first, g))
       {
         continue;
       }
@@ -546,8 +540,8 @@ bool SharpAngles::IsInShadow(Id armPoint, Id point, const PlaneLimit& limit) con
     const Arm& arm = this->Arms[i];
     for (const Shadow& shadow : arm.Shadows)
     {
-      if (shadow.Sine > limit.Sine || point == arm.Corner || !HasId(facets, shadow.Facet) ||
-        HasId(this->PointArms[point], i))
+      if (shadow.Sine > limit.Sine || point == arm.Corner || !Contains(facets, shadow.Facet) ||
+        Contains(this->PointArms[point], i))
       {
         continue;
       }

@@ -3,6 +3,7 @@
 
 #include "Core/Basics/IdLimits.h"
 #include "Core/Basics/ParallelLoop.h"
+#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Surface/SurfaceChecks.h"
@@ -355,7 +356,7 @@ bool SurfaceRefinement::IsCocircularFacet(Id t, const SurfaceDelaunayTest::Resul
   {
     for (Id use : this->Surface->GetTriangle(triangles[i]).Adjacent)
     {
-      if (use < 0 || std::find(triangles.begin(), triangles.end(), use / 3) != triangles.end())
+      if (use < 0 || Contains(triangles, use / 3))
       {
         continue;
       }

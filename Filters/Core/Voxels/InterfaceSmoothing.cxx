@@ -72,7 +72,7 @@ std::vector<char> FindConnectedPoints(const FaceNet& net)
     for (const Id id : net.Faces[f].Points)
     {
       const std::array<Id, 4>& others = net.Faces[g].Points;
-      common += std::find(others.begin(), others.end(), id) != others.end();
+      common += Contains(others, id);
     }
     return common > 1;
   };
