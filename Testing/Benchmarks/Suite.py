@@ -44,6 +44,8 @@ from vtkmodules.vtkIOXML import (
 REPEAT_SECONDS = 4.0
 REPEAT_SECONDS_MODEL = 1.0
 VOLUME_TOLERANCE = 1e-6
+# By how much of their size polygons may leave their plane: the default of its switch -T.
+TETGEN_TOLERANCE = 1e-8
 
 POINT_SETS = ("random", "graded", "sphere", "clusters", "grid", "grid0.1", "rotated")
 # The largest set for vtkDelaunay3D, which needs minutes for 1e5 points.
@@ -365,19 +367,47 @@ def GetVerdict(certificate):
 def PrepareSurface(surface, base):
     """Writes the input of all programs; the points and volumes of the regions for the certificate.
 
-    All get the same polygons. Gmsh takes those of a device as plane surfaces to be meshed, as
-    TetGen does, and those of a model, which are far more and not always plane, as the triangles
-    that they were cut into.
+    All get the same polygons, as far as they can take them. TetGen takes polygons for plane and
+    meshes another body where they are not: then it gets the triangles that ours cuts them into.
+    Gmsh takes the polygons of a device as plane surfaces to be meshed, and triangles of models.
     """
     writer = vtkXMLPolyDataWriter()
     writer.SetInputData(surface)
     writer.SetFileName(base + ".vtp")
     writer.SetDataModeToBinary()
     writer.Write()
+    triangulator = vtkBoundaryTriangulator()
+    triangulator.SetInputData(surface)
+    triangulator.Update()
+    triangles = triangulator.GetOutput()
+    WriteTetgenInput(surface if HasPlanePolygons(surface) else triangles, base + ".smesh")
+    if surface.GetCellData().HasArray("FacetId"):
+        GmshMeshes.WriteGeometry(surface, base + ".geo")
+    else:
+        GmshMeshes.WriteTriangles(triangles, base + ".geo")
+    points = {surface.GetPoint(i) for i in range(surface.GetNumberOfPoints())}
+    return len(points), GetRegionVolumes(GmshMeshes.MeshBoundary(surface))
+
+
+def HasPlanePolygons(surface):
+    """Whether no polygon leaves its plane by more than TetGen's tolerance."""
+    for cell in range(surface.GetNumberOfCells()):
+        ids = surface.GetCell(cell).GetPointIds()
+        count = ids.GetNumberOfIds()
+        if count > 3:
+            corners = numpy.array([surface.GetPoint(ids.GetId(i)) for i in range(count)])
+            extents = numpy.linalg.svd(corners - corners.mean(axis=0), compute_uv=False)
+            if extents[2] > TETGEN_TOLERANCE * extents[0]:
+                return False
+    return True
+
+
+def WriteTetgenInput(surface, path):
+    """Writes polygons as facets of distinct points."""
     distinct = {}
     names = [distinct.setdefault(surface.GetPoint(i), len(distinct))
              for i in range(surface.GetNumberOfPoints())]
-    with open(base + ".smesh", "w", encoding="ascii") as file:
+    with open(path, "w", encoding="ascii") as file:
         file.write("%d 3 0 0\n" % len(distinct))
         for point, name in distinct.items():
             file.write("%d %.17g %.17g %.17g\n" % ((name,) + point))
@@ -387,15 +417,6 @@ def PrepareSurface(surface, base):
             corners = [names[ids.GetId(i)] for i in range(ids.GetNumberOfIds())]
             file.write("%d %s\n" % (len(corners), " ".join(map(str, corners))))
         file.write("0\n0\n")
-    triangulator = vtkBoundaryTriangulator()
-    triangulator.SetInputData(surface)
-    triangulator.Update()
-    triangles = triangulator.GetOutput()
-    if surface.GetCellData().HasArray("FacetId"):
-        GmshMeshes.WriteGeometry(surface, base + ".geo")
-    else:
-        GmshMeshes.WriteTriangles(triangles, base + ".geo")
-    return len(distinct), GetRegionVolumes(GmshMeshes.MeshBoundary(surface))
 
 
 def GetRegionVolumes(boundary):

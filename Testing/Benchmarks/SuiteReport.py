@@ -61,7 +61,8 @@ algorithms get the same.
     "models": """## Models
 
 Surfaces of a collection as they are, without limits on size or shape. Ours and TetGen (`-D`) add
-points to make the boundary Delaunay, TetGen after merging facets that are flat to 0.1 degrees; Gmsh
+points to make the boundary Delaunay, TetGen after merging facets that are flat to 0.1 degrees; where
+polygons are not plane it gets the triangles that ours cuts them into. Gmsh
 gets triangles, keeps them, and puts points inside, as dense as the triangles around. Our time
 includes the check of the result, which the others do not have.
 """,
