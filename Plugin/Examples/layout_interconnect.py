@@ -7,6 +7,7 @@ What the layer-based method of section 4.2.1 starts from (Fig. 4.4 and 4.5), wit
 as dense in all layers. See gallery.py.
 """
 
+import math
 import os
 
 import gallery
@@ -25,10 +26,14 @@ PROCESS = ((-1, -0.5, 0.0, 0), (-1, 0.0, 2.0, 1), (LOWER, 0.3, 0.6, 2), (PLUG, 0
 
 
 def MakeCorners(places):
-    """Corners of an octagon around each of the places."""
-    angles = numpy.radians(22.5 + 45.0 * numpy.arange(8))
-    return [[(x + 0.13 * c, y + 0.13 * s) for c, s in zip(numpy.cos(angles), numpy.sin(angles))]
-            for x, y in places]
+    """Corners of an octagon around each of the places.
+
+    Its cosines are square roots: numpy's own differ in the last bit between processors.
+    """
+    a = 0.13 * math.sqrt(0.5 + math.sqrt(0.125))
+    b = 0.13 * math.sqrt(0.5 - math.sqrt(0.125))
+    corners = ((a, b), (b, a), (-b, a), (-a, b), (-a, -b), (-b, -a), (b, -a), (a, -b))
+    return [[(x + c, y + s) for c, s in corners] for x, y in places]
 
 
 def MakeLayout():
