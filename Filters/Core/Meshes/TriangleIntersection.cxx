@@ -120,8 +120,7 @@ Corners BeginWithLoneCorner(const Corners& t, const std::array<int, 3>& sides, i
 
 /**
  * Two triangles that cross each other's planes and have no corner in them. Both cut the line where
- * the planes meet; two signs tell whether their pieces of it overlap (P. Guigue, O. Devillers, Fast
- * and robust triangle-triangle overlap test using orientation predicates, 2003).
+ * the planes meet; two signs tell whether their pieces of it overlap.
  */
 bool DoCrossingTrianglesMeet(const Corners& s, const std::array<int, 3>& sidesS, const Corners& t,
   const std::array<int, 3>& sidesT)

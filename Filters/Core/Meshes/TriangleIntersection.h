@@ -8,13 +8,17 @@
  *  1. common edge: coplanar, and the third vertices on the same side of the edge;
  *  2. common vertex: the two cones of directions at it have a direction in common (by convexity
  *     the triangles then share a segment that starts in the vertex);
- *  3. otherwise: an edge of one pierces or touches the other, or, coplanar, two edges meet or a
- *     vertex lies inside.
+ *  3. otherwise: where neither has a vertex in the other's plane, two signs tell whether their
+ *     pieces of the line in which the planes meet overlap; else an edge of one pierces or touches
+ *     the other, or, coplanar, no line along an edge separates them.
  *
  * Pairs are searched in a tree of boxes (BoxTree.h).
  *
  * Inputs: triangles are given by point ids; equal ids are common vertices, and different ids have
  * to have different coordinates. No triangle may be degenerate.
+ *
+ * Reference: P. Guigue, O. Devillers, "Fast and robust triangle-triangle overlap test using
+ * orientation predicates", Journal of Graphics Tools 8 (1), 2003 (the two signs).
  */
 #ifndef cdmTriangleIntersection_h
 #define cdmTriangleIntersection_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoxTree.h
- * @brief Finds those of many fixed boxes that overlap a given one, or what is nearest to a point: a
- *   static bounding volume hierarchy.
+ * @brief Finds those of many fixed boxes that overlap a given one, or each other, or what is nearest
+ *   to a point: a static bounding volume hierarchy.
  *
  * Boxes are closed: touching counts. Built once, by splitting at the median of the centers along
  * the longest side. Queries are const and thread safe; they visit boxes in an order that depends on
