@@ -11,8 +11,6 @@
 #include "Core/Meshes/MeshBoundary.h"
 #include "Core/Surface/StructuralEdges.h"
 
-#include <algorithm>
-
 namespace cdm
 {
 namespace
