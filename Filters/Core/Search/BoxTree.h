@@ -18,6 +18,7 @@
 #include "Core/Geometry/Box.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -125,8 +126,8 @@ void BoxTree::Visit(const Condition& isWanted, Function&& visit) const
 template <class Function, class Condition>
 bool BoxTree::VisitPairs(Function&& visit, const Condition& mayGoOn) const
 {
-  constexpr int StepsBetweenQuestions = 1024;
-  int steps = 0;
+  constexpr std::size_t StepsBetweenQuestions = 1024;
+  std::size_t steps = 0;
   Id done = 0;
   // Pairs of nodes that overlap, or twice the same one.
   std::vector<std::pair<Id, Id>> stack;
