@@ -8,6 +8,7 @@
 
 #include "Core/Basics/ThreadTeam.h"
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
@@ -15,6 +16,9 @@
 
 namespace cdm
 {
+/** Loops of steps of some microseconds, or less, call Continue() once in so many. */
+constexpr std::size_t StepsBetweenChecks = 1024;
+
 /**
  * Stages call Continue() in every loop that can last longer than 50 ms. A default constructed
  * context neither reports nor aborts, and has one thread. Continue() belongs on the thread that

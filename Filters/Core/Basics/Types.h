@@ -11,11 +11,14 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 namespace cdm
 {
 /** Index of a point, a triangle, a tetrahedron, ... */
 using Id = std::int32_t;
+
+constexpr double Infinity = std::numeric_limits<double>::infinity();
 
 /** "None": no neighbour, no source cell, no parent. */
 constexpr Id NoId = -1;

@@ -19,8 +19,6 @@ namespace cdm
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
-
 //--------------------------------------------------------------------------------------------------
 // Options, by the struct that they belong to.
 

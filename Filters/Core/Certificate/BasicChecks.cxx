@@ -17,7 +17,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -26,8 +25,6 @@ namespace cdm
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
-
 /** Tangent of one degree: facets of a border that bend by less go straight on. */
 constexpr double SmoothTangent = 0.017455064928217585;
 

@@ -13,8 +13,8 @@ namespace cdm
 namespace
 {
 /** Bits of a point's index. */
-constexpr int BitsOfPoint = 6;
-static_assert(CavityWrapping::MostPoints <= 1U << BitsOfPoint, "indices are packed into keys");
+constexpr int BitsOfIndex = 6;
+static_assert(CavityWrapping::MostPoints <= 1U << BitsOfIndex, "indices are packed into keys");
 } // namespace
 
 void CavityWrapping::Clear(std::size_t numberOfPoints)
@@ -63,7 +63,7 @@ std::size_t CavityWrapping::FindPlace(const TriangleIds& ascending) const
 {
   // Multiplied by 2^32 over the golden ratio, high bits are well mixed.
   const auto get = [&](std::size_t i) { return static_cast<std::uint32_t>(ascending[i]); };
-  const std::uint32_t key = (get(0) << BitsOfPoint | get(1)) << BitsOfPoint | get(2);
+  const std::uint32_t key = (get(0) << BitsOfIndex | get(1)) << BitsOfIndex | get(2);
   const std::size_t mask = this->Table.size() - 1;
   std::size_t place = (key * 2654435769U >> 12) & mask;
   while (this->Table[place] != NoId && this->Facets[this->Table[place]].Points != ascending)

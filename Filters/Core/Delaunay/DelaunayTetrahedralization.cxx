@@ -24,7 +24,6 @@ namespace
 constexpr std::size_t SmallRound = 2048;
 /** The first round has about so many vertices, each of the others eight times more. */
 constexpr Id FirstRound = 100;
-constexpr const char* Activity = "Tetrahedralizing the points";
 /** Vertices between two calls of the context. */
 constexpr std::size_t ReportInterval = 4096;
 /** Vertices after which a thread looks whether another one is idle. */
@@ -305,7 +304,7 @@ Status Builder::InsertRound(std::vector<Id> left, int numberOfThreads)
     // What a round will make is an estimate: it must not go back from what the last one has made.
     this->Progress = std::max(
       this->Progress, std::min(0.99, (begin + static_cast<double>(done)) / this->Infinite));
-    return this->Context.Continue(this->Progress, Activity);
+    return this->Context.Continue(this->Progress, VertexInsertion::Activity);
   };
   // Two cuts of the curve for the threads, then all of it for one. A third would hardly find more:
   // what is left lies where the curve comes by several times, and parts of half the curve never

@@ -14,11 +14,6 @@
 
 namespace cdm
 {
-namespace
-{
-constexpr const char* Activity = "Tetrahedralizing the points";
-} // namespace
-
 /**
  * Points on a lattice with a spacing that is a multiple of a power of two: products of their small
  * differences are exact in double precision, also where the determinant vanishes.

@@ -43,6 +43,8 @@ namespace cdm
 class VertexInsertion
 {
 public:
+  /** What is done, for ExecutionContext::Continue(). */
+  static constexpr const char* Activity = "Tetrahedralizing the points";
   /** Facet ids of 4 * tetrahedron + i have to fit into an Id. */
   static constexpr std::size_t MaximumTetrahedra = std::size_t(1) << 29;
 

@@ -21,7 +21,7 @@ namespace
 constexpr std::size_t MostPoints = 1000;
 constexpr std::size_t MostPerSplit = 20;
 
-bool Contains(const std::vector<TriangleIds>& sorted, const TriangleIds& key)
+bool IsInSorted(const std::vector<TriangleIds>& sorted, const TriangleIds& key)
 {
   return std::binary_search(sorted.begin(), sorted.end(), key);
 }
@@ -275,7 +275,7 @@ void BoundarySplits::CollectTriangles(const std::vector<Id>& touched)
   std::vector<TriangleIds> both;
   std::set_intersection(this->Made.begin(), this->Made.end(), this->Vanished.begin(),
     this->Vanished.end(), std::back_inserter(both));
-  const auto isInBoth = [&both](const TriangleIds& key) { return Contains(both, key); };
+  const auto isInBoth = [&both](const TriangleIds& key) { return IsInSorted(both, key); };
   this->Made.erase(
     std::remove_if(this->Made.begin(), this->Made.end(), isInBoth), this->Made.end());
   this->Vanished.erase(
@@ -458,7 +458,7 @@ void BoundarySplits::CollectCavity()
       const TriangleIds key = Sorted(facet);
       const Id neighbor = mesh.Neighbors[t][i];
       const bool isInside = neighbor != NoId && this->IsInCavity[neighbor / 4] != 0;
-      const bool isVanished = Contains(this->Vanished, key);
+      const bool isVanished = IsInSorted(this->Vanished, key);
       if (isInside && !isVanished && mesh.Regions[neighbor / 4] != mesh.Regions[t])
       {
         this->IsNoCone = true;
@@ -472,7 +472,7 @@ void BoundarySplits::CollectCavity()
       {
         const TriangleIds border{ facet[0], facet[2], facet[1] };
         const Id region =
-          Contains(this->Made, key) ? this->GetRegionInFront(border) : mesh.Regions[t];
+          IsInSorted(this->Made, key) ? this->GetRegionInFront(border) : mesh.Regions[t];
         if (region < 0)
         {
           // The surface is now on the other side of a flat tetrahedron, which is gone.
@@ -484,7 +484,7 @@ void BoundarySplits::CollectCavity()
           cavity.Regions.push_back(region);
           this->Outer.push_back(neighbor);
         }
-        if (neighbor != NoId && Contains(this->Made, key))
+        if (neighbor != NoId && IsInSorted(this->Made, key))
         {
           this->FoundRegions.emplace_back(key, mesh.Regions[neighbor / 4]);
         }
@@ -511,7 +511,7 @@ void BoundarySplits::CollectCavity()
   for (const NewTriangle& triangle : this->Triangles)
   {
     const TriangleIds key = Sorted(triangle.Ids);
-    if (Contains(this->Made, key))
+    if (IsInSorted(this->Made, key))
     {
       for (Id region : { triangle.Labels.Back, triangle.Labels.Front })
       {
@@ -565,7 +565,7 @@ bool BoundarySplits::FillByCone(const std::vector<Vec3>& points)
   const Id apex = static_cast<Id>(this->Surface.Points.size());
   return points.size() == 1 && this->Moved.empty() && !this->IsNoCone &&
     std::all_of(this->Made.begin(), this->Made.end(),
-      [apex](const TriangleIds& ids) { return cdm::Contains(ids, apex); }) &&
+      [apex](const TriangleIds& ids) { return Contains(ids, apex); }) &&
     this->Cone.Run(this->Around, apex, this->WallRegions,
       [&](Id point) -> const Vec3& { return this->GetPosition(point, points); });
 }

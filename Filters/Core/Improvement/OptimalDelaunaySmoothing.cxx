@@ -18,7 +18,7 @@ namespace cdm
 {
 namespace
 {
-constexpr Id ReportInterval = 64;
+constexpr Id MovesBetweenChecks = 64;
 /** Longest move, in distances to the nearest neighbor. */
 constexpr double LongestMove = 0.25;
 /** A shorter move, in the same unit, changes nothing that is worth its time. */
@@ -294,7 +294,7 @@ Status SmoothOptimalDelaunay(
     isMoved = false;
     for (Id point = 0; point < count; ++point)
     {
-      if (point % ReportInterval == 0 &&
+      if (point % MovesBetweenChecks == 0 &&
         !context.Continue(
           (round + static_cast<double>(point) / count) / rounds, "Smoothing points inside"))
       {

@@ -15,7 +15,6 @@ namespace
 {
 /** First step of the search for a new point's position, in radii of the sphere that it destroys. */
 constexpr double FirstInsertion = 0.3;
-constexpr double Infinity = std::numeric_limits<double>::infinity();
 
 double GetTangent2(double degrees)
 {

@@ -14,7 +14,7 @@ namespace cdm
 {
 namespace
 {
-constexpr std::size_t ReportInterval = 16;
+constexpr std::size_t SliversBetweenChecks = 16;
 
 /** Mends slivers of a list, one after the other; threads look ahead. */
 class Perturbation
@@ -143,7 +143,7 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
     bool isMended = false;
     for (std::size_t i = 0; i < count; ++i)
     {
-      if (i % ReportInterval == 0 &&
+      if (i % SliversBetweenChecks == 0 &&
         !context.Continue((pass + static_cast<double>(i) / count) / MaximumSliverPasses,
           "Moving points of slivers"))
       {
@@ -205,7 +205,7 @@ Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh&
   const std::size_t count = perturbation.GetNumberOfSlivers();
   for (std::size_t i = 0; i < count; ++i)
   {
-    if (i % ReportInterval == 0 &&
+    if (i % SliversBetweenChecks == 0 &&
       !context.Continue(static_cast<double>(i) / count, "Moving points at sharp angles"))
     {
       return Status::Aborted();

@@ -15,8 +15,6 @@ namespace cdm
 {
 namespace
 {
-constexpr Id ContinueInterval = 1 << 10;
-
 /** Moves of boundary points are tried anew so often, with fewer points each time. */
 constexpr int MaximumTries = 10;
 
@@ -85,7 +83,7 @@ Status SliverPointMoves::KeepIntact(const ExecutionContext& context, Parts& part
   std::vector<TriangleIds> intact;
   for (const TriangleIds& ids : parts.Surface.Triangles)
   {
-    if (all.size() % ContinueInterval == 0 && !context.Continue(0.0, "Checking the boundary"))
+    if (all.size() % StepsBetweenChecks == 0 && !context.Continue(0.0, "Checking the boundary"))
     {
       return Status::Aborted();
     }
@@ -104,7 +102,7 @@ Status SliverPointMoves::KeepIntact(const ExecutionContext& context, Parts& part
   SortUnique(all);
   for (std::size_t e = 0; e < all.size(); ++e)
   {
-    if (e % ContinueInterval == 0 && !context.Continue(0.5, "Checking the boundary"))
+    if (e % StepsBetweenChecks == 0 && !context.Continue(0.5, "Checking the boundary"))
     {
       return Status::Aborted();
     }

@@ -15,8 +15,6 @@ namespace cdm
 {
 namespace
 {
-constexpr Id ContinueInterval = 1 << 10;
-
 class SliverRemoval
 {
 public:
@@ -91,7 +89,7 @@ bool SliverRemoval::PeelAndFlip(const ExecutionContext& context)
     const std::size_t numberOfTasks = this->Mesh.GetNumberOfTasks();
     for (std::size_t done = 0; this->Mesh.GetNumberOfTasks() > 0 && !isAborted; ++done)
     {
-      if (done % ContinueInterval == 0)
+      if (done % StepsBetweenChecks == 0)
       {
         const double fraction = static_cast<double>(done) / (done + numberOfTasks);
         isAborted =

@@ -11,7 +11,7 @@ namespace cdm
 {
 namespace
 {
-constexpr std::size_t ReportInterval = 256;
+constexpr std::size_t InsertionsBetweenChecks = 256;
 /** Free points closer to others than this part of the sizing are removed. */
 constexpr double CloseRatio = 0.3;
 /** Threads take at least so many at a time, some 50 microseconds: with fewer, 16 were slower than 4. */
@@ -232,7 +232,7 @@ Status LimitRefinement::Run(const ExecutionContext& context)
   for (std::size_t done = 0; !this->Mesh.IsFull() && this->HasTasks(); ++done)
   {
     const std::size_t left = this->Tasks.GetSize() + this->Batch.size() - this->Next;
-    if (done % ReportInterval == 0 &&
+    if (done % InsertionsBetweenChecks == 0 &&
       !context.Continue(
         static_cast<double>(done) / static_cast<double>(done + left), "Refining tetrahedra"))
     {

@@ -9,15 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 namespace cdm
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
-
 /** Points of layers that are nearer, in spacings, are the same up to rounding. */
 constexpr double SmallestDistance = 1e-6;
 

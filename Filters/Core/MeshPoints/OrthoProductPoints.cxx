@@ -8,15 +8,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <set>
 
 namespace cdm
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
-
 /** Number of cells up to a position; it need not be a whole number. */
 struct CellCount
 {

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <utility>
 
@@ -15,8 +14,6 @@ namespace cdm
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
-
 /** Darts are at least so many spacings apart. */
 constexpr double DartDistance = 0.62;
 constexpr int DartsPerLeaf = 12;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <queue>
 
@@ -14,7 +13,6 @@ namespace cdm
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
 /** Sine of the angle above which two normals are those of different planes. */
 constexpr double PlaneTolerance = 1e-6;
 /** A displacement leaves a plane if more than this part of it is across the plane. */

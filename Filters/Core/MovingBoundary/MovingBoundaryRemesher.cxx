@@ -18,7 +18,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <string>
@@ -27,7 +26,6 @@ namespace cdm
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t ContinueInterval = 4096;
 constexpr double FullSolidAngle = 12.566370614359172;
 /** A step is halved at most so often before it counts as one that changes the topology. */

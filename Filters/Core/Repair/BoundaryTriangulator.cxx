@@ -28,8 +28,6 @@ namespace
 // A polygon counts as non-planar if it leaves its mean plane by more than this ratio of its extent:
 // above what single precision in a file does to a planar one.
 constexpr double PlanarityRatio = 1e-6;
-// The abort function is asked once in so many steps of a loop.
-constexpr Id StepsBetweenChecks = 1024;
 
 /** The first few ids, for a message. */
 std::string ToText(const std::vector<Id>& ids)

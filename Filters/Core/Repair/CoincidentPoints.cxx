@@ -11,9 +11,6 @@ namespace cdm
 {
 namespace
 {
-// The abort function is asked once in so many points.
-constexpr Id StepsBetweenChecks = 1024;
-
 /** Cells of a grid as wide as the tolerance: a near point lies in one of 27 of them. */
 bool MergeNearPoints(const std::vector<Vec3>& points, double tolerance,
   const ExecutionContext& context, std::vector<Id>& representatives)

@@ -28,8 +28,6 @@ constexpr double ToleranceGrowth = 2.0;
 // In so many rounds triangles that overlap up to the tolerance count as intersecting, too. In later
 // ones the tolerance is too large for that.
 constexpr int RoundsWithOverlaps = 2;
-// The abort function is asked once in so many triangles.
-constexpr Id StepsBetweenChecks = 1024;
 
 /** A triangle or what was cut from one. */
 struct Piece

@@ -11,9 +11,6 @@ namespace cdm
 {
 namespace
 {
-// The abort function is asked once in so many vertices.
-constexpr std::size_t StepsBetweenChecks = 1024;
-
 struct VertexOnEdge
 {
   Id Edge;

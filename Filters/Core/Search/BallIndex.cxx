@@ -9,8 +9,6 @@ namespace cdm
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
-
 /** Infinite balls have a level of their own, of one cell. */
 constexpr int InfiniteLevel = 1 << 20;
 

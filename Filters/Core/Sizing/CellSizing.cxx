@@ -17,7 +17,7 @@ namespace cdm
 namespace
 {
 /** By how much a barycentric coordinate may be negative in the tetrahedron that counts. */
-constexpr double Tolerance = 1e-9;
+constexpr double CoordinateTolerance = 1e-9;
 
 class CellInterpolator
 {
@@ -41,7 +41,7 @@ public:
   {
     Box box;
     box.Add(p);
-    double inside = -Tolerance;
+    double inside = -CoordinateTolerance;
     double length = 0.0;
     Id first = NoId;
     this->Tree.VisitOverlaps(box,

@@ -14,7 +14,7 @@ namespace
 {
 constexpr Id LeafSize = 4;
 /** Half the thickness of a triangle, and the tolerance of its borders, in its longest edge. */
-constexpr double Tolerance = 1e-9;
+constexpr double BorderTolerance = 1e-9;
 
 /** A point of a clipped facet, with the field's smallest length there. */
 struct Sample
@@ -119,7 +119,7 @@ ConvexRegion::ConvexRegion(const std::array<Vec3, 3>& triangle)
     this->Bounds.Add(triangle[i]);
     longest = std::max(longest, Distance(triangle[i], triangle[(i + 1) % 3]));
   }
-  const double half = Tolerance * longest;
+  const double half = BorderTolerance * longest;
   const auto addPlane = [&](const Vec3& origin, const Vec3& inside)
   {
     const double length = Norm(inside);

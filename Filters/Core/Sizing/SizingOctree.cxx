@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <string>
 
 namespace cdm
@@ -26,7 +25,6 @@ constexpr int MaximumCubicRoots = 8;
 constexpr double LargestCells = 1e9;
 /** Rounding must not split what is as large as it may be. */
 constexpr double RoundingSlack = 1e-9;
-constexpr double Infinity = std::numeric_limits<double>::infinity();
 /** A cell counts the smallest spacing in it at least by this factor: a cusp is not averaged out. */
 constexpr double LargestGrowth = 4.0 / 3.0;
 constexpr const char* BalanceActivity = "Bounding the irregularity";

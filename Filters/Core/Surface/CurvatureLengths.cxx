@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 namespace cdm
 {
@@ -113,7 +112,6 @@ private:
 std::vector<double> GetCurvatureLengths(const TriangleMesh& surface,
   const std::vector<StructuralEdge>& chains, const std::vector<double>& reaches, double deviation)
 {
-  constexpr double Infinity = std::numeric_limits<double>::infinity();
   const Id numberOfPoints = static_cast<Id>(surface.Points.size());
   std::vector<double> lengths(numberOfPoints, Infinity);
   std::vector<char> isCovered(numberOfPoints, 0);

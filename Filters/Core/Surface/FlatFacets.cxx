@@ -7,14 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace cdm
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
 /** Cosine of 60 degrees: no triangle is turned from the plane of its facet by more. */
 constexpr double LeastCosine = 0.5;
 /** Cosine of one degree: triangles that are united bend by no more. */

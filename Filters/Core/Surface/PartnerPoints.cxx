@@ -9,15 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace cdm
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
-
 /** New points keep this distance, as a ratio of the edge, from the ends of an edge they split. */
 constexpr double SmallestPiece = 0.05;
 /**

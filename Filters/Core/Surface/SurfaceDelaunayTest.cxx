@@ -14,7 +14,6 @@ namespace cdm
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double Epsilon = std::numeric_limits<double>::epsilon();
 
 /** Spheres with radii above this, in edges of the triangle, are almost half spaces. */

@@ -16,7 +16,6 @@ namespace cdm
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t ReportInterval = 256;
 
 /** The largest number of new points where sizes or angles are asked for. */

@@ -8,14 +8,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace cdm
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
-
 /**
  * In curved facets, points closer to others than this are too close, in shortest edges of the input
  * triangle.
@@ -25,7 +22,7 @@ constexpr double OverrefinementRatio = 1.0 / 8.0;
  * If another point is closer to a match than this part of the encroaching point's distance, it is
  * match enough. The triangle is too large then: a match would encroach on what lies between.
  */
-constexpr double CloseMatchRatio = 0.1;
+constexpr double MatchEnoughRatio = 0.1;
 /** A segment passes a new point if it is closer above or below than this, in circumradii ... */
 constexpr double PassingRadiusRatio = 0.5;
 /** ... and in lengths of the segment, ... */
@@ -48,9 +45,9 @@ bool IsMatchedByCorner(
   const Vec3& first, const Vec3& second, const Vec3& encroaching, double height)
 {
   const auto [shorter, longer] = std::minmax({ Norm(first), Norm(second) });
-  // The squared distance is s^2 + h^2, and s has to be below CloseMatchRatio h.
+  // The squared distance is s^2 + h^2, and s has to be below MatchEnoughRatio h.
   return longer <= EqualRadii * shorter &&
-    SquaredNorm(encroaching) < (1.0 + CloseMatchRatio * CloseMatchRatio) * height * height;
+    SquaredNorm(encroaching) < (1.0 + MatchEnoughRatio * MatchEnoughRatio) * height * height;
 }
 } // namespace
 
@@ -227,7 +224,7 @@ bool SurfaceRefinement::ResolveInFacet(Id t, Id encroaching, const Vec3& target,
   }
   if (isMirrored && AreForLayers(this->Plan.Rules))
   {
-    const double reach = CloseMatchRatio * Distance(position, this->Points[encroaching]);
+    const double reach = MatchEnoughRatio * Distance(position, this->Points[encroaching]);
     NearestPointVisitor visitor(position, encroaching, reach);
     this->Octree.Visit(visitor, visitor.GetReach());
     const IdLists::Range facets =
@@ -372,7 +369,7 @@ bool SurfaceRefinement::IsMatchedByEnd(Id segment, Id encroaching, const Vec3& p
   const double nearest =
     std::min(Distance(position, this->Points[ends[0]]), Distance(position, this->Points[ends[1]]));
   return this->Plan.Rules != MatchingRules::Usual &&
-    nearest < CloseMatchRatio * Distance(position, this->Points[encroaching]);
+    nearest < MatchEnoughRatio * Distance(position, this->Points[encroaching]);
 }
 
 /**

@@ -18,7 +18,7 @@ namespace cdm
 {
 namespace
 {
-constexpr Id StepsBetweenChecks = 256;
+constexpr Id PointsBetweenChecks = 256;
 /** Rounds end when they hardly make the surface coarser any more. */
 constexpr int MinimumRounds = 6;
 constexpr int MaximumRounds = 30;
@@ -312,7 +312,7 @@ bool Remesher::Split(const ExecutionContext& context)
   }
   for (Id step = 1; !queue.empty(); ++step)
   {
-    if (step % StepsBetweenChecks == 0 && !context.Continue(0.0, "Splitting long edges"))
+    if (step % PointsBetweenChecks == 0 && !context.Continue(0.0, "Splitting long edges"))
     {
       return false;
     }
@@ -378,7 +378,7 @@ bool Remesher::Collapse(const ExecutionContext& context)
   const double total = static_cast<double>(std::max<std::size_t>(1, queue.size()));
   for (Id step = 1; !queue.empty(); ++step)
   {
-    if (step % StepsBetweenChecks == 0 &&
+    if (step % PointsBetweenChecks == 0 &&
       !context.Continue(1.0 - static_cast<double>(queue.size()) / total, "Collapsing short edges"))
     {
       return false;
@@ -483,7 +483,7 @@ bool Remesher::Flip(const ExecutionContext& context)
   Id step = 0;
   for (const EdgeIds& edge : this->ListEdges())
   {
-    if (++step % StepsBetweenChecks == 0 && !context.Continue(0.0, "Flipping edges"))
+    if (++step % PointsBetweenChecks == 0 && !context.Continue(0.0, "Flipping edges"))
     {
       return false;
     }
@@ -529,7 +529,7 @@ bool Remesher::Smooth(const ExecutionContext& context)
 {
   for (Id point = 0; point < this->Surface.GetNewPoint(); ++point)
   {
-    if (point % StepsBetweenChecks == 0 &&
+    if (point % PointsBetweenChecks == 0 &&
       !context.Continue(
         static_cast<double>(point) / this->Surface.GetNewPoint(), "Moving points of the surface"))
     {
@@ -551,7 +551,7 @@ bool Remesher::EnlargeAngles(const ExecutionContext& context)
   const std::vector<Vec3> directions = MakeCubeDirections();
   for (Id point = 0; point < this->Surface.GetNewPoint(); ++point)
   {
-    if (point % StepsBetweenChecks == 0 &&
+    if (point % PointsBetweenChecks == 0 &&
       !context.Continue(
         static_cast<double>(point) / this->Surface.GetNewPoint(), "Enlarging angles"))
     {

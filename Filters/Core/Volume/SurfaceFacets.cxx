@@ -19,9 +19,6 @@ namespace cdm
 {
 namespace
 {
-/** Triangles between two calls of the context. */
-constexpr std::size_t ReportInterval = 4096;
-
 /** +1 if two orders of the same three points have the same orientation, else -1. */
 int GetRelativeTurn(const TriangleIds& s, const TriangleIds& t)
 {
@@ -115,7 +112,7 @@ Status SurfaceFacetFinder::TurnDiagonals(const std::vector<Id>& doubtful, std::v
   std::vector<Id> polygonTriangles;
   for (std::size_t i = 0; i < doubtful.size(); ++i)
   {
-    if (i % ReportInterval == 0 &&
+    if (i % StepsBetweenChecks == 0 &&
       !this->Context.Continue(double(i) / double(doubtful.size()), "Checking the surface"))
     {
       return Status::Aborted();

@@ -21,7 +21,6 @@ namespace cdm
 {
 namespace
 {
-constexpr Id StepsBetweenChecks = 1024;
 /** Cosine of the largest angle between a triangle and the plane that old and new ones lie over. */
 constexpr double SmallestCosine = 0.35;
 /**
