@@ -31,6 +31,17 @@ struct EdgeUse
 /** All uses, sorted by edge; the uses of an edge ascend. */
 std::vector<EdgeUse> SortEdgeUses(
   const std::vector<TriangleIds>& triangles, std::size_t numberOfPoints);
+
+/** Behind the last use of the edge whose first use is at begin. */
+inline std::size_t FindEndOfEdge(const std::vector<EdgeUse>& sorted, std::size_t begin)
+{
+  std::size_t end = begin + 1;
+  while (end < sorted.size() && sorted[end].Edge == sorted[begin].Edge)
+  {
+    ++end;
+  }
+  return end;
+}
 } // namespace cdm
 
 #endif

@@ -12,11 +12,7 @@ FacetPolygons::FacetPolygons(const TriangleMesh& surface, std::size_t numberOfPo
   const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, numberOfPoints);
   for (std::size_t begin = 0; begin < uses.size();)
   {
-    std::size_t end = begin + 1;
-    while (end < uses.size() && uses[end].Edge == uses[begin].Edge)
-    {
-      ++end;
-    }
+    const std::size_t end = FindEndOfEdge(uses, begin);
     if (end - begin == 2)
     {
       this->Others[uses[begin].Use] = uses[begin + 1].Use / 3;

@@ -477,11 +477,7 @@ private:
       SortEdgeUses(this->Triangles, this->Points.size() + this->NewPoints.size());
     for (std::size_t begin = 0; begin < edges.size();)
     {
-      std::size_t end = begin + 1;
-      while (end < edges.size() && edges[end].Edge == edges[begin].Edge)
-      {
-        ++end;
-      }
+      const std::size_t end = FindEndOfEdge(edges, begin);
       this->Output.Report.NonManifoldEdges += end - begin > 2;
       if (end - begin == 1)
       {

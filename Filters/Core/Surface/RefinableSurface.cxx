@@ -45,10 +45,7 @@ RefinableSurface::RefinableSurface(const TriangleMesh& surface,
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end)
   {
     const EdgeIds points = uses[begin].GetPoints();
-    while (end < uses.size() && uses[end].Edge == uses[begin].Edge)
-    {
-      ++end;
-    }
+    end = FindEndOfEdge(uses, begin);
     while (next < edges.size() && edges[next].Points < points)
     {
       ++next;

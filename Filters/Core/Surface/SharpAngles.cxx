@@ -207,10 +207,7 @@ void SharpAngles::FindFacetPairs(
   std::vector<Vec3> across;
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end)
   {
-    while (end < uses.size() && uses[end].Edge == uses[begin].Edge)
-    {
-      ++end;
-    }
+    end = FindEndOfEdge(uses, begin);
     const EdgeIds ends = uses[begin].GetPoints();
     const StructuralEdge* const edge = FindStructuralEdge(edges, ends);
     if (edge == nullptr || !IsSharp(*edge))

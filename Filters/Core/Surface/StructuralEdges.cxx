@@ -386,7 +386,6 @@ public:
 
 private:
   void FindFlat();
-  std::size_t FindEnd(std::size_t begin) const;
   /** Whether the edge ends or borders facets whatever its angle, and its kind. */
   bool IsBorder(std::size_t begin, std::size_t end, StructuralEdgeKind& kind) const;
   bool IsExact(std::size_t begin) const;
@@ -400,16 +399,6 @@ private:
   std::vector<char> IsFlat;
   bool IsAnyRounded = false;
 };
-
-std::size_t EdgeJudge::FindEnd(std::size_t begin) const
-{
-  std::size_t end = begin + 1;
-  while (end < this->Uses.size() && this->Uses[end].Edge == this->Uses[begin].Edge)
-  {
-    ++end;
-  }
-  return end;
-}
 
 bool EdgeJudge::IsBorder(std::size_t begin, std::size_t end, StructuralEdgeKind& kind) const
 {
@@ -454,7 +443,7 @@ void EdgeJudge::FindFlat()
   std::vector<std::size_t> begins;
   for (std::size_t begin = 0, end = 0; begin < this->Uses.size(); begin = end)
   {
-    end = this->FindEnd(begin);
+    end = FindEndOfEdge(this->Uses, begin);
     StructuralEdgeKind kind;
     if (this->IsBorder(begin, end, kind))
     {
@@ -499,7 +488,7 @@ Status EdgeJudge::Judge(const ExecutionContext& context, std::vector<StructuralE
         return Status::Aborted();
       }
     }
-    end = this->FindEnd(begin);
+    end = FindEndOfEdge(this->Uses, begin);
     StructuralEdge edge;
     if (!this->IsBorder(begin, end, edge.Kind) && this->IsSmooth(begin))
     {
