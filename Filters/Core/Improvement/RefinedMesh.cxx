@@ -5,8 +5,10 @@
 #include "Core/Geometry/Measures.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <numeric>
+#include <queue>
 #include <utility>
 
 namespace cdm
@@ -70,39 +72,54 @@ RefinedMesh::RefinedMesh(TetMesh mesh, const RefinedBoundary& boundary,
   this->BoundSizes(all);
 }
 
-/** No size is larger than another one and the way there, along edges, beginning with some. */
+/**
+ * No size is larger than another one and the way there, along edges, beginning with some. The
+ * smallest one goes on first (Dijkstra), so that none is bounded twice from the same side.
+ */
 void RefinedMesh::BoundSizes(const std::vector<Id>& tetrahedra)
 {
-  std::vector<Id> changed;
-  const auto bound = [&](Id t)
+  using Bound = std::pair<double, Id>;
+  std::priority_queue<Bound, std::vector<Bound>, std::greater<>> changed;
+  const auto bound = [&](const InteriorPoint& by, Id point)
   {
-    const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
-    for (const auto& edge : TetrahedronEdges)
+    InteriorPoint& bounded = this->Points[point];
+    if (by.Size >= bounded.Size)
     {
-      InteriorPoint* first = &this->Points[ids[edge[0]]];
-      InteriorPoint* second = &this->Points[ids[edge[1]]];
-      Id larger = ids[edge[1]];
-      if (first->Size > second->Size)
-      {
-        std::swap(first, second);
-        larger = ids[edge[0]];
-      }
-      const double size = first->Size + Distance(first->Position, second->Position);
-      if (second->Size > size)
-      {
-        second->Size = size;
-        changed.push_back(larger);
-      }
+      return;
+    }
+    const double size = by.Size + Distance(by.Position, bounded.Position);
+    if (size < bounded.Size)
+    {
+      bounded.Size = size;
+      changed.emplace(size, point);
     }
   };
-  std::for_each(tetrahedra.begin(), tetrahedra.end(), bound);
+  for (Id t : tetrahedra)
+  {
+    const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
+    for (const auto& [i, j] : TetrahedronEdges)
+    {
+      bound(this->Points[ids[i]], ids[j]);
+      bound(this->Points[ids[j]], ids[i]);
+    }
+  }
   std::vector<Id> star;
   while (!changed.empty())
   {
-    const Id point = changed.back();
-    changed.pop_back();
+    const auto [size, point] = changed.top();
+    changed.pop();
+    if (size > this->Points[point].Size)
+    {
+      continue;
+    }
     this->Mesh.FindStar(point, star);
-    std::for_each(star.begin(), star.end(), bound);
+    for (Id t : star)
+    {
+      for (Id other : this->GetMesh().Tetrahedra[t])
+      {
+        bound(this->Points[point], other);
+      }
+    }
   }
 }
 
