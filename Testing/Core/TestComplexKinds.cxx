@@ -143,10 +143,10 @@ void ExpectPlacedFulfilled(
   }
 }
 
-KindCounts MeshComplexes(ComplexKind kind, std::uint64_t usualCount)
+KindCounts MeshComplexes(ComplexKind kind, std::uint64_t usualCount, std::uint64_t usualFirst = 1)
 {
   KindCounts counts;
-  const std::uint64_t first = GetFromEnvironment("CDM_FIRST_SEED", 1);
+  const std::uint64_t first = GetFromEnvironment("CDM_FIRST_SEED", usualFirst);
   const std::uint64_t count = GetFromEnvironment("CDM_COMPLEXES", usualCount);
   const bool isUnplaced = GetFromEnvironment("CDM_UNPLACED", 0) != 0;
   for (std::uint64_t seed = first; seed < first + count; ++seed)
@@ -270,9 +270,9 @@ void RefineComplex(const TriangleMesh& surface, const SteinerPointRefinerOptions
 }
 
 /** Ratios of 2, 1.4 and 1.2, angles of 15 and 20 degrees, in turns; both stronger criteria. */
-void RefineComplexes(ComplexKind kind, std::uint64_t usualCount)
+void RefineComplexes(ComplexKind kind, std::uint64_t usualCount, std::uint64_t usualFirst = 1)
 {
-  const std::uint64_t first = GetFromEnvironment("CDM_FIRST_SEED", 1);
+  const std::uint64_t first = GetFromEnvironment("CDM_FIRST_SEED", usualFirst);
   const std::uint64_t count = GetFromEnvironment("CDM_STEINER_COMPLEXES", usualCount);
   for (const SurfaceCriterion criterion :
     { SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
@@ -520,9 +520,10 @@ TEST(ComplexKinds, TiltedPlates)
   EXPECT_EQ(MeshComplexes(ComplexKind::TiltedPlates, 10)[0].Missed.size(), 0u);
 }
 
+/** Of two, one fulfils the stronger criteria and one does not. Others take minutes. */
 TEST(ComplexKinds, SlabTetrahedra)
 {
-  EXPECT_EQ(MeshComplexes(ComplexKind::SlabTetrahedra, 4)[0].Missed.size(), 0u);
+  EXPECT_EQ(MeshComplexes(ComplexKind::SlabTetrahedra, 2, 2)[0].Missed.size(), 0u);
 }
 
 TEST(ComplexKinds, SmallSlabs)
@@ -538,7 +539,12 @@ class SteinerPointsInComplexes : public testing::TestWithParam<int>
 TEST_P(SteinerPointsInComplexes, BoundaryIsKept)
 {
   const auto kind = static_cast<ComplexKind>(this->GetParam());
-  RefineComplexes(kind, kind == ComplexKind::SlabTetrahedra ? 2 : 6);
+  if (kind == ComplexKind::SlabTetrahedra)
+  {
+    RefineComplexes(kind, 1, 2);
+    return;
+  }
+  RefineComplexes(kind, 6);
 }
 
 INSTANTIATE_TEST_SUITE_P(ComplexKinds, SteinerPointsInComplexes,

@@ -218,10 +218,12 @@ TEST(ConformingDelaunayMesherFilter, PeelingLeavesAValidMesh)
 }
 
 /** Random tetrahedra of many regions in a slab: the stronger criteria are beyond the rules. */
+/** A slab that is turned and moved, so that rounding keeps it from fulfilling the criterion. */
 TEST(ConformingDelaunayMesherFilter, MeshesWhatMissesTheCriterion)
 {
-  cdm::ComplexMaker maker(cdm::ComplexKind::SlabTetrahedra, 1);
-  const cdm::PolygonSoup soup = maker.Make();
+  cdm::ComplexMaker maker(cdm::ComplexKind::SlabTetrahedra, 3);
+  cdm::PolygonSoup soup = maker.Make();
+  maker.Place(soup);
   SurfaceBuilder builder;
   for (const cdm::Vec3& point : soup.Points)
   {
