@@ -205,6 +205,7 @@ void SharpAngles::FindFacetPairs(
   const TriangleMesh& surface = this->Surface;
   const double sharpCosine = GetCosine(SharpDihedralAngle);
   std::vector<Vec3> across;
+  std::vector<std::pair<Id, Id>> pairs;
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end)
   {
     end = FindEndOfEdge(uses, begin);
@@ -227,13 +228,13 @@ void SharpAngles::FindFacetPairs(
       {
         if (Dot(across[i - begin], across[j - begin]) > sharpCosine)
         {
-          this->FacetPairs.push_back(
-            std::minmax(this->Facets[use / 3], this->Facets[uses[j].Use / 3]));
+          pairs.push_back(std::minmax(this->Facets[use / 3], this->Facets[uses[j].Use / 3]));
         }
       }
     }
   }
-  SortUnique(this->FacetPairs);
+  SortUnique(pairs);
+  this->Partners.Build(static_cast<Id>(surface.Triangles.size()), pairs);
 }
 
 /** Facets that do not meet at an edge of a point have at least two structural edges there each. */
@@ -247,6 +248,12 @@ void SharpAngles::FindTips(const IdLists& pointTriangles, const IdLists& neighbo
     }
   }
   SortUnique(this->Tips);
+  std::vector<std::pair<Id, Id>> tips;
+  for (const Tip& tip : this->Tips)
+  {
+    tips.emplace_back(tip.Facets.first, static_cast<Id>(tips.size()));
+  }
+  this->FacetTips.Build(static_cast<Id>(this->Surface.Triangles.size()), tips);
 }
 
 /** The closest ways into two facets from the corner: at least one of them is an edge. */
@@ -310,10 +317,13 @@ void SharpAngles::ListFacets(const IdLists& pointTriangles)
 {
   std::vector<char>& isSharp = this->IsFacetSharp;
   isSharp.assign(this->Surface.Triangles.size(), 0);
-  for (const auto& [first, second] : this->FacetPairs)
+  for (Id facet = 0; facet < this->Partners.GetNumberOfOwners(); ++facet)
   {
-    isSharp[first] = 1;
-    isSharp[second] = 1;
+    for (Id partner : this->Partners[facet])
+    {
+      isSharp[facet] = 1;
+      isSharp[partner] = 1;
+    }
   }
   for (const Tip& tip : this->Tips)
   {
@@ -482,15 +492,16 @@ bool SharpAngles::AreAcrossFacets(Id p, Id q, const PlaneLimit& limit) const
   const IdLists::Range second = this->PointFacets[q];
   for (Id f : first)
   {
+    if (Contains(second, f))
+    {
+      continue;
+    }
     for (Id g : second)
     {
-      if (Contains(second, f) || Contains(first, g))
-      {
-        continue;
-      }
-      const std::pair<Id, Id> pair = std::minmax(f, g);
-      if (std::binary_search(this->FacetPairs.begin(), this->FacetPairs.end(), pair) ||
-        this->AreAcrossTip(pair, p, q, limit))
+      const auto [smaller, larger] = std::minmax({ f, g });
+      if ((Contains(this->Partners[smaller], larger) ||
+            this->AreAcrossTip(smaller, larger, p, q, limit)) &&
+        !Contains(first, g))
       {
         return true;
       }
@@ -499,14 +510,14 @@ bool SharpAngles::AreAcrossFacets(Id p, Id q, const PlaneLimit& limit) const
   return false;
 }
 
-bool SharpAngles::AreAcrossTip(
-  const std::pair<Id, Id>& facets, Id p, Id q, const PlaneLimit& limit) const
+bool SharpAngles::AreAcrossTip(Id facet, Id largerFacet, Id p, Id q, const PlaneLimit& limit) const
 {
-  const auto tips = std::equal_range(this->Tips.begin(), this->Tips.end(), facets);
-  return std::any_of(tips.first, tips.second,
-    [&](const Tip& tip)
+  const IdLists::Range tips = this->FacetTips[facet];
+  return std::any_of(tips.begin(), tips.end(),
+    [&](Id i)
     {
-      return tip.Point != p && tip.Point != q &&
+      const Tip& tip = this->Tips[i];
+      return tip.Facets.second == largerFacet && tip.Point != p && tip.Point != q &&
         Dot(GetDirection(this->Surface, tip.Point, p), GetDirection(this->Surface, tip.Point, q)) >
         limit.Cosine;
     });

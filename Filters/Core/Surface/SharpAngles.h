@@ -132,8 +132,6 @@ private:
     {
       return a.Facets != b.Facets ? a.Facets < b.Facets : a.Point < b.Point;
     }
-    friend bool operator<(const Tip& a, const std::pair<Id, Id>& b) { return a.Facets < b; }
-    friend bool operator<(const std::pair<Id, Id>& a, const Tip& b) { return a < b.Facets; }
   };
 
   void FindFacetPairs(const std::vector<StructuralEdge>& edges, const std::vector<EdgeUse>& uses);
@@ -148,7 +146,7 @@ private:
   void FindShadows(Id corner, Id first, Id other, const IdLists::Range& triangles,
     std::vector<Shadow>& shadows) const;
   bool AreAcrossFacets(Id p, Id q, const PlaneLimit& limit) const;
-  bool AreAcrossTip(const std::pair<Id, Id>& facets, Id p, Id q, const PlaneLimit& limit) const;
+  bool AreAcrossTip(Id facet, Id largerFacet, Id p, Id q, const PlaneLimit& limit) const;
   bool AreAcrossArms(Id p, Id q, const PlaneLimit& limit) const;
   bool IsInShadow(Id armPoint, Id point, const PlaneLimit& limit) const;
 
@@ -163,10 +161,11 @@ private:
   std::vector<char> IsFacetSharp;
   /** Surface facets at each point; facets without a sharp angle are left out. */
   IdLists PointFacets;
-  /** Pairs of facets with a sharp angle, the smaller one first; sorted. */
-  std::vector<std::pair<Id, Id>> FacetPairs;
-  /** Sorted. */
+  /** Pairs of facets with a sharp angle at an edge: the larger ones, for the smaller one. */
+  IdLists Partners;
+  /** Sorted; and which of them each facet has as the smaller one. */
   std::vector<Tip> Tips;
+  IdLists FacetTips;
   /** By their corners. */
   std::vector<Arm> Arms;
   /** Arms that each point lies on. A corner is listed only on arms of other corners. */
