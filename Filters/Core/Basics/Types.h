@@ -18,6 +18,7 @@ namespace cdm
 /** Index of a point, a triangle, a tetrahedron, ... */
 using Id = std::int32_t;
 
+/** "No limit", and larger than all that is compared with it. */
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 
 /** "None": no neighbour, no source cell, no parent. */

@@ -26,7 +26,7 @@
  * points as close to the other edge (PartnerPoints.h). A point in the shadow and a point of the
  * first edge are across, too.
  *
- * Cost: O(n log n) to build, O(k log k) to follow k changes; O(1) for a tetrahedron. About 60 bytes
+ * Cost: O(n log n) to build, O(k log k) to follow k changes; O(1) for a tetrahedron. About 76 bytes
  * per triangle.
  */
 #ifndef cdmSharpAngles_h
