@@ -217,8 +217,10 @@ TEST(ConformingDelaunayMesherFilter, PeelingLeavesAValidMesh)
     << GetCertificate(filter->GetOutput());
 }
 
-/** Random tetrahedra of many regions in a slab: the stronger criteria are beyond the rules. */
-/** A slab that is turned and moved, so that rounding keeps it from fulfilling the criterion. */
+/**
+ * Random tetrahedra of many regions in a slab. As it is made it fulfils the criterion; turned and
+ * moved, it does not.
+ */
 TEST(ConformingDelaunayMesherFilter, MeshesWhatMissesTheCriterion)
 {
   cdm::ComplexMaker maker(cdm::ComplexKind::SlabTetrahedra, 3);
