@@ -16,7 +16,6 @@
 #include <cstdio>
 #include <functional>
 #include <iterator>
-#include <limits>
 
 namespace cdm
 {
@@ -615,20 +614,18 @@ TetrahedronQuality GetTetrahedronQuality(const Vec3& a, const Vec3& b, const Vec
   quality.LargestDihedralAngle = *std::max_element(angles.begin(), angles.end());
 
   const double volume = GetSignedVolume(a, b, c, d);
-  const double circumradius = volume == 0.0 ? std::numeric_limits<double>::infinity()
-                                            : Distance(GetCircumcenter(a, b, c, d), a);
+  const double circumradius = volume == 0.0 ? Infinity : Distance(GetCircumcenter(a, b, c, d), a);
   const double area = GetTriangleArea(b, c, d) + GetTriangleArea(a, c, d) +
     GetTriangleArea(a, b, d) + GetTriangleArea(a, b, c);
   const double inradius = area == 0.0 ? 0.0 : 3.0 * std::abs(volume) / area;
-  const auto divide = [](double numerator, double denominator) {
-    return denominator == 0.0 ? std::numeric_limits<double>::infinity() : numerator / denominator;
-  };
+  const auto divide = [](double numerator, double denominator)
+  { return denominator == 0.0 ? Infinity : numerator / denominator; };
   const bool isPoint = longest == 0.0;
   quality.Q = { shortest / circumradius, isPoint ? 0.0 : inradius / longest,
     inradius / circumradius, isPoint ? 0.0 : shortest / longest,
     isPoint ? 0.0 : volume / (longest * longest * longest) };
-  quality.UnsignedBoxRatio = volume == 0.0 ? std::numeric_limits<double>::infinity()
-                                           : GetUnsignedBoxVolume(a, b, c, d) / std::abs(volume);
+  quality.UnsignedBoxRatio =
+    volume == 0.0 ? Infinity : GetUnsignedBoxVolume(a, b, c, d) / std::abs(volume);
   quality.RadiusEdgeRatio = divide(circumradius, shortest);
   quality.AspectRatio = divide(circumradius, inradius);
   return quality;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 namespace cdm
 {
@@ -155,7 +154,7 @@ double RegionVolume::GetRelativeError() const
 {
   const double difference = std::abs(this->Volume - this->EnclosedVolume);
   return difference == 0.0        ? 0.0
-    : this->EnclosedVolume == 0.0 ? std::numeric_limits<double>::infinity()
+    : this->EnclosedVolume == 0.0 ? Infinity
                                   : difference / std::abs(this->EnclosedVolume);
 }
 

@@ -8,7 +8,6 @@
 #include "Core/Geometry/SphereForm.h"
 
 #include <algorithm>
-#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -53,7 +52,7 @@ public:
     const double distance = GetSquaredDistance(box, this->Center);
     return (this->Found.size() == this->Limit && distance >= this->Found.back().first) ||
         !this->Shape.MayTouch(box.Low, box.High)
-      ? std::numeric_limits<double>::infinity()
+      ? Infinity
       : distance;
   }
 

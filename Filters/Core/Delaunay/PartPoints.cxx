@@ -4,7 +4,6 @@
 #include "Core/Geometry/Predicates.h"
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -184,9 +183,7 @@ HaloPoints PartPoints::GetPointsIn(const std::vector<Box>& boxes) const
     std::vector<Id>& Found;
     double Order(const Box& box) const
     {
-      return this->Found.size() <= LargestHalo && this->Wanted.Overlaps(box)
-        ? 0.0
-        : std::numeric_limits<double>::infinity();
+      return this->Found.size() <= LargestHalo && this->Wanted.Overlaps(box) ? 0.0 : Infinity;
     }
     void Visit(Id point, const Vec3& p)
     {

@@ -10,7 +10,6 @@
 #include "Core/Basics/Vec3.h"
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 namespace cdm
@@ -18,10 +17,8 @@ namespace cdm
 /** Empty (inverted) when default constructed. */
 struct Box
 {
-  Vec3 Low{ std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-    std::numeric_limits<double>::infinity() };
-  Vec3 High{ -std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
-    -std::numeric_limits<double>::infinity() };
+  Vec3 Low{ Infinity, Infinity, Infinity };
+  Vec3 High{ -Infinity, -Infinity, -Infinity };
 
   static Box MakeInfinite()
   {

@@ -6,11 +6,11 @@
 #ifndef cdmMatchingPoints_h
 #define cdmMatchingPoints_h
 
+#include "Core/Basics/Types.h"
 #include "Core/Basics/Vec3.h"
 
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <vector>
 
 namespace cdm
@@ -55,15 +55,14 @@ Vec3 MatchExactly(
   {
     return best;
   }
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<double> steps[3];
   for (int axis = 0; axis < 3; ++axis)
   {
     steps[axis].resize(2 * range + 1, position[axis]);
     for (int i = 1; i <= range; ++i)
     {
-      steps[axis][range + i] = std::nextafter(steps[axis][range + i - 1], infinity);
-      steps[axis][range - i] = std::nextafter(steps[axis][range - i + 1], -infinity);
+      steps[axis][range + i] = std::nextafter(steps[axis][range + i - 1], Infinity);
+      steps[axis][range - i] = std::nextafter(steps[axis][range - i + 1], -Infinity);
     }
   }
   // Shell by shell: no farther than needed.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/Measures.h"
 
+#include "Core/Basics/Types.h"
+
 #include <algorithm>
-#include <limits>
 
 namespace cdm
 {
@@ -13,8 +14,7 @@ Vec3 Divide(const Vec3& vector, double divisor)
 {
   if (divisor == 0.0)
   {
-    const double infinity = std::numeric_limits<double>::infinity();
-    return { infinity, infinity, infinity };
+    return { Infinity, Infinity, Infinity };
   }
   return { vector.X / divisor, vector.Y / divisor, vector.Z / divisor };
 }
@@ -127,7 +127,7 @@ double GetDistanceToTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const 
   const Vec3 normal = Cross(b - a, c - a);
   const Vec3 corners[3] = { a, b, c };
   bool isAbove = true;
-  double distance = std::numeric_limits<double>::infinity();
+  double distance = Infinity;
   for (int i = 0; i < 3; ++i)
   {
     const Vec3 edge = corners[(i + 1) % 3] - corners[i];

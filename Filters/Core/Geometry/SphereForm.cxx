@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/SphereForm.h"
 
-#include <limits>
+#include "Core/Basics/Types.h"
 
 namespace cdm
 {
@@ -169,8 +169,8 @@ void SphereForm::FindCenter()
   {
     const double gradient = this->Gradient[axis];
     this->Center[axis] = this->Curvature > 0.0 ? gradient / (2.0 * this->Curvature)
-      : gradient > 0.0                         ? std::numeric_limits<double>::infinity()
-                                               : -std::numeric_limits<double>::infinity();
+      : gradient > 0.0                         ? Infinity
+                                               : -Infinity;
   }
 }
 

@@ -6,7 +6,6 @@
 #include "Core/Meshes/TetMesh.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace cdm
@@ -62,7 +61,7 @@ void BoundaryRequests::AddTriangle(Id triangle)
 void BoundaryRequests::AddEncroached(
   const Vec3& position, const BoundarySpheres::Encroached& encroached, bool isDistanceKept)
 {
-  double deepest = std::numeric_limits<double>::infinity();
+  double deepest = Infinity;
   Id best = NoId;
   for (Id e : encroached.Edges)
   {

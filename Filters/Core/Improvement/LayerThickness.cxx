@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace cdm
@@ -25,7 +24,7 @@ std::array<Vec3, 3> GetCorners(const TriangleMesh& surface, Id triangle)
 double FindMeeting(
   const Vec3& position, const Vec3& way, const Vec3& a, const Vec3& b, const Vec3& c)
 {
-  constexpr double never = std::numeric_limits<double>::infinity();
+  constexpr double never = Infinity;
   const Vec3 normal = Cross(b - a, c - a);
   const double slope = Dot(normal, way);
   if (slope == 0.0)
@@ -133,7 +132,7 @@ bool LayerThickness::IsTooThick(
   return std::any_of(layers.begin(), layers.end(),
     [&](const Layer& layer)
     {
-      double low = std::numeric_limits<double>::infinity();
+      double low = Infinity;
       double high = -low;
       for (const Vec3& vertex : vertices)
       {

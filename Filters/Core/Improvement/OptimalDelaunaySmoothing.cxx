@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
-#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -121,7 +120,7 @@ Vec3 Smoothing::GetStep(Id point) const
   const Vec3 old = this->Tetrahedra.GetPoint(point);
   Vec3 sum;
   double volume = 0.0;
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = Infinity;
   for (Id t : this->Star)
   {
     const auto [a, b, c, d] = this->Tetrahedra.GetCorners(t);

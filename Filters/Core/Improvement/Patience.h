@@ -6,9 +6,10 @@
 #ifndef cdmPatience_h
 #define cdmPatience_h
 
+#include "Core/Basics/Types.h"
+
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 
 namespace cdm
 {
@@ -34,7 +35,7 @@ private:
   int MaximumTries;
   double Part;
   int Tries = 0;
-  double Fewest = std::numeric_limits<double>::infinity();
+  double Fewest = Infinity;
 };
 } // namespace cdm
 

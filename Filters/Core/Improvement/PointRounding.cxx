@@ -142,7 +142,7 @@ bool PointRounding::AddQuadrangle(const std::vector<Vec3>& points, const std::ar
     return false;
   }
   const double smallest = SameCellRatio * Norm(quadrangle.Center.Round());
-  quadrangle.Low = std::numeric_limits<double>::infinity();
+  quadrangle.Low = Infinity;
   quadrangle.High = -quadrangle.Low;
   for (Id cell : cells)
   {

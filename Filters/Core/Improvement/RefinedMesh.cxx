@@ -541,7 +541,7 @@ bool RefinedMesh::TouchesOpenFacet(const PointCavity& cavity) const
 
 void RefinedMesh::Insert(const Vec3& position, const PointCavity& cavity)
 {
-  double size = std::numeric_limits<double>::infinity();
+  double size = Infinity;
   for (const TriangleIds& facet : cavity.Facets)
   {
     for (Id id : facet)

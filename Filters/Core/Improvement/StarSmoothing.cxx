@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 namespace cdm
 {
@@ -46,7 +45,7 @@ bool FindBetterPosition(
 {
   const Vec3 old = mesh.GetPoint(point);
   double smallest = 180.0;
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = Infinity;
   Vec3 sum;
   for (const Id other : star)
   {

@@ -6,11 +6,11 @@
 #ifndef cdmNearestInUnits_h
 #define cdmNearestInUnits_h
 
+#include "Core/Basics/Types.h"
 #include "Core/Geometry/Box.h"
 #include "Core/Sizing/SizingField.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace cdm
 {
@@ -32,7 +32,7 @@ public:
       const double offset = std::max({ box.Low[axis] - x, x - box.High[axis], 0.0 });
       bound = std::max(bound, offset / this->Spacing.GetExtents()[axis]);
     }
-    return bound < this->Distance ? bound : std::numeric_limits<double>::infinity();
+    return bound < this->Distance ? bound : Infinity;
   }
 
   void Visit(Id id, const Vec3& p)

@@ -2,13 +2,12 @@
 #include "Core/Meshes/ShortestEdges.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace cdm
 {
 std::vector<double> FindShortestEdges(const TetMesh& mesh)
 {
-  std::vector<double> lengths(mesh.Points.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> lengths(mesh.Points.size(), Infinity);
   for (const TetrahedronIds& ids : mesh.Tetrahedra)
   {
     if (ids[0] == NoId)

@@ -115,7 +115,7 @@ double GetRounding(const std::array<Vec3, 4>& corners, int edge)
   {
     largest = std::max({ largest, std::abs(corner.X), std::abs(corner.Y), std::abs(corner.Z) });
   }
-  double shortest = std::numeric_limits<double>::infinity();
+  double shortest = Infinity;
   for (const int* ends : TetrahedronEdges)
   {
     shortest = std::min(shortest, Distance(corners[ends[0]], corners[ends[1]]));

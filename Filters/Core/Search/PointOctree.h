@@ -20,7 +20,6 @@
 #include "Core/Geometry/Box.h"
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 namespace cdm
@@ -133,7 +132,7 @@ private:
         continue;
       }
       const double order = search.Order(bounds);
-      if (order == std::numeric_limits<double>::infinity())
+      if (order == Infinity)
       {
         continue;
       }
@@ -149,8 +148,7 @@ private:
     for (int i = 0; i < count; ++i)
     {
       // What has been found among the nearer children may rule this one out by now.
-      if (i == 0 ||
-        search.Order(this->Nodes[children[i]].Bounds) != std::numeric_limits<double>::infinity())
+      if (i == 0 || search.Order(this->Nodes[children[i]].Bounds) != Infinity)
       {
         this->VisitNode(children[i], search, reach);
       }

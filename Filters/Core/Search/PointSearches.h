@@ -15,7 +15,6 @@
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 
-#include <limits>
 #include <vector>
 
 namespace cdm
@@ -27,8 +26,7 @@ constexpr double SamePoint = 1e-150;
 class NearestPointVisitor
 {
 public:
-  NearestPointVisitor(
-    const Vec3& position, Id except, double farthest = std::numeric_limits<double>::infinity())
+  NearestPointVisitor(const Vec3& position, Id except, double farthest = Infinity)
     : SquaredDistance(farthest * farthest), Position(position), Except(except), Farthest(farthest)
   {
   }
@@ -36,7 +34,7 @@ public:
   double Order(const Box& box) const
   {
     const double distance = box.GetSquaredDistance(this->Position);
-    return distance < this->SquaredDistance ? distance : std::numeric_limits<double>::infinity();
+    return distance < this->SquaredDistance ? distance : Infinity;
   }
 
   Box GetReach() const { return Box::MakeAround(this->Position, this->Farthest); }
@@ -73,8 +71,7 @@ public:
   double Order(const Box& box) const
   {
     const double distance = box.GetSquaredDistance(this->Center);
-    return distance <= this->Reach * this->Reach ? distance
-                                                 : std::numeric_limits<double>::infinity();
+    return distance <= this->Reach * this->Reach ? distance : Infinity;
   }
 
   Box GetReach() const { return Box::MakeAround(this->Center, this->Reach); }
@@ -99,7 +96,7 @@ private:
   Vec3 B;
   Vec3 Center;
   double Reach;
-  double Deepest = std::numeric_limits<double>::infinity();
+  double Deepest = Infinity;
 };
 } // namespace cdm
 

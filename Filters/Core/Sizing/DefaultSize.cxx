@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 namespace cdm
@@ -105,7 +104,7 @@ double GetDefaultSize(const TriangleMesh& surface)
 
 double GetLeastThickness(const TriangleMesh& surface)
 {
-  double least = std::numeric_limits<double>::infinity();
+  double least = Infinity;
   if (!surface.Triangles.empty())
   {
     for (const auto& [region, extent] : MeasureRegions(surface))

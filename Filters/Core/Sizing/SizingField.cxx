@@ -353,7 +353,7 @@ Status GradationBound::Run(const ExecutionContext& context, std::vector<double>&
   while (!this->Far.empty())
   {
     const double done = 1.0 - double(this->Far.size()) / double(sizes.size());
-    double smallest = std::numeric_limits<double>::infinity();
+    double smallest = Infinity;
     for (const Id point : this->Far)
     {
       smallest = std::min(smallest, this->GetSize(point));

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -201,7 +200,7 @@ void SizingMinima::Build(Id begin, Id end, const std::vector<Vec3>& centers)
   Node node;
   node.Begin = begin;
   node.End = end;
-  node.Smallest = std::numeric_limits<double>::infinity();
+  node.Smallest = Infinity;
   Box box;
   for (Id i = begin; i < end; ++i)
   {

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 namespace cdm
 {
@@ -15,7 +14,7 @@ TetrahedronFault TetrahedronLimits::Find(
   const std::array<Vec3, 4>& vertices, bool isShapeTested, Vec3& target, double& severity) const
 {
   double longest2 = 0.0;
-  double shortest2 = std::numeric_limits<double>::infinity();
+  double shortest2 = Infinity;
   int shortestEdge = 0;
   for (int e = 0; e < 6; ++e)
   {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace cdm
 {
@@ -12,8 +11,7 @@ bool TriangleLimits::IsTooCoarse(const std::array<Vec3, 3>& corners,
 {
   constexpr double RadiansPerDegree = 3.14159265358979323846 / 180.0;
   edge = NoId;
-  double limit = this->MaximumEdgeLength > 0.0 ? this->MaximumEdgeLength
-                                               : std::numeric_limits<double>::infinity();
+  double limit = this->MaximumEdgeLength > 0.0 ? this->MaximumEdgeLength : Infinity;
   int longest = 0;
   double lengths[3];
   for (int i = 0; i < 3; ++i)

@@ -5,7 +5,6 @@
 #include "Core/Geometry/Box.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace cdm
 {
@@ -17,7 +16,7 @@ struct EdgeSet
   bool IsSharp = true;
   bool HasFreeEnd = false;
   double Length = 0.0;
-  double WantedLength = std::numeric_limits<double>::infinity();
+  double WantedLength = Infinity;
   Box Bounds;
 };
 

@@ -7,7 +7,6 @@
 #include "Core/Search/PointOctree.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace cdm
 {
@@ -34,7 +33,7 @@ public:
     {
       if (box.Low[axis] > this->Bounds.High[axis] || box.High[axis] < this->Bounds.Low[axis])
       {
-        return std::numeric_limits<double>::infinity();
+        return Infinity;
       }
     }
     return 0.0;

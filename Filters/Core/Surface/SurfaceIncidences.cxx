@@ -9,8 +9,7 @@ SurfaceIncidences::SurfaceIncidences(const RefinableSurface& surface,
   const std::vector<Vec3>& points, Id numberOfSurfacePoints, double flatness)
   : Surface(surface), Points(points), NumberOfSurfacePoints(numberOfSurfacePoints),
     NumberOfGivenPoints(static_cast<Id>(points.size())),
-    InnerRadii(numberOfSurfacePoints, std::numeric_limits<double>::infinity()),
-    AcuteCorners(numberOfSurfacePoints, -1)
+    InnerRadii(numberOfSurfacePoints, Infinity), AcuteCorners(numberOfSurfacePoints, -1)
 {
   this->CollectFacets();
   this->CollectEdges();

@@ -23,7 +23,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -71,8 +70,7 @@ public:
   /** Distance of the nearest new point on an input edge from a point at its end; or infinity. */
   double GetInnerRadius(Id point) const
   {
-    return point < this->NumberOfSurfacePoints ? this->InnerRadii[point]
-                                               : std::numeric_limits<double>::infinity();
+    return point < this->NumberOfSurfacePoints ? this->InnerRadii[point] : Infinity;
   }
 
   /** Whether two input edges meet at a point at less than 90 degrees; never at a new one. */

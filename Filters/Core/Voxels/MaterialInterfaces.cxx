@@ -256,7 +256,7 @@ private:
 
 double GetShortestEdge(const LabelledGrid& grid)
 {
-  double shortest = std::numeric_limits<double>::infinity();
+  double shortest = Infinity;
   for (const std::vector<double>& places : grid.Coordinates)
   {
     for (std::size_t i = 1; i < places.size(); ++i)

@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <queue>
 #include <utility>
 
@@ -448,7 +447,7 @@ private:
   double FindHeight(const Vec3& place, const Page& page, const Vec3& direction) const
   {
     const Vec3& target = this->Points[page.Path.front()];
-    double best = -std::numeric_limits<double>::infinity();
+    double best = -Infinity;
     double height = 0.0;
     for (std::size_t i = 1; i < page.GetEnd(); ++i)
     {
