@@ -160,7 +160,11 @@ public:
     std::iota(changed.OnSurface.begin(), changed.OnSurface.end(), 0);
     changed.Inside.resize(this->Mesh->GetNumberOfPoints() - this->FirstInside);
     std::iota(changed.Inside.begin(), changed.Inside.end(), this->FirstInside);
-    EXPECT_TRUE(this->Splits->Run(changed, triangles, edges, {}).IsOk());
+    // In turns on one thread and on two.
+    this->IsThreaded = !this->IsThreaded;
+    EXPECT_TRUE(
+      this->Splits->Run(changed, triangles, edges, ExecutionContext(this->IsThreaded ? 2 : 1))
+        .IsOk());
     BoundaryChange change{ this->Splits->GetChangedTriangles(), {}, this->Splits->GetChangedEdges(),
       this->Splits->GetSegments() };
     for (Id t : change.Triangles)
@@ -302,6 +306,7 @@ private:
   std::unique_ptr<BoundarySplits> Splits;
   std::unique_ptr<BoundaryShape> Shape;
   NegativeCouplings Couplings;
+  bool IsThreaded = false;
 };
 
 /** Three boxes side by side and on top of each other: many points on one sphere. */

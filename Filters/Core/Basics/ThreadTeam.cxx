@@ -1,30 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Basics/ThreadTeam.h"
 
+#include "Core/Basics/LookFor.h"
+
 #include <utility>
 
 namespace cdm
 {
-namespace
-{
-/** How often a thread looks for what it waits for before it falls asleep. */
-constexpr int Looks = 100;
-
-template <typename Condition>
-bool LookFor(const Condition& condition)
-{
-  for (int i = 0; i < Looks; ++i)
-  {
-    if (condition())
-    {
-      return true;
-    }
-    std::this_thread::yield();
-  }
-  return false;
-}
-} // namespace
-
 ThreadTeam::~ThreadTeam()
 {
   {

@@ -3,9 +3,9 @@
  * @file ThreadTeam.h
  * @brief Threads that stay, for stages with thousands of short pieces of parallel work.
  *
- * A new thread takes some 30 microseconds. Those of a team wait for the next piece of work: for a
- * few microseconds awake, then asleep. They start with the first piece of work and end with the
- * team.
+ * A new thread takes some 30 microseconds. Those of a team wait for the next piece of work: for half
+ * a millisecond awake, then asleep (LookFor.h). They start with the first piece of work and end with
+ * the team.
  *
  * Exceptions (only std::bad_alloc can come) are thrown again on the calling thread when all threads
  * are done.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/BoundarySplits.h"
 
+#include "Core/Basics/HandOver.h"
 #include "Core/Basics/IdLimits.h"
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Predicates.h"
@@ -20,6 +21,8 @@ namespace
  */
 constexpr std::size_t MostPoints = 1000;
 constexpr std::size_t MostPerSplit = 20;
+/** With fewer splits, a second thread would hardly be awake before they are done. */
+constexpr std::size_t FewestForThreads = 4;
 
 bool IsInSorted(const std::vector<TriangleIds>& sorted, const TriangleIds& key)
 {
@@ -131,56 +134,81 @@ Status BoundarySplits::Run(const ChangedPoints& changed, std::vector<Id>& triang
 {
   this->Changed.clear();
   this->ChangedTriangles.clear();
-  this->Refinement.AllowNewPoints(MostPoints + MostPerSplit * (triangles.size() + edges.size()));
-  Status status = this->IsUsable() ? this->FollowPoints(changed, context) : Status();
-  this->CanGoOn = this->CanGoOn && status.IsOk() && this->Update();
-  const Id numberOfPoints = static_cast<Id>(this->Surface.Points.size());
-  // Segments by then: their edges are listed anew at the end.
-  std::vector<std::pair<EdgeIds, Id>> segments;
-  for (const EdgeIds& edge : edges)
+  const std::size_t count = triangles.size() + edges.size();
+  this->Refinement.AllowNewPoints(MostPoints + MostPerSplit * count);
+  this->NextPoint = static_cast<Id>(this->Surface.Points.size());
+  Status status = this->FollowPoints(changed, context);
+  if (!status.IsOk())
   {
-    segments.emplace_back(edge, this->IsUsable() ? this->FindSegment(edge) : NoId);
+    this->CanGoOn = false;
+    return status;
   }
-  std::size_t done = 0;
-  for (; done < edges.size() && status.IsOk() && this->IsUsable(); ++done)
-  {
-    const auto& [edge, segment] = segments[done];
-    if (segment == NoId)
+  ThreadTeam* const team = count >= FewestForThreads ? context.GetThreads().get() : nullptr;
+  std::size_t done = count;
+  HandOver<SurfaceChange>(
+    team, [&](const auto& put) { status = this->Split(triangles, edges, context, put); },
+    [&](const SurfaceChange& change)
     {
-      continue;
-    }
-    const EdgeIds& ends = this->Refinement.GetSurface().GetSegment(segment).Points;
-    if (MakeEdge(this->SurfacePoints[ends[0]], this->SurfacePoints[ends[1]]) ==
-      MakeEdge(edge[0], edge[1]))
-    {
-      status = this->Refinement.SplitSegment(segment, context);
-      this->CanGoOn = this->Update();
+      this->CanGoOn = this->Follow(change);
       if (!this->CanGoOn)
       {
-        break;
+        done = change.Place;
+        this->RanAway = change.HasRunAway;
       }
-    }
-  }
-  edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(done));
-  done = 0;
-  for (; done < triangles.size() && status.IsOk() && this->IsUsable(); ++done)
-  {
-    const TriangleIds& ids = this->Surface.Triangles[triangles[done]];
-    if (*std::max_element(ids.begin(), ids.end()) < numberOfPoints)
-    {
-      status = this->Refinement.SplitTriangle(triangles[done], context);
-      this->CanGoOn = this->Update();
-      if (!this->CanGoOn)
-      {
-        break;
-      }
-    }
-  }
-  triangles.erase(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(done));
+      return this->CanGoOn;
+    });
+  this->CanGoOn = this->CanGoOn && status.IsOk();
+  const auto doneEdges = static_cast<std::ptrdiff_t>(std::min(done, edges.size()));
+  const auto doneTriangles = static_cast<std::ptrdiff_t>(done) - doneEdges;
+  edges.erase(edges.begin(), edges.begin() + doneEdges);
+  triangles.erase(triangles.begin(), triangles.begin() + doneTriangles);
   SortUnique(this->ChangedTriangles);
   if (this->IsUsable())
   {
     this->UpdateEdges();
+  }
+  return status;
+}
+
+/**
+ * Splits edges, then triangles, of the surface. What it puts first is what the points that have
+ * changed have led to.
+ */
+Status BoundarySplits::Split(const std::vector<Id>& triangles, const std::vector<EdgeIds>& edges,
+  const ExecutionContext& context, const std::function<bool(SurfaceChange)>& put)
+{
+  // Segments by then: their edges are listed anew at the end.
+  std::vector<Id> segments;
+  for (const EdgeIds& edge : edges)
+  {
+    segments.push_back(this->FindSegment(edge));
+  }
+  const RefinableSurface& refined = this->Refinement.GetSurface();
+  Status status;
+  bool isGoingOn = put(this->TakeChange(0));
+  const Id firstNew = this->NextPoint;
+  for (std::size_t i = 0; i < edges.size() && isGoingOn; ++i)
+  {
+    if (segments[i] == NoId)
+    {
+      continue;
+    }
+    const EdgeIds& ends = refined.GetSegment(segments[i]).Points;
+    if (MakeEdge(this->SurfacePoints[ends[0]], this->SurfacePoints[ends[1]]) ==
+      MakeEdge(edges[i][0], edges[i][1]))
+    {
+      status = this->Refinement.SplitSegment(segments[i], context);
+      isGoingOn = status.IsOk() && put(this->TakeChange(i));
+    }
+  }
+  for (std::size_t i = 0; i < triangles.size() && isGoingOn; ++i)
+  {
+    const TriangleIds ids = this->Translate(refined.GetTriangle(triangles[i]).Points);
+    if (*std::max_element(ids.begin(), ids.end()) < firstNew)
+    {
+      status = this->Refinement.SplitTriangle(triangles[i], context);
+      isGoingOn = status.IsOk() && put(this->TakeChange(edges.size() + i));
+    }
   }
   return status;
 }
@@ -191,72 +219,94 @@ TriangleIds BoundarySplits::Translate(const TriangleIds& refined) const
     this->SurfacePoints[refined[2]] };
 }
 
-/** Makes the mesh fit the refined surface. False if that is impossible; then nothing changes. */
-bool BoundarySplits::Update()
+/** What the refinement has done to the surface since this was last asked for. */
+BoundarySplits::SurfaceChange BoundarySplits::TakeChange(std::size_t place)
 {
+  SurfaceChange change;
+  change.Place = place;
   const std::vector<Vec3>& refined = this->Refinement.GetPoints();
-  const std::vector<Vec3> points(
+  change.Points.assign(
     refined.begin() + static_cast<std::ptrdiff_t>(this->SurfacePoints.size()), refined.end());
-  Id next = static_cast<Id>(this->Surface.Points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
+  for (std::size_t i = 0; i < change.Points.size(); ++i)
   {
     this->RefinementSurfacePoints.push_back(static_cast<Id>(this->SurfacePoints.size()));
-    this->SurfacePoints.push_back(next++);
+    this->SurfacePoints.push_back(this->NextPoint++);
   }
   std::vector<Id> touched = this->Refinement.TakeTouched();
   const bool isResolved = std::none_of(
     touched.begin(), touched.end(), [this](Id t) { return this->Refinement.IsUnresolved(t); });
-  if (!isResolved || this->HasRunAway() || next > this->FirstInside)
+  change.HasRunAway = this->Refinement.IsFull();
+  change.IsPossible = isResolved && !change.HasRunAway && this->NextPoint <= this->FirstInside;
+  if (!change.IsPossible)
   {
-    return false;
+    return change;
   }
   this->Refinement.PullCocircular(touched);
   const std::vector<Id> pulled = this->Refinement.TakeTouched();
   touched.insert(touched.end(), pulled.begin(), pulled.end());
   SortUnique(touched);
-  this->ChangedTriangles.insert(this->ChangedTriangles.end(), touched.begin(), touched.end());
-  this->CollectTriangles(touched);
+  change.NumberOfTriangles = this->Refinement.GetSurface().GetNumberOfTriangles();
+  for (Id t : touched)
+  {
+    const RefinableSurface::Triangle& triangle = this->Refinement.GetSurface().GetTriangle(t);
+    change.Triangles.push_back(
+      { t, this->Translate(triangle.Points), triangle.Labels, this->SourceCells[triangle.Source] });
+    if (triangle.IsReversed)
+    {
+      NewTriangle& turned = change.Triangles.back();
+      std::swap(turned.Ids[1], turned.Ids[2]);
+      std::swap(turned.Labels.Front, turned.Labels.Back);
+    }
+  }
+  return change;
+}
+
+/** Makes the mesh fit the refined surface. False if that is impossible; then nothing changes. */
+bool BoundarySplits::Follow(const SurfaceChange& change)
+{
+  if (!change.IsPossible)
+  {
+    return false;
+  }
+  for (const NewTriangle& triangle : change.Triangles)
+  {
+    this->ChangedTriangles.push_back(triangle.Index);
+  }
+  this->CollectTriangles(change);
   if (this->Triangles.empty() && this->Moved.empty())
   {
-    return points.empty();
+    return change.Points.empty();
   }
-  if (!this->CollectConflicts(points, touched))
+  if (!this->CollectConflicts(change))
   {
     return false;
   }
   this->CollectCavity();
-  const bool isFilled = this->FillByCone(points);
+  const bool isFilled = this->FillByCone(change.Points);
   if (!isFilled)
   {
-    this->CollectPoints(points);
+    this->CollectPoints(change.Points);
     if (!this->Filling.Run(this->Around) || !this->AreWallsComplete())
     {
       return false;
     }
   }
-  this->Adopt(points, isFilled ? this->Cone.GetCells() : this->Filling.GetCells());
+  this->Adopt(change, isFilled ? this->Cone.GetCells() : this->Filling.GetCells());
   this->Moved.clear();
   return true;
 }
 
 /** Collects the triangles of the surface that have changed. */
-void BoundarySplits::CollectTriangles(const std::vector<Id>& touched)
+void BoundarySplits::CollectTriangles(const SurfaceChange& change)
 {
   const Id count = static_cast<Id>(this->Surface.Triangles.size());
   this->Triangles.clear();
   this->Vanished.clear();
   this->Made.clear();
-  for (Id t : touched)
+  for (const NewTriangle& triangle : change.Triangles)
   {
-    const RefinableSurface::Triangle& refined = this->Refinement.GetSurface().GetTriangle(t);
-    NewTriangle triangle{ t, this->Translate(refined.Points), refined.Labels,
-      this->SourceCells[refined.Source] };
-    if (refined.IsReversed)
-    {
-      std::swap(triangle.Ids[1], triangle.Ids[2]);
-      std::swap(triangle.Labels.Front, triangle.Labels.Back);
-    }
     const TriangleIds key = Sorted(triangle.Ids);
+    const Id t = triangle.Index;
     if (t < count && Sorted(this->Surface.Triangles[t]) == key)
     {
       continue;
@@ -354,8 +404,7 @@ void BoundarySplits::Visit(Id tetrahedron, Id point, const Vec3& position)
 }
 
 /** All tetrahedra of any region at points that are moved, or whose spheres hold new positions. */
-bool BoundarySplits::CollectConflicts(
-  const std::vector<Vec3>& points, const std::vector<Id>& touched)
+bool BoundarySplits::CollectConflicts(const SurfaceChange& change)
 {
   this->Sides.clear();
   this->Visits.resize(this->Mesh.GetNumberOfTetrahedra(), 0);
@@ -389,14 +438,15 @@ bool BoundarySplits::CollectConflicts(
       }
     }
   };
-  for (const Vec3& position : points)
+  for (const Vec3& position : change.Points)
   {
     search(this->Sides, NoId, position);
   }
   // All triangles at a point that is moved are touched.
   std::vector<std::pair<Id, Id>> around;
-  for (Id t : touched)
+  for (const NewTriangle& triangle : change.Triangles)
   {
+    const Id t = triangle.Index;
     for (int i = 0; i < 3 && t < static_cast<Id>(this->Surface.Triangles.size()); ++i)
     {
       const Id point = this->Surface.Triangles[t][i];
@@ -590,9 +640,9 @@ bool BoundarySplits::AreWallsComplete()
   return this->FoundRegions == this->WallRegions;
 }
 
-void BoundarySplits::Adopt(const std::vector<Vec3>& points, const std::vector<CavityCell>& cells)
+void BoundarySplits::Adopt(const SurfaceChange& change, const std::vector<CavityCell>& cells)
 {
-  for (const Vec3& position : points)
+  for (const Vec3& position : change.Points)
   {
     this->Mesh.SetPoint(static_cast<Id>(this->Surface.Points.size()), position);
     this->Surface.Points.push_back(position);
@@ -609,10 +659,9 @@ void BoundarySplits::Adopt(const std::vector<Vec3>& points, const std::vector<Ca
   const std::vector<Id>& changed = this->Mesh.GetChanged();
   this->Changed.insert(this->Changed.end(), changed.begin(), changed.end());
 
-  const std::size_t count = this->Refinement.GetSurface().GetNumberOfTriangles();
-  this->Surface.Triangles.resize(count);
-  this->Surface.Labels.resize(count);
-  this->Surface.SourceCells.resize(count);
+  this->Surface.Triangles.resize(change.NumberOfTriangles);
+  this->Surface.Labels.resize(change.NumberOfTriangles);
+  this->Surface.SourceCells.resize(change.NumberOfTriangles);
   for (const NewTriangle& triangle : this->Triangles)
   {
     this->Surface.Triangles[triangle.Index] = triangle.Ids;

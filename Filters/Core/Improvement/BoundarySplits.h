@@ -10,8 +10,11 @@
  *     filled anew, the surface's new triangles and the interfaces that stay being walls: with a cone
  *     (CavityCone.h) for one new point and no ties, otherwise with what CavityFilling.h finds.
  *
- * Guarantees: surface and mesh fit each other at any time. Exact; the mesh is the one that would be
- * made anew of the same points (AdvancingFrontTetrahedralizer.h).
+ * The surface does not depend on the tetrahedra: with two threads one is ahead with the surface,
+ * and the other one lets the mesh follow (HandOver.h).
+ *
+ * Guarantees: after a run surface and mesh fit each other. Exact; the mesh is the one that would be
+ * made anew of the same points (AdvancingFrontTetrahedralizer.h), whatever the number of threads.
  * Cost: 30 to 60 microseconds for a split, whatever the size of the mesh; the first run tests all of
  * the surface.
  */
@@ -25,6 +28,7 @@
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 #include "Core/Surface/SurfaceRefinement.h"
 
+#include <functional>
 #include <vector>
 
 namespace cdm
@@ -65,7 +69,7 @@ public:
     const ExecutionContext& context);
   bool IsUsable() const { return this->CanGoOn; }
   /** Whether that is because the last run took far more points than it had splits to make. */
-  bool HasRunAway() const { return this->Refinement.IsFull(); }
+  bool HasRunAway() const { return this->RanAway; }
   /** Interior points have got higher ids: DynamicTetrahedralization::ReservePoints(). */
   void SetFirstInside(Id firstInside) { this->FirstInside = firstInside; }
 
@@ -87,13 +91,32 @@ private:
     RegionPair Labels;
     Id Source;
   };
+  /** What a split has done to the surface, for the mesh to follow. */
+  struct SurfaceChange
+  {
+    std::vector<Vec3> Points;
+    /** Those that may have changed, as they are now; their indices ascend. */
+    std::vector<NewTriangle> Triangles;
+    std::size_t NumberOfTriangles = 0;
+    /** How many edges and triangles had been split, or left out, before. */
+    std::size_t Place = 0;
+    /** Whether the mesh may follow, and whether it may not as the splits have run away. */
+    bool IsPossible = false;
+    bool HasRunAway = false;
+  };
 
+  // The surface, on the calling thread.
   Status FollowPoints(const ChangedPoints& changed, const ExecutionContext& context);
+  Status Split(const std::vector<Id>& triangles, const std::vector<EdgeIds>& edges,
+    const ExecutionContext& context, const std::function<bool(SurfaceChange)>& put);
+  SurfaceChange TakeChange(std::size_t place);
   Id FindSegment(const EdgeIds& edge) const;
   TriangleIds Translate(const TriangleIds& refined) const;
-  bool Update();
-  void CollectTriangles(const std::vector<Id>& touched);
-  bool CollectConflicts(const std::vector<Vec3>& points, const std::vector<Id>& touched);
+
+  // The mesh, which follows.
+  bool Follow(const SurfaceChange& change);
+  void CollectTriangles(const SurfaceChange& change);
+  bool CollectConflicts(const SurfaceChange& change);
   void CollectCavity();
   void CollectPoints(const std::vector<Vec3>& points);
   const Vec3& GetPosition(Id point, const std::vector<Vec3>& points) const;
@@ -102,7 +125,8 @@ private:
   Id GetRegionInFront(const TriangleIds& ids) const;
   bool FindSides(const TriangleIds& ids);
   void Visit(Id tetrahedron, Id point, const Vec3& position);
-  void Adopt(const std::vector<Vec3>& points, const std::vector<CavityCell>& cells);
+  void Adopt(const SurfaceChange& change, const std::vector<CavityCell>& cells);
+
   std::vector<std::pair<EdgeIds, Id>> FindChangedSegments();
   void UpdateEdges();
 
@@ -112,6 +136,7 @@ private:
   std::vector<StructuralEdge>& Edges;
   SurfaceRefinement Refinement;
   bool CanGoOn = true;
+  bool RanAway = false;
   /** SourceCells of the surface when the object was made. */
   const std::vector<Id> SourceCells;
   /** For each structural edge its segment in the refinement. */
@@ -121,8 +146,9 @@ private:
   /** Point of the refinement for each point of the surface, and for each point inside, or NoId. */
   std::vector<Id> RefinementSurfacePoints;
   std::vector<Id> RefinementPoints;
-  /** Point of the surface for each point of the refinement, or NoId. */
+  /** Point of the surface for each point of the refinement, or NoId; the next new one. */
   std::vector<Id> SurfacePoints;
+  Id NextPoint = 0;
   std::vector<Id> Changed;
   std::vector<Id> ChangedTriangles;
   std::vector<Id> ChangedEdges;
