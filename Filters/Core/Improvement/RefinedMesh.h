@@ -163,6 +163,11 @@ public:
   bool IsFree(Id point) const;
   /** Smallest distance at which a new point may come to this one. */
   double GetClearance(Id point) const;
+  /**
+   * Until the mesh has more tetrahedra, several threads may ask for the following facts, each about
+   * other tetrahedra.
+   */
+  void MakeRoomForFacts() const { this->Facts.MakeRoom(); }
   /** The smallest dihedral angle, in degrees. */
   double GetAngle(Id tetrahedron) const { return this->Facts.GetAngle(tetrahedron); }
   TetrahedronFault GetFault(Id tetrahedron) const { return this->Facts.GetFault(tetrahedron); }

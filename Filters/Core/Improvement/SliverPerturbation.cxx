@@ -47,7 +47,7 @@ private:
 };
 
 Perturbation::Perturbation(const SliverAim& aim, RefinedMesh& mesh)
-  : Mesh(mesh), Ahead(mesh, SliversPerThread)
+  : Mesh(mesh), Ahead(mesh, SliversPerThread, TetrahedraPerSliver)
 {
   for (int i = 0; i < mesh.GetThreads().GetNumberOfThreads(); ++i)
   {

@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 namespace cdm
@@ -212,7 +211,7 @@ double SurfacePointMoves::MeasureStar(Id point, double& nearest) const
 {
   const TetMesh& mesh = this->Mesh.GetMesh();
   double smallest = 180.0;
-  nearest = std::numeric_limits<double>::infinity();
+  nearest = Infinity;
   for (Id t : this->Star)
   {
     const TetrahedronIds& ids = mesh.Tetrahedra[t];
@@ -643,7 +642,7 @@ private:
 SliverSurfaceMoves::SliverSurfaceMoves(
   double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh)
   : Target(target), IsFree(isFree), Mesh(mesh), Points(mesh.GetBoundary().Surface.Points),
-    Ahead(mesh, SliversPerThread)
+    Ahead(mesh, SliversPerThread, TetrahedraPerSliver)
 {
   const BoundaryShape& shape = mesh.GetShape();
   SurfacePointMoves::Rules rules;

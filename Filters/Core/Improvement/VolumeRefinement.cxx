@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/VolumeRefinement.h"
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Improvement/LookAhead.h"
 
 #include <algorithm>
@@ -16,14 +17,21 @@ constexpr std::size_t InsertionsBetweenChecks = 256;
 constexpr double CloseRatio = 0.3;
 /** Threads take at least so many at a time, some 50 microseconds: with fewer, 16 were slower than 4. */
 constexpr std::size_t TasksPerThread = 16;
+/** Of so many tetrahedra one is searched ahead: one search in thirteen is late then. */
+constexpr std::size_t TetrahedraPerTask = 200;
+/** A thread looks for faults of so many tetrahedra at a time. */
+constexpr std::size_t TestsAtOnce = 64;
+/** So many tasks make a batch, and in between this part of those that are left. */
+constexpr std::size_t FewestInBatch = 32;
+constexpr std::size_t BatchesForAll = 30;
 
 /** A tetrahedron that gets a point. */
 struct Task
 {
-  double Severity;
-  std::int64_t Stamp;
-  Id Tetrahedron;
-  TetrahedronFault Fault;
+  double Severity = 0.0;
+  std::int64_t Stamp = 0;
+  Id Tetrahedron = NoId;
+  TetrahedronFault Fault = TetrahedronFault::None;
 
   /** Large ones first, then the most severe fault, then the smallest id. */
   friend bool operator<(const Task& a, const Task& b)
@@ -38,46 +46,44 @@ struct Task
  * The tasks that are left. Most tetrahedra are replaced before it is their turn: from time to time
  * those are taken out, as they took as much memory as the mesh.
  */
-class TaskQueue
+class TaskList
 {
 public:
-  explicit TaskQueue(const DynamicTetrahedralization& mesh) : Mesh(mesh) {}
+  explicit TaskList(const DynamicTetrahedralization& mesh) : Mesh(mesh) {}
 
-  bool IsEmpty() const { return this->Tasks.empty(); }
   std::size_t GetSize() const { return this->Tasks.size(); }
   bool IsGone(const Task& task) const
   {
     return task.Stamp != this->Mesh.GetStamp(task.Tetrahedron);
   }
 
-  void Push(const Task& task)
+  void Add(const Task& task)
   {
     if (this->Tasks.size() >= this->Limit)
     {
       this->Tasks.erase(std::remove_if(this->Tasks.begin(), this->Tasks.end(),
                           [this](const Task& old) { return this->IsGone(old); }),
         this->Tasks.end());
-      std::make_heap(this->Tasks.begin(), this->Tasks.end());
       this->Limit = std::max(SmallestLimit, 2 * this->Tasks.size());
     }
     this->Tasks.push_back(task);
-    std::push_heap(this->Tasks.begin(), this->Tasks.end());
   }
 
-  const Task& GetFirst() const { return this->Tasks.front(); }
-  Task Pop()
+  /** Takes the most urgent ones out, the first one first. Some may be gone. */
+  void TakeFirst(std::size_t count, std::vector<Task>& taken)
   {
-    std::pop_heap(this->Tasks.begin(), this->Tasks.end());
-    const Task task = this->Tasks.back();
-    this->Tasks.pop_back();
-    return task;
+    const auto first =
+      this->Tasks.end() - static_cast<std::ptrdiff_t>(std::min(count, this->Tasks.size()));
+    std::nth_element(this->Tasks.begin(), first, this->Tasks.end());
+    taken.assign(first, this->Tasks.end());
+    this->Tasks.erase(first, this->Tasks.end());
+    std::sort(taken.rbegin(), taken.rend());
   }
 
 private:
   static constexpr std::size_t SmallestLimit = 1 << 16;
 
   const DynamicTetrahedralization& Mesh;
-  /** A heap. */
   std::vector<Task> Tasks;
   std::size_t Limit = SmallestLimit;
 };
@@ -92,64 +98,80 @@ struct Remedy
   PointCavity Cavity;
 };
 
-/** Refines tetrahedra, the most urgent one first; threads look ahead. */
+/** Refines tetrahedra in batches of the most urgent ones; threads look ahead. */
 class LimitRefinement
 {
 public:
   LimitRefinement(bool isShapeTested, RefinedMesh& mesh)
     : IsShapeTested(isShapeTested), Mesh(mesh), Tasks(mesh.GetTetrahedra()),
-      Ahead(mesh, TasksPerThread)
+      Ahead(mesh, TasksPerThread, TetrahedraPerTask)
   {
   }
   Status Run(const ExecutionContext& context);
 
 private:
-  void Schedule(Id tetrahedron);
-  bool HasTasks();
-  void RunNext();
+  void Schedule();
+  Task MakeTask(Id tetrahedron) const;
+  void TakeBatch();
+  void RunTask(std::size_t i);
   void Find(int thread, const Task& task, Remedy& remedy) const;
   void Apply(const Task& task, const Remedy& remedy);
 
   const bool IsShapeTested;
   RefinedMesh& Mesh;
-  TaskQueue Tasks;
-  /** Tasks taken from the queue, ahead of their turn, and the place of the next one. */
+  /** Tetrahedra that may have become tasks, and the tasks that they are. */
+  std::vector<Id> Made;
+  std::vector<Task> Found;
+  TaskList Tasks;
   std::vector<Task> Batch;
-  std::size_t Next = 0;
   LookAhead<Remedy> Ahead;
-  /** What is to be done about a task that came before the batch's next one. */
-  Remedy Urgent;
 };
 
-void LimitRefinement::Schedule(Id tetrahedron)
+/** Several threads may call it for different tetrahedra while the mesh does not change. */
+Task LimitRefinement::MakeTask(Id tetrahedron) const
 {
   const DynamicTetrahedralization& tetrahedra = this->Mesh.GetTetrahedra();
-  Vec3 target;
-  double severity = 0.0;
-  const TetrahedronFault fault =
-    this->Mesh.GetLimits().Find(tetrahedra.GetCorners(tetrahedron), true, target, severity);
-  this->Tasks.Push({ severity, tetrahedra.GetStamp(tetrahedron), tetrahedron, fault });
+  Task task{ 0.0, tetrahedra.GetStamp(tetrahedron), tetrahedron, TetrahedronFault::None };
+  if (!tetrahedra.IsDead(tetrahedron) && this->Mesh.IsFaulty(tetrahedron, this->IsShapeTested))
+  {
+    Vec3 target;
+    task.Fault =
+      this->Mesh.GetLimits().Find(tetrahedra.GetCorners(tetrahedron), true, target, task.Severity);
+  }
+  return task;
 }
 
-/** Whether there is a task; if so, the batch has one. */
-bool LimitRefinement::HasTasks()
+/** Makes tasks of the tetrahedra that have been made and break a limit. */
+void LimitRefinement::Schedule()
 {
-  if (this->Next == this->Batch.size())
-  {
-    this->Batch.clear();
-    this->Next = 0;
-    this->Ahead.Clear();
-    const std::size_t most = this->Ahead.GetBatchSize();
-    while (this->Batch.size() < most && !this->Tasks.IsEmpty())
+  SortUnique(this->Made);
+  this->Found.resize(this->Made.size());
+  this->Mesh.MakeRoomForFacts();
+  ThreadTeam& team = this->Mesh.GetThreads();
+  team.RunBlocks(team.GetNumberOfThreads(), this->Made.size(), TestsAtOnce,
+    [this](std::size_t begin, std::size_t end, int)
     {
-      const Task task = this->Tasks.Pop();
-      if (!this->Tasks.IsGone(task))
+      for (std::size_t i = begin; i < end; ++i)
       {
-        this->Batch.push_back(task);
+        this->Found[i] = this->MakeTask(this->Made[i]);
       }
+    });
+  this->Made.clear();
+  for (const Task& task : this->Found)
+  {
+    if (task.Fault != TetrahedronFault::None)
+    {
+      this->Tasks.Add(task);
     }
   }
-  return !this->Batch.empty();
+}
+
+/** The next tasks, the most urgent one first. */
+void LimitRefinement::TakeBatch()
+{
+  this->Ahead.Clear();
+  this->Tasks.TakeFirst(
+    std::max(this->Tasks.GetSize() / BatchesForAll, FewestInBatch), this->Batch);
 }
 
 /** Several threads may call it while the mesh does not change. */
@@ -184,32 +206,15 @@ void LimitRefinement::Apply(const Task& task, const Remedy& remedy)
   else if (remedy.IsInsertion)
   {
     this->Mesh.Insert(remedy.Target, remedy.Cavity);
-    for (Id t : this->Mesh.GetTetrahedra().GetChanged())
-    {
-      if (this->Mesh.IsFaulty(t, this->IsShapeTested))
-      {
-        this->Schedule(t);
-      }
-    }
+    const std::vector<Id>& made = this->Mesh.GetTetrahedra().GetChanged();
+    this->Made.insert(this->Made.end(), made.begin(), made.end());
   }
 }
 
-/** The most urgent task is the next one of the batch, or one that is newer. */
-void LimitRefinement::RunNext()
+/** Runs a task of the batch, unless its tetrahedron is gone. */
+void LimitRefinement::RunTask(std::size_t i)
 {
-  if (!this->Tasks.IsEmpty() && this->Batch[this->Next] < this->Tasks.GetFirst())
-  {
-    const Task task = this->Tasks.Pop();
-    if (!this->Tasks.IsGone(task))
-    {
-      this->Find(0, task, this->Urgent);
-      this->Apply(task, this->Urgent);
-    }
-    return;
-  }
-  const std::size_t i = this->Next++;
-  const Task task = this->Batch[i];
-  if (this->Tasks.IsGone(task))
+  if (this->Tasks.IsGone(this->Batch[i]))
   {
     return;
   }
@@ -220,27 +225,37 @@ void LimitRefinement::RunNext()
       this->Find(thread, this->Batch[k], result.What);
       result.Visited = this->Mesh.GetSearch(thread).GetVisited();
     });
-  this->Apply(task, remedy);
+  this->Apply(this->Batch[i], remedy);
 }
 
 Status LimitRefinement::Run(const ExecutionContext& context)
 {
-  for (Id t : this->Mesh.FindFaulty(this->IsShapeTested))
+  this->Made = this->Mesh.FindFaulty(this->IsShapeTested);
+  std::size_t done = 0;
+  for (;;)
   {
-    this->Schedule(t);
-  }
-  for (std::size_t done = 0; !this->Mesh.IsFull() && this->HasTasks(); ++done)
-  {
-    const std::size_t left = this->Tasks.GetSize() + this->Batch.size() - this->Next;
-    if (done % InsertionsBetweenChecks == 0 &&
-      !context.Continue(
-        static_cast<double>(done) / static_cast<double>(done + left), "Refining tetrahedra"))
+    this->Schedule();
+    this->TakeBatch();
+    if (this->Batch.empty())
     {
-      return Status::Aborted();
+      return Status();
     }
-    this->RunNext();
+    for (std::size_t i = 0; i < this->Batch.size(); ++i, ++done)
+    {
+      if (this->Mesh.IsFull())
+      {
+        return Status();
+      }
+      const std::size_t left = this->Tasks.GetSize() + this->Batch.size() - i;
+      if (done % InsertionsBetweenChecks == 0 &&
+        !context.Continue(
+          static_cast<double>(done) / static_cast<double>(done + left), "Refining tetrahedra"))
+      {
+        return Status::Aborted();
+      }
+      this->RunTask(i);
+    }
   }
-  return Status();
 }
 } // namespace
 

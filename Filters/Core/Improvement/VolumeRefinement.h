@@ -4,10 +4,11 @@
  * @brief Steiner points for tetrahedra that are too large or badly shaped.
  *
  * Method: tetrahedra that break a limit get a point at the circumcenter or off-center
- * (TetrahedronLimits.h), the largest first, then the worst shaped. If the point would encroach on
- * triangles or structural edges of the boundary (BoundarySpheres.h), a split of the one it
- * encroaches on most is requested instead. RefinedMesh.h says which tetrahedra are left as they
- * are. Threads look ahead (LookAhead.h): the result does not depend on them.
+ * (TetrahedronLimits.h), the largest first, then the worst shaped. They are taken in batches: what
+ * one batch has made is tested when it is done, on all threads, and has its turn in a later one. If
+ * the point would encroach on triangles or structural edges of the boundary (BoundarySpheres.h), a
+ * split of the one it encroaches on most is requested instead. RefinedMesh.h says which tetrahedra
+ * are left as they are. Threads look ahead (LookAhead.h): the result does not depend on them.
  *
  * Reference: J. R. Shewchuk, "Tetrahedral mesh generation by Delaunay refinement", 1998,
  * doi:10.1145/276884.276894 (what is split instead, and why it ends).
