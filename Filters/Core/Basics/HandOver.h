@@ -7,7 +7,8 @@
  * be done for two items at once, but the first step can be ahead of the second one.
  *
  * Cost: a lock for each item that is put, and one for all items that have come since the last one
- * was taken. The thread that uses them waits awake for a moment, then asleep.
+ * was taken. The thread that uses them waits awake for a moment, then asleep. If it has not begun
+ * when all items are made, it is not waited for.
  */
 #ifndef cdmHandOver_h
 #define cdmHandOver_h
@@ -83,8 +84,9 @@ private:
 
 /**
  * Calls make(put) on the calling thread, which calls put(item) for one item after the other, and
- * use(item) for each of them in the same order: on a second thread of the team, or, without one,
- * before put() returns. An exception is thrown again from here.
+ * use(item) for each of them in the same order: on a second thread of the team; if that comes too
+ * late, afterwards on the calling thread; without one, before put() returns. An exception is thrown
+ * again from here.
  * @param team null, or with one thread: the calling thread is the only one
  * @param use returns whether to go on. If not, it is not called again, and put() returns false as
  *   soon as that is known; make() may then be some items ahead
@@ -131,7 +133,22 @@ void HandOver(ThreadTeam* team, const Make& make, const Use& use)
         return isGoingOn.load();
       });
   };
-  team->Run(2, [&](int thread) { thread == 0 ? makeAll() : useAll(); });
+  // Each of the two threads has a turn; the calling thread has both if the other one is late.
+  bool isMade = false;
+  std::atomic<bool> isUsed{ false };
+  const auto takeTurn = [&](std::size_t, std::size_t, int thread)
+  {
+    if (thread == 0 && !isMade)
+    {
+      isMade = true;
+      makeAll();
+    }
+    else if (!isUsed.exchange(true))
+    {
+      useAll();
+    }
+  };
+  team->RunBlocks(2, 2, 1, takeTurn);
 }
 } // namespace cdm
 

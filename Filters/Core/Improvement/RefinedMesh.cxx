@@ -257,7 +257,8 @@ void RefinedMesh::ReservePoints()
 }
 
 bool RefinedMesh::SplitBoundary(std::vector<Id> moved, const DelaunaySurfaceRefinerOptions& options,
-  const SizingField& sizing, const ExecutionContext& context, Status& status)
+  const SizingField& sizing, const std::function<void()>& findSizes,
+  const ExecutionContext& context, Status& status)
 {
   this->ReservePoints();
   for (Id p : moved)
@@ -291,7 +292,18 @@ bool RefinedMesh::SplitBoundary(std::vector<Id> moved, const DelaunaySurfaceRefi
   {
     return false;
   }
-  this->FollowBoundary(changed.OnSurface, sourceTriangles);
+  this->Threads->RunBlocks(2, 2, 1,
+    [&](std::size_t part, std::size_t, int)
+    {
+      if (part == 0)
+      {
+        this->FollowBoundary(changed.OnSurface, sourceTriangles);
+      }
+      else
+      {
+        findSizes();
+      }
+    });
   this->Requests.Clear();
   return true;
 }

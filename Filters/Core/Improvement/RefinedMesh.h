@@ -36,6 +36,7 @@
 #include "Core/Sizing/TetrahedronLimits.h"
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -147,11 +148,15 @@ public:
    * itself.
    * @param moved points of the surface that have been moved since the last splits, ascending
    * @param options those that the surface was refined with
+   * @param findSizes called when all requests are done, for what depends on the surface and on the
+   *   tetrahedra only, such as SetSurfaceSizes(): maybe on another thread, while what is known of
+   *   the boundary follows
    * @return whether all requests are done. If not, surface and mesh still fit each other, the
    *   requests that are left stay, and a new mesh has to be made: this object cannot be used then
    */
   bool SplitBoundary(std::vector<Id> moved, const DelaunaySurfaceRefinerOptions& options,
-    const SizingField& sizing, const ExecutionContext& context, Status& status);
+    const SizingField& sizing, const std::function<void()>& findSizes,
+    const ExecutionContext& context, Status& status);
   /** Whether the last splits took far more points than they were: see BoundarySplits.h. */
   bool HaveSplitsRunAway() const { return this->Splits && this->Splits->HasRunAway(); }
   /** Triangles of the surface that the last splits have made or may have changed, ascending. */

@@ -450,7 +450,8 @@ void SteinerPointRounds::TakeMesh(
   AdvancingFrontTetrahedralizerOutput made, const std::vector<InteriorPoint>& interior)
 {
   this->Surface = std::move(made.Boundary);
-  this->CollectSurfaceSizes(MakeAscendingIds(this->Surface.Triangles.size()));
+  this->CollectSurfaceSizes(
+    MakeAscendingIds(this->Surface.Triangles.size()), this->Context.GetNumberOfThreads());
   this->Mesh = std::make_unique<RefinedMesh>(std::move(made.Mesh),
     RefinedBoundary{ this->Surface, this->Edges, this->Edges }, interior, this->Memory,
     this->GetMeshOptions());
@@ -525,8 +526,18 @@ Status SteinerPointRounds::SplitInPlace()
   const std::size_t before = this->Surface.Points.size();
   Status status;
   SortUnique(this->MovedPoints);
+  const auto findSizes = [this]
+  {
+    if (!this->SurfaceSizes.empty())
+    {
+      // One of the threads does something else meanwhile.
+      const std::size_t first = this->CollectSurfaceSizes(
+        this->Mesh->GetSplitTriangles(), std::max(1, this->Context.GetNumberOfThreads() - 1));
+      this->Mesh->SetSurfaceSizes(static_cast<Id>(first), this->SurfaceSizes);
+    }
+  };
   const bool isDone = this->Mesh->SplitBoundary(std::move(this->MovedPoints),
-    this->GetSurfaceOptions(), this->Input.Sizing, this->GetContext(), status);
+    this->GetSurfaceOptions(), this->Input.Sizing, findSizes, this->GetContext(), status);
   const std::size_t after = this->Surface.Points.size();
   this->Report.BoundaryPoints += static_cast<Id>(after - before);
   if (!status.IsOk())
@@ -541,11 +552,6 @@ Status SteinerPointRounds::SplitInPlace()
   }
   ++this->Report.Rounds;
   this->HasSplitNothing = after == before;
-  if (!this->SurfaceSizes.empty())
-  {
-    const std::size_t first = this->CollectSurfaceSizes(this->Mesh->GetSplitTriangles());
-    this->Mesh->SetSurfaceSizes(static_cast<Id>(first), this->SurfaceSizes);
-  }
   this->IsSurfaceFree.resize(after, 1);
   this->IsNew.assign(after, 0);
   return status;
@@ -556,7 +562,8 @@ Status SteinerPointRounds::SplitInPlace()
  * and facets that come close to each other. Returns the first such point.
  * @param triangles those at new points are among them
  */
-std::size_t SteinerPointRounds::CollectSurfaceSizes(const std::vector<Id>& triangles)
+std::size_t SteinerPointRounds::CollectSurfaceSizes(
+  const std::vector<Id>& triangles, int numberOfThreads)
 {
   const std::size_t first = this->SurfaceSizes.size();
   if (first == 0)
@@ -572,8 +579,7 @@ std::size_t SteinerPointRounds::CollectSurfaceSizes(const std::vector<Id>& trian
       this->SurfaceSizes[p] = this->Features->Find(this->Surface.Points[p], this->SurfaceSizes[p]);
     }
   };
-  ParallelLoop(
-    this->SurfaceSizes.size() - first, { this->Context.GetNumberOfThreads(), 64 }, {}, "", find);
+  ParallelLoop(this->SurfaceSizes.size() - first, { numberOfThreads, 64 }, {}, "", find);
   return first;
 }
 

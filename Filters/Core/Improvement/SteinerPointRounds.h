@@ -117,7 +117,7 @@ private:
   bool MayShapeSurface() const;
   Id GetMaximumOfShapes() const;
   Status SplitInPlace();
-  std::size_t CollectSurfaceSizes(const std::vector<Id>& triangles);
+  std::size_t CollectSurfaceSizes(const std::vector<Id>& triangles, int numberOfThreads);
   void SpreadSurfaceSizes(const std::vector<Id>& triangles);
   void CollectReport();
 
