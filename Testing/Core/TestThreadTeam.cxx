@@ -112,3 +112,20 @@ TEST(ThreadTeam, ExceptionsReachTheCaller)
   team.Run(1, [&](int) { ++calls; });
   EXPECT_EQ(calls, 1);
 }
+
+/** A second thread was started where one was asked for, and took processor time while it waited. */
+TEST(ThreadTeam, BlocksUseNoMoreThreadsThanTheTeamHas)
+{
+  ThreadTeam team(1);
+  const std::thread::id caller = std::this_thread::get_id();
+  for (int run = 0; run < 100; ++run)
+  {
+    team.RunBlocks(2, 2, 1,
+      [&](std::size_t, std::size_t, int thread)
+      {
+        EXPECT_EQ(thread, 0);
+        EXPECT_EQ(std::this_thread::get_id(), caller);
+        std::this_thread::sleep_for(std::chrono::microseconds(50));
+      });
+  }
+}

@@ -57,7 +57,7 @@ public:
    * Calls work(begin, end, thread) for blocks of the numbers below size; each thread takes the next
    * block until none is left. Threads that have not begun by then are not waited for: on a busy
    * machine they may wake milliseconds later.
-   * @param most threads work at the same time
+   * @param most threads work at the same time, and no more than the team has
    */
   template <typename Work>
   void RunBlocks(int most, std::size_t size, std::size_t blockSize, const Work& work)
@@ -71,7 +71,8 @@ public:
         work(block * blockSize, std::min(size, (block + 1) * blockSize), thread);
       }
     };
-    const auto threads = std::min<std::size_t>(static_cast<std::size_t>(most), count);
+    const int allowed = std::min(most, this->NumberOfThreads);
+    const auto threads = std::min<std::size_t>(static_cast<std::size_t>(allowed), count);
     this->RunTask(MakeTask(static_cast<int>(threads), takeBlocks), true);
   }
 

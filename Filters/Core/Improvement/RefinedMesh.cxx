@@ -292,7 +292,7 @@ bool RefinedMesh::SplitBoundary(std::vector<Id> moved, const DelaunaySurfaceRefi
   {
     return false;
   }
-  this->Threads->RunBlocks(std::min(2, this->Threads->GetNumberOfThreads()), 2, 1,
+  this->Threads->RunBlocks(2, 2, 1,
     [&](std::size_t part, std::size_t, int)
     {
       if (part == 0)
