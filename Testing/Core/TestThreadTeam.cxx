@@ -129,3 +129,36 @@ TEST(ThreadTeam, BlocksUseNoMoreThreadsThanTheTeamHas)
       });
   }
 }
+
+/** The calling thread does both where the other one is late, or where there is none. */
+TEST(ThreadTeam, BothAreDoneOnce)
+{
+  std::mt19937_64 generator(1);
+  const std::thread::id caller = std::this_thread::get_id();
+  for (const int threads : { 1, 2, 4 })
+  {
+    ThreadTeam team(threads);
+    for (int run = 0; run < 1000; ++run)
+    {
+      int first = 0;
+      int second = 0;
+      team.RunBoth(
+        [&]
+        {
+          EXPECT_EQ(std::this_thread::get_id(), caller);
+          ++first;
+        },
+        [&]
+        {
+          EXPECT_TRUE(threads > 1 || std::this_thread::get_id() == caller);
+          ++second;
+        });
+      EXPECT_EQ(first, 1);
+      EXPECT_EQ(second, 1);
+      if (generator() % 100 == 0)
+      {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+    }
+  }
+}

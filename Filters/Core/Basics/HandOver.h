@@ -18,7 +18,6 @@
 
 #include <atomic>
 #include <condition_variable>
-#include <cstddef>
 #include <deque>
 #include <mutex>
 #include <optional>
@@ -26,7 +25,7 @@
 
 namespace cdm
 {
-/** A queue between two threads. It has no largest size. */
+/** A queue between two threads, however long. */
 template <typename Item>
 class ItemQueue
 {
@@ -108,7 +107,7 @@ void HandOver(ThreadTeam* team, const Make& make, const Use& use)
   ItemQueue<Item> items;
   const auto useAll = [&]
   {
-    // Also if an exception ends it.
+    // Nothing more is to be made when this function ends, also by an exception.
     struct Stop
     {
       std::atomic<bool>& IsGoingOn;
@@ -121,6 +120,7 @@ void HandOver(ThreadTeam* team, const Make& make, const Use& use)
   };
   const auto makeAll = [&]
   {
+    // No item comes any more when this function ends, also by an exception.
     struct End
     {
       ItemQueue<Item>& Items;
@@ -133,22 +133,7 @@ void HandOver(ThreadTeam* team, const Make& make, const Use& use)
         return isGoingOn.load();
       });
   };
-  // Each of the two threads has a turn; the calling thread has both if the other one is late.
-  bool isMade = false;
-  std::atomic<bool> isUsed{ false };
-  const auto takeTurn = [&](std::size_t, std::size_t, int thread)
-  {
-    if (thread == 0 && !isMade)
-    {
-      isMade = true;
-      makeAll();
-    }
-    else if (!isUsed.exchange(true))
-    {
-      useAll();
-    }
-  };
-  team->RunBlocks(2, 2, 1, takeTurn);
+  team->RunBoth(makeAll, useAll);
 }
 } // namespace cdm
 

@@ -75,6 +75,28 @@ public:
     const auto threads = std::min<std::size_t>(static_cast<std::size_t>(allowed), count);
     this->RunTask(MakeTask(static_cast<int>(threads), takeBlocks), true);
   }
+  /**
+   * Calls first() on the calling thread, and second() at the same time on another one. If no other
+   * thread has begun when first() is done, the calling thread does both. Neither may use the team
+   * itself.
+   */
+  template <typename First, typename Second>
+  void RunBoth(const First& first, const Second& second)
+  {
+    std::atomic<bool> hasBegun{ false };
+    const auto work = [&](int thread)
+    {
+      if (thread == 0)
+      {
+        first();
+      }
+      if (!hasBegun.exchange(true))
+      {
+        second();
+      }
+    };
+    this->RunTask(MakeTask(std::min(2, this->NumberOfThreads), work), true);
+  }
 
 private:
   struct Task

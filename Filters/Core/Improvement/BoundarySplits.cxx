@@ -21,7 +21,7 @@ namespace
  */
 constexpr std::size_t MostPoints = 1000;
 constexpr std::size_t MostPerSplit = 20;
-/** With fewer splits, a second thread would hardly be awake before they are done. */
+/** A second thread helps with at least so many splits: it hardly wakes before fewer are done. */
 constexpr std::size_t FewestForThreads = 4;
 
 bool IsInSorted(const std::vector<TriangleIds>& sorted, const TriangleIds& key)

@@ -94,14 +94,17 @@ private:
   /** What a split has done to the surface, for the mesh to follow. */
   struct SurfaceChange
   {
+    /** New points of the surface, in the order of their ids. */
     std::vector<Vec3> Points;
-    /** Those that may have changed, as they are now; their indices ascend. */
+    /** Triangles that may have changed, as they are after the split; their indices ascend. */
     std::vector<NewTriangle> Triangles;
+    /** The number of all triangles of the surface after the split. */
     std::size_t NumberOfTriangles = 0;
-    /** How many edges and triangles had been split, or left out, before. */
+    /** The number of edges and triangles that had been split, or left out, before. */
     std::size_t Place = 0;
-    /** Whether the mesh may follow, and whether it may not as the splits have run away. */
+    /** Whether the mesh may follow. */
     bool IsPossible = false;
+    /** Whether the splits have run away, so that the mesh may not follow: see MostPerSplit. */
     bool HasRunAway = false;
   };
 
@@ -136,6 +139,7 @@ private:
   std::vector<StructuralEdge>& Edges;
   SurfaceRefinement Refinement;
   bool CanGoOn = true;
+  /** See HasRunAway(). */
   bool RanAway = false;
   /** SourceCells of the surface when the object was made. */
   const std::vector<Id> SourceCells;
@@ -146,8 +150,9 @@ private:
   /** Point of the refinement for each point of the surface, and for each point inside, or NoId. */
   std::vector<Id> RefinementSurfacePoints;
   std::vector<Id> RefinementPoints;
-  /** Point of the surface for each point of the refinement, or NoId; the next new one. */
+  /** Point of the surface for each point of the refinement, or NoId. */
   std::vector<Id> SurfacePoints;
+  /** The id that the next new point of the surface gets. */
   Id NextPoint = 0;
   std::vector<Id> Changed;
   std::vector<Id> ChangedTriangles;

@@ -292,18 +292,8 @@ bool RefinedMesh::SplitBoundary(std::vector<Id> moved, const DelaunaySurfaceRefi
   {
     return false;
   }
-  this->Threads->RunBlocks(2, 2, 1,
-    [&](std::size_t part, std::size_t, int)
-    {
-      if (part == 0)
-      {
-        this->FollowBoundary(changed.OnSurface, sourceTriangles);
-      }
-      else
-      {
-        findSizes();
-      }
-    });
+  this->Threads->RunBoth(
+    [&] { this->FollowBoundary(changed.OnSurface, sourceTriangles); }, findSizes);
   this->Requests.Clear();
   return true;
 }

@@ -169,8 +169,8 @@ public:
   /** Smallest distance at which a new point may come to this one. */
   double GetClearance(Id point) const;
   /**
-   * Until the mesh has more tetrahedra, several threads may ask for the following facts, each about
-   * other tetrahedra.
+   * Makes room for facts about all tetrahedra (GetAngle() to IsAcrossSharp(), IsFaulty()): several
+   * threads may then ask for them, each about other tetrahedra, until a tetrahedron is added.
    */
   void MakeRoomForFacts() const { this->Facts.MakeRoom(); }
   /** The smallest dihedral angle, in degrees. */

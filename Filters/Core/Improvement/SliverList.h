@@ -34,7 +34,7 @@ constexpr int MaximumSliverPasses = 20;
 
 /** Threads search at least so many, each some 100 microseconds. */
 constexpr std::size_t SliversPerThread = 2;
-/** Of so many tetrahedra one sliver is searched ahead: one search in fourteen is late then. */
+/** A sliver is searched ahead for each so many tetrahedra of the mesh: see LookAhead.h. */
 constexpr std::size_t TetrahedraPerSliver = 4000;
 
 struct Sliver

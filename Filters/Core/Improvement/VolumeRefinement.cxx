@@ -15,14 +15,18 @@ namespace
 constexpr std::size_t InsertionsBetweenChecks = 256;
 /** Free points closer to others than this part of the sizing are removed. */
 constexpr double CloseRatio = 0.3;
-/** Threads take at least so many at a time, some 50 microseconds: with fewer, 16 were slower than 4. */
+/**
+ * Threads search for at least so many tasks at a time, some 50 microseconds: with fewer, 16 threads
+ * were slower than 4.
+ */
 constexpr std::size_t TasksPerThread = 16;
-/** Of so many tetrahedra one is searched ahead: one search in thirteen is late then. */
+/** A task is searched ahead for each so many tetrahedra of the mesh: see LookAhead.h. */
 constexpr std::size_t TetrahedraPerTask = 200;
 /** A thread looks for faults of so many tetrahedra at a time. */
 constexpr std::size_t TestsAtOnce = 64;
-/** So many tasks make a batch, and in between this part of those that are left. */
+/** A batch has at least so many tasks, if there are as many. */
 constexpr std::size_t FewestInBatch = 32;
+/** A batch of more tasks than that is one in so many of the tasks that are left. */
 constexpr std::size_t BatchesForAll = 30;
 
 /** A tetrahedron that gets a point. */
@@ -69,7 +73,7 @@ public:
     this->Tasks.push_back(task);
   }
 
-  /** Takes the most urgent ones out, the first one first. Some may be gone. */
+  /** Takes the most urgent tasks out, the first one first. Some of them may be gone. */
   void TakeFirst(std::size_t count, std::vector<Task>& taken)
   {
     const auto first =
@@ -119,8 +123,9 @@ private:
 
   const bool IsShapeTested;
   RefinedMesh& Mesh;
-  /** Tetrahedra that may have become tasks, and the tasks that they are. */
+  /** Tetrahedra that may have become tasks. */
   std::vector<Id> Made;
+  /** Work space: for each of these tetrahedra its task, or one without a fault. */
   std::vector<Task> Found;
   TaskList Tasks;
   std::vector<Task> Batch;
