@@ -3,6 +3,7 @@
 
 #include "Core/Basics/ParallelLoop.h"
 #include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/Box.h"
 #include "Core/Geometry/Determinants.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Geometry/PulledSphere.h"
@@ -208,22 +209,19 @@ bool VertexInsertion::FindCavity(Id vertex, Id first, Workspace& space)
       const Id outer = neighbors[i] / 4;
       const RoughSphere sphere = spheres[outer];
       // The last vertex is never the one at infinity.
-      const Vec3 d = position - points[tetrahedra[outer][3]];
-      const double power = d.X * (d.X - sphere.X) + d.Y * (d.Y - sphere.Y) + d.Z * (d.Z - sphere.Z);
-      const double bound =
-        sphere.Tolerance * (std::abs(d.X) + std::abs(d.Y) + std::abs(d.Z)) + SmallestCertainBound;
+      const Determinant<double> power = GetPower(sphere, position - points[tetrahedra[outer][3]]);
       const unsigned mark = marks[outer];
-      unsigned isRemoved = power < 0.0 ? 1 : 0;
+      unsigned isRemoved = power.Value < 0.0 ? 1 : 0;
       // Tetrahedra at the border of a part belong to no thread: they are read, but never marked.
       // The facet is owned.
       if (IsShared && !own.Has(tetrahedra[outer][neighbors[i] % 4]))
       {
         isWithin = isWithin && sphere.Tolerance < NoSphere.Tolerance &&
-          !(std::abs(power) > bound ? isRemoved != 0
-                                    : this->IsInConflictExactly(outer, vertex, space));
+          !(std::abs(power.Value) > power.Bound ? isRemoved != 0
+                                                : this->IsInConflictExactly(outer, vertex, space));
         isRemoved = 0;
       }
-      else if (!(std::abs(power) > bound))
+      else if (!(std::abs(power.Value) > power.Bound))
       {
         isRemoved =
           mark == Unknown ? this->IsInConflictExactly(outer, vertex, space) : mark == Removed;
@@ -328,12 +326,27 @@ bool VertexInsertion::FillCavity(Id vertex, Workspace& space)
   for (std::size_t k = 0; k < count; ++k)
   {
     const CavityFacet& facet = space.Facets[k];
+    const RelativeVertex& a = space.Vertices[facet.A];
+    const RelativeVertex& b = space.Vertices[facet.B];
+    const RelativeVertex& c = space.Vertices[facet.C];
+    RoughSphere& sphere = this->Spheres[facet.Outer];
     const Id infinite = static_cast<Id>(count / 2 + 2);
-    this->Spheres[facet.Outer] =
-      isOnHull && (facet.A == infinite || facet.B == infinite || facet.C == infinite)
-      ? NoSphere
-      : MakeRoughSphere(
-          space.Vertices[facet.A], space.Vertices[facet.B], space.Vertices[facet.C], size);
+    if (isOnHull && facet.A == infinite)
+    {
+      sphere = MakeRoughHalfSpace(b, c, size, this->Extent);
+    }
+    else if (isOnHull && facet.B == infinite)
+    {
+      sphere = MakeRoughHalfSpace(c, a, size, this->Extent);
+    }
+    else if (isOnHull && facet.C == infinite)
+    {
+      sphere = MakeRoughHalfSpace(a, b, size, this->Extent);
+    }
+    else
+    {
+      sphere = MakeRoughSphere(a, b, c, size);
+    }
   }
   constexpr std::size_t LargestTable = 1024;
   if (count / 2 + 3 <= LargestTable)
@@ -419,21 +432,20 @@ inline void VertexInsertion::ConnectBySorting(Workspace& space)
 
 inline void VertexInsertion::MakeSphere(std::size_t tetrahedron)
 {
+  // The vertex at infinity would be the first one.
   const TetrahedronIds& ids = this->Output.Tetrahedra[tetrahedron];
-  if (ids[0] == this->Infinite)
-  {
-    this->Spheres[tetrahedron] = NoSphere;
-    return;
-  }
+  const bool isAtHull = ids[0] == this->Infinite;
   RelativeVertex vertices[3];
   double size = 0.0;
-  for (int i = 0; i < 3; ++i)
+  for (int i = isAtHull ? 1 : 0; i < 3; ++i)
   {
     const Vec3 d = this->Points[ids[i]] - this->Points[ids[3]];
     size = std::max(size, GetLargest(std::abs(d.X), std::abs(d.Y), std::abs(d.Z)));
     vertices[i] = { ids[i], d, SquaredNorm(d) };
   }
-  this->Spheres[tetrahedron] = MakeRoughSphere(vertices[0], vertices[1], vertices[2], size);
+  this->Spheres[tetrahedron] = isAtHull
+    ? MakeRoughHalfSpace(vertices[1], vertices[2], size, this->Extent)
+    : MakeRoughSphere(vertices[0], vertices[1], vertices[2], size);
 }
 
 void VertexInsertion::Reserve()
@@ -448,6 +460,14 @@ void VertexInsertion::Reserve()
 void VertexInsertion::Prepare()
 {
   this->SetUnit();
+  Box box;
+  for (Id i = 0; i < this->Infinite; ++i)
+  {
+    box.Add(this->Points[i]);
+  }
+  const Vec3 sides = box.High - box.Low;
+  // More than it is by any rounding.
+  this->Extent = 1.01 * GetLargest(sides.X, sides.Y, sides.Z);
   this->Indices.assign(static_cast<std::size_t>(this->Infinite) + 1, 0);
 }
 

@@ -182,6 +182,8 @@ private:
   /** Determinants whose error bound is below these have no error. */
   double ExactSideBound = 0.0;
   double ExactPositionBound = 0.0;
+  /** At least the longest side of the box of all points. */
+  double Extent = 0.0;
   RawVector<RoughSphere> Spheres;
   RawVector<unsigned char> Marks;
   /** Work space: index of each vertex among those of the cavity. */
