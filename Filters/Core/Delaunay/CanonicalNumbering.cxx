@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 
 namespace cdm
 {
@@ -17,40 +18,76 @@ constexpr unsigned char Turns[12][4] = { { 0, 1, 2, 3 }, { 0, 2, 3, 1 }, { 0, 3,
   { 3, 0, 2, 1 }, { 3, 2, 1, 0 }, { 3, 1, 0, 2 } };
 constexpr unsigned char NotMeshed = 12;
 
-/** The permutation that puts the lowest vertex first and the second lowest after it. */
-unsigned char FindTurn(const TetrahedronIds& ids)
+/**
+ * The permutation that puts the lowest vertex first and the second lowest after it, by which vertices
+ * are lower than which others: the comparisons are unpredictable, and a table takes no branch.
+ */
+class TurnTable
 {
-  int first = ids[1] < ids[0] ? 1 : 0;
-  first = ids[2] < ids[first] ? 2 : first;
-  first = ids[3] < ids[first] ? 3 : first;
-  int turn = 3 * first;
-  turn = ids[Turns[3 * first + 1][1]] < ids[Turns[turn][1]] ? 3 * first + 1 : turn;
-  turn = ids[Turns[3 * first + 2][1]] < ids[Turns[turn][1]] ? 3 * first + 2 : turn;
-  return static_cast<unsigned char>(turn);
-}
+public:
+  TurnTable()
+  {
+    TetrahedronIds ids{ 0, 1, 2, 3 };
+    do
+    {
+      unsigned char best = 0;
+      for (unsigned char turn = 1; turn < NotMeshed; ++turn)
+      {
+        const bool isFirstLower = ids[Turns[turn][0]] < ids[Turns[best][0]];
+        const bool isFirstSame = Turns[turn][0] == Turns[best][0];
+        best =
+          isFirstLower || (isFirstSame && ids[Turns[turn][1]] < ids[Turns[best][1]]) ? turn : best;
+      }
+      this->Entries[GetOrder(ids)] = best;
+    } while (std::next_permutation(ids.begin(), ids.end()));
+  }
 
-/** Sorts the tetrahedra of one vertex by their other vertices. */
+  unsigned char Find(const TetrahedronIds& ids) const { return this->Entries[GetOrder(ids)]; }
+
+private:
+  static unsigned GetOrder(const TetrahedronIds& ids)
+  {
+    return unsigned(ids[0] < ids[1]) | unsigned(ids[0] < ids[2]) << 1 |
+      unsigned(ids[0] < ids[3]) << 2 | unsigned(ids[1] < ids[2]) << 3 |
+      unsigned(ids[1] < ids[3]) << 4 | unsigned(ids[2] < ids[3]) << 5;
+  }
+
+  unsigned char Entries[64] = {};
+};
+
+/** Sorts the tetrahedra of one vertex by their other vertices, of which two tell them apart. */
 void SortStar(TetrahedronIds* items, Id size)
 {
   // Two tetrahedra with the same first three vertices would lie on the same side of a facet.
-  const auto isLess = [](const TetrahedronIds& s, const TetrahedronIds& t)
-  { return s[0] != t[0] ? s[0] < t[0] : s[1] < t[1]; };
-  constexpr Id Many = 32;
+  const auto getKey = [](const TetrahedronIds& item)
+  { return static_cast<std::uint64_t>(item[0]) << 32 | static_cast<std::uint64_t>(item[1]); };
+  constexpr Id Many = 16;
   if (size > Many)
   {
-    std::sort(items, items + size, isLess);
+    std::sort(items, items + size,
+      [&](const TetrahedronIds& s, const TetrahedronIds& t) { return getKey(s) < getKey(t); });
     return;
   }
-  // They are few: seven, on average.
-  for (Id i = 1; i < size; ++i)
+  // They are few, seven on average: each counts how many are lower, without branches, which would
+  // be unpredictable.
+  TetrahedronIds copies[Many];
+  std::uint64_t keys[Many];
+  Id places[Many];
+  for (Id i = 0; i < size; ++i)
   {
-    const TetrahedronIds item = items[i];
-    Id k = i;
-    for (; k > 0 && isLess(item, items[k - 1]); --k)
+    copies[i] = items[i];
+    keys[i] = getKey(copies[i]);
+    places[i] = 0;
+    for (Id k = 0; k < i; ++k)
     {
-      items[k] = items[k - 1];
+      const Id isLower = keys[i] < keys[k] ? 1 : 0;
+      places[k] += isLower;
+      places[i] += 1 - isLower;
     }
-    items[k] = item;
+  }
+  for (Id i = 0; i < size; ++i)
+  {
+    items[places[i]] = copies[i];
   }
 }
 
@@ -83,13 +120,20 @@ void CollectNeighbors(const DelaunayTetrahedralization& all, const RawVector<Id>
   ForEach(turns.size(), numberOfThreads,
     [&](std::size_t t)
     {
-      for (int i = 0; i < 4 && turns[t] != NotMeshed; ++i)
+      const unsigned char own = turns[t];
+      if (own == NotMeshed)
       {
-        const Id facet = all.Neighbors[t][Turns[turns[t]][i]];
-        const unsigned char turn = turns[facet / 4];
-        mesh.Neighbors[places[t]][i] =
-          turn == NotMeshed ? NoId : 4 * places[facet / 4] + inverse[turn][facet % 4];
+        return;
       }
+      const TetrahedronIds& facets = all.Neighbors[t];
+      TetrahedronIds neighbors;
+      for (int i = 0; i < 4; ++i)
+      {
+        const Id facet = facets[Turns[own][i]];
+        const unsigned char turn = turns[facet / 4];
+        neighbors[i] = turn == NotMeshed ? NoId : 4 * places[facet / 4] + inverse[turn][facet % 4];
+      }
+      mesh.Neighbors[places[t]] = neighbors;
     });
 }
 } // namespace
@@ -104,10 +148,11 @@ void CollectTetrahedra(DelaunayTetrahedralization& all, RawVector<Id>& regions,
   RawVector<Id> ranks(slots);
   RawVector<unsigned char> turns(slots);
   const bool isAlone = numberOfThreads <= 1;
+  const TurnTable table;
   ForEach(slots, numberOfThreads,
     [&](std::size_t t)
     {
-      turns[t] = regions[t] == NoId ? NotMeshed : FindTurn(all.Tetrahedra[t]);
+      turns[t] = regions[t] == NoId ? NotMeshed : table.Find(all.Tetrahedra[t]);
       if (turns[t] != NotMeshed)
       {
         ranks[t] = Increment(counts[all.Tetrahedra[t][Turns[turns[t]][0]]], isAlone);
