@@ -251,7 +251,7 @@ inline void VertexInsertion::ForgetCavity(Workspace& space)
   }
   for (std::size_t k = 0; k < space.NumberOfFacets; ++k)
   {
-    this->ForgetMark(space.Facets[k].Outer / 4);
+    ForgetMark(this->Marks[space.Facets[k].Outer / 4]);
   }
 }
 
@@ -285,7 +285,16 @@ bool VertexInsertion::FillCavity(Id vertex, Workspace& space)
   }
 
   // Number the vertices of the cavity. The one at infinity belongs to all threads: it is the last.
-  const Vec3 origin = this->Points[vertex];
+  // As marks may alias anything, what does not change is held here.
+  const Vec3* const points = this->Points;
+  TetrahedronIds* const ids = tetrahedra.data();
+  TetrahedronIds* const allNeighbors = neighbors.data();
+  unsigned char* const marks = this->Marks.data();
+  Id* const indices = this->Indices.data();
+  CavityFacet* const facets = space.Facets.data();
+  const Id* const places = space.Cavity.data();
+  const Id infinite = this->Infinite;
+  const Vec3 origin = points[vertex];
   Id vertexCount = 0;
   double size = 0.0;
   bool isOnHull = false;
@@ -293,53 +302,55 @@ bool VertexInsertion::FillCavity(Id vertex, Workspace& space)
   {
     space.Vertices.resize(count + 3);
   }
+  RelativeVertex* const vertices = space.Vertices.data();
+  const Id infiniteIndex = static_cast<Id>(count / 2 + 2);
   const auto getIndex = [&](Id v)
   {
-    if (v == this->Infinite)
+    if (v == infinite)
     {
       isOnHull = true;
-      return static_cast<Id>(count / 2 + 2);
+      return infiniteIndex;
     }
-    const Id index = this->Indices[v];
-    if (index < vertexCount && space.Vertices[index].Vertex == v)
+    const Id index = indices[v];
+    if (index < vertexCount && vertices[index].Vertex == v)
     {
       return index;
     }
-    this->Indices[v] = vertexCount;
-    const Vec3 d = this->Points[v] - origin;
+    indices[v] = vertexCount;
+    const Vec3 d = points[v] - origin;
     size = std::max(size, GetLargest(std::abs(d.X), std::abs(d.Y), std::abs(d.Z)));
-    space.Vertices[vertexCount] = { v, d, SquaredNorm(d) };
+    vertices[vertexCount] = { v, d, SquaredNorm(d) };
     return vertexCount++;
   };
   for (std::size_t k = 0; k < count; ++k)
   {
-    CavityFacet& facet = space.Facets[k];
-    const Id t = space.Cavity[k] / 4;
-    tetrahedra[t] = { facet.A, facet.B, facet.C, vertex };
-    neighbors[t][3] = facet.Outer;
+    const CavityFacet facet = facets[k];
+    const Id t = places[k] / 4;
+    ids[t] = { facet.A, facet.B, facet.C, vertex };
+    allNeighbors[t][3] = facet.Outer;
     const Id outer = facet.Outer / 4;
-    neighbors[outer][facet.Outer % 4] = 4 * t + 3;
-    this->ForgetMark(outer);
-    this->Marks[t] = Unknown;
-    facet = { getIndex(facet.A), getIndex(facet.B), getIndex(facet.C), t };
+    allNeighbors[outer][facet.Outer % 4] = 4 * t + 3;
+    ForgetMark(marks[outer]);
+    marks[t] = Unknown;
+    facets[k] = { getIndex(facet.A), getIndex(facet.B), getIndex(facet.C), t };
   }
+  RoughSphere* const spheres = this->Spheres.data();
   for (std::size_t k = 0; k < count; ++k)
   {
-    const CavityFacet& facet = space.Facets[k];
-    const RelativeVertex& a = space.Vertices[facet.A];
-    const RelativeVertex& b = space.Vertices[facet.B];
-    const RelativeVertex& c = space.Vertices[facet.C];
-    RoughSphere& sphere = this->Spheres[facet.Outer];
-    const Id infinite = static_cast<Id>(count / 2 + 2);
-    if (isOnHull && facet.A == infinite)
+    const CavityFacet& facet = facets[k];
+    const RelativeVertex& a = vertices[facet.A];
+    const RelativeVertex& b = vertices[facet.B];
+    const RelativeVertex& c = vertices[facet.C];
+    RoughSphere& sphere = spheres[facet.Outer];
+    if (isOnHull && facet.A == infiniteIndex)
     {
       sphere = MakeRoughHalfSpace(b, c, size, this->Extent);
     }
-    else if (isOnHull && facet.B == infinite)
+    else if (isOnHull && facet.B == infiniteIndex)
     {
       sphere = MakeRoughHalfSpace(c, a, size, this->Extent);
     }
-    else if (isOnHull && facet.C == infinite)
+    else if (isOnHull && facet.C == infiniteIndex)
     {
       sphere = MakeRoughHalfSpace(a, b, size, this->Extent);
     }

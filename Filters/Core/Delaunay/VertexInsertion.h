@@ -155,11 +155,11 @@ private:
   template <bool IsShared>
   bool FillCavity(Id vertex, Workspace& space);
   /** Resets the mark of a tetrahedron. Only the thread that owns a tetrahedron marks it. */
-  void ForgetMark(Id tetrahedron)
+  static void ForgetMark(unsigned char& mark)
   {
-    if (this->Marks[tetrahedron] != Unknown)
+    if (mark != Unknown)
     {
-      this->Marks[tetrahedron] = Unknown;
+      mark = Unknown;
     }
   }
   // Inline: what a shared library exports is not inlined within it, and these are called all the
