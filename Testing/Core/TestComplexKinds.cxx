@@ -575,6 +575,23 @@ TEST(ComplexKinds, FacetsWithACommonCornerTakeFewSteinerPoints)
 }
 
 /**
+ * A cube with points of hundreds of tetrahedra each and as many slivers. For each of the slivers all of
+ * these tetrahedra were looked at anew, for the angles that count among others: it was not done in 60 s.
+ */
+TEST(ComplexKinds, ManySliversAtFewPoints)
+{
+  BoundaryTriangulatorOutput triangulated;
+  ASSERT_TRUE(MakeUnplaced(ComplexKind::CubeTetrahedra, 3145, triangulated));
+  SteinerPointRefinerOptions options;
+  options.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
+  options.RadiusEdgeRatio = 1.4;
+  options.DihedralAngleTarget = 20.0;
+  SteinerCounts counts;
+  RefineComplex(triangulated.Surface, options, 3145, counts);
+  EXPECT_EQ(counts.Fulfilled, 1);
+}
+
+/**
  * Eighteen points in a slab of 3e-3: 75,700 points, where none of that many sheets ended as long as
  * matches in narrow gaps were refused.
  */

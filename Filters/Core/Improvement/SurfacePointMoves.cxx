@@ -3,6 +3,7 @@
 
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Box.h"
+#include "Core/Geometry/EnclosingBall.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Improvement/LookAhead.h"
@@ -28,6 +29,8 @@ constexpr double PlaneRatio = 1e-12;
 constexpr double LineAngle = 1e-9;
 /** Larger cavities mean that the point has come close to something far away. */
 constexpr std::size_t LargestCavity = 500;
+/** Points with more tetrahedra and triangles of the surface are hubs. */
+constexpr std::size_t LargestStar = 64;
 
 /** Opposite ways in a plane, or along a line. */
 std::vector<Vec3> MakeDirections(const Vec3& axis, bool isLine)
@@ -187,17 +190,38 @@ bool SurfacePointMoves::FindSupport(Id point, Support& support) const
 }
 
 /**
- * False if there are too many tetrahedra for a cavity. Hubs of thin disks have thousands: to list
- * them all took two fifths of the time of a model with such ones.
+ * What is known of the tetrahedra at a point, as long as no other point is explored. There may be too
+ * many of them for a cavity: hubs of thin disks have thousands, and to list them all took two fifths
+ * of the time of a model with such ones.
  */
-bool SurfacePointMoves::CollectStar(Id point)
+SurfacePointMoves::Neighborhood& SurfacePointMoves::Explore(Id point)
 {
-  const bool areFew = this->Mesh.FindWholeStar(point, LargestCavity, this->Star);
+  const auto hub = this->Hubs.find(point);
+  Neighborhood& around = hub != this->Hubs.end() ? hub->second : this->Last;
+  if (hub == this->Hubs.end())
+  {
+    around.IsMovable = this->FindSupport(point, around.Free);
+    around.Star.clear();
+    if (around.IsMovable)
+    {
+      around.IsMovable = this->Mesh.FindWholeStar(point, LargestCavity, around.Star);
+    }
+    if (around.IsMovable)
+    {
+      this->Tetrahedra = around.Star;
+      this->MarkInside();
+      this->CollectFacets(point, around.AtPoint);
+      this->CollectPoints(point, this->Points[point], around.AtPoint.Inside);
+      this->MeasureStar(point, around);
+    }
+  }
   if (this->IsRecording)
   {
-    this->Visited.insert(this->Visited.end(), this->Star.begin(), this->Star.end());
+    this->Visited.insert(this->Visited.end(), around.Star.begin(), around.Star.end());
   }
-  return areFew;
+  const bool isNewHub = hub == this->Hubs.end() &&
+    this->PointTriangles[point].size() + around.Star.size() > LargestStar;
+  return isNewHub ? this->Hubs.emplace(point, around).first->second : around;
 }
 
 std::vector<Id> SurfacePointMoves::TakeVisited()
@@ -206,25 +230,23 @@ std::vector<Id> SurfacePointMoves::TakeVisited()
   return std::exchange(this->Visited, {});
 }
 
-/** The smallest angle that counts, and how far away the nearest other point is. */
-double SurfacePointMoves::MeasureStar(Id point, double& nearest) const
+void SurfacePointMoves::MeasureStar(Id point, Neighborhood& around) const
 {
   const TetMesh& mesh = this->Mesh.GetMesh();
-  double smallest = 180.0;
-  nearest = Infinity;
-  for (Id t : this->Star)
+  around.Smallest = 180.0;
+  around.Nearest = Infinity;
+  for (Id t : around.Star)
   {
     const TetrahedronIds& ids = mesh.Tetrahedra[t];
     for (Id id : ids)
     {
       if (id != point)
       {
-        nearest = std::min(nearest, Distance(mesh.Points[id], mesh.Points[point]));
+        around.Nearest = std::min(around.Nearest, Distance(mesh.Points[id], mesh.Points[point]));
       }
     }
-    smallest = this->GetSmallerAngle(smallest, ids, mesh.Regions[t], GetCorners(mesh.Points, ids));
+    around.Smallest = this->Given.GetSmallerAngle(t, around.Smallest);
   }
-  return smallest;
 }
 
 /** Whether each triangle at the point keeps its orientation. */
@@ -255,13 +277,13 @@ bool SurfacePointMoves::IsOnSurface(const TriangleIds& ids) const
 }
 
 /**
- * Collects the tetrahedra at the point and those in conflict with the position; false if these are
- * too many.
+ * Collects the tetrahedra of the star and those in conflict with the position; false if these are too
+ * many.
  */
-bool SurfacePointMoves::CollectConflicts(const Vec3& position)
+bool SurfacePointMoves::CollectConflicts(const std::vector<Id>& star, const Vec3& position)
 {
   const TetMesh& mesh = this->Mesh.GetMesh();
-  this->Tetrahedra = this->Star;
+  this->Tetrahedra = star;
   this->MarkInside();
   const Id inside = this->LastMark;
   const Id outside = inside - 1;
@@ -385,9 +407,9 @@ void SurfacePointMoves::CollectPoints(Id point, const Vec3& position, Cavity& ca
 /**
  * Collects what the position changes; false if that is too much or reaches beyond the boundary.
  */
-bool SurfacePointMoves::CollectCavity(Id point, const Vec3& position)
+bool SurfacePointMoves::CollectCavity(Id point, const std::vector<Id>& star, const Vec3& position)
 {
-  if (!this->CollectConflicts(position) || !this->CollectFacets(point, this->Around))
+  if (!this->CollectConflicts(star, position) || !this->CollectFacets(point, this->Around))
   {
     return false;
   }
@@ -435,8 +457,13 @@ bool SurfacePointMoves::AreSpheresEmpty(Id point, const Vec3& position, Surround
   const auto isTriangleEmpty = [&](const TriangleIds& ids)
   {
     const std::array<Vec3, 3> v{ getPoint(ids[0]), getPoint(ids[1]), getPoint(ids[2]) };
-    if (!isEmpty(
-          ids, [&](const Vec3& other) { return InEquatorialSphere(v[0], v[1], v[2], other) > 0; }))
+    const EnclosingBall ball(v[0], v[1], v[2]);
+    const auto isInside = [&](const Vec3& other)
+    {
+      return (!ball.IsUsable() || ball.MayHold(other)) &&
+        InEquatorialSphere(v[0], v[1], v[2], other) > 0;
+    };
+    if (!isEmpty(ids, isInside))
     {
       return false;
     }
@@ -514,13 +541,15 @@ bool SurfacePointMoves::IsFlatAgain(Id point, const Vec3& position, double requi
   return true;
 }
 
-double SurfacePointMoves::Rate(Id point, const Vec3& position, double required)
+double SurfacePointMoves::Rate(
+  Id point, const Vec3& position, double required, Neighborhood& around)
 {
   // Most positions fail by what is known of the tetrahedra at the point.
   if (!this->KeepsOrientations(point, position) ||
-    !this->IsClear(point, position, this->AtPoint.Inside) ||
-    !this->AreSpheresEmpty(point, position, this->AtPoint) ||
-    !this->CollectCavity(point, position) || this->IsFlatAgain(point, position, required) ||
+    !this->IsClear(point, position, around.AtPoint.Inside) ||
+    !this->AreSpheresEmpty(point, position, around.AtPoint) ||
+    !this->CollectCavity(point, around.Star, position) ||
+    this->IsFlatAgain(point, position, required) ||
     !this->IsClear(point, position, this->Around.Inside) ||
     !this->AreSpheresEmpty(point, position, this->Around))
   {
@@ -557,21 +586,17 @@ double SurfacePointMoves::Rate(Id point, const Vec3& position, double required)
 
 bool SurfacePointMoves::Find(Id point, const TetrahedronIds& sliver, double target, Vec3& position)
 {
-  Support support;
-  if (!this->FindSupport(point, support) || !this->CollectStar(point))
+  Neighborhood& around = this->Explore(point);
+  if (!around.IsMovable)
   {
     return false;
   }
   const Vec3& old = this->Points[point];
-  this->Tetrahedra = this->Star;
-  this->MarkInside();
-  this->CollectFacets(point, this->AtPoint);
-  this->CollectPoints(point, old, this->AtPoint.Inside);
+  const Support& support = around.Free;
   this->Flat = {};
-  double nearest = 0.0;
-  Place best{ old, this->MeasureStar(point, nearest) + SmallestGain, false };
+  Place best{ old, around.Smallest + SmallestGain, false };
   const auto rate = [&](const Vec3& place, double required)
-  { return this->Rate(point, place, required); };
+  { return this->Rate(point, place, required, around); };
   for (Id other : sliver)
   {
     if (other != point)
@@ -581,19 +606,29 @@ bool SurfacePointMoves::Find(Id point, const TetrahedronIds& sliver, double targ
   }
   if (best.IsFound || !this->Given.IsImmovable(point))
   {
-    SearchPlace(old, FirstMove * nearest, support.Directions, target, rate, best, SliverEffort);
+    SearchPlace(
+      old, FirstMove * around.Nearest, support.Directions, target, rate, best, SliverEffort);
   }
   position = best.Position;
   return best.IsFound;
 }
 
-void SurfacePointMoves::Make(Id point, const Vec3& position, DynamicTetrahedralization& mesh)
+const std::vector<Id>& SurfacePointMoves::Make(
+  Id point, const Vec3& position, DynamicTetrahedralization& mesh)
 {
-  this->CollectStar(point);
-  this->CollectCavity(point, position);
+  this->CollectCavity(point, this->Explore(point).Star, position);
   this->Filling.Run(this->Around.Inside);
   mesh.SetPoint(point, position);
   mesh.Replace(this->Tetrahedra, this->Around.Outer, this->Filling.GetCells());
+  return this->Around.Inside.Numbers;
+}
+
+void SurfacePointMoves::Forget(const std::vector<Id>& points)
+{
+  for (const Id point : points)
+  {
+    this->Hubs.erase(point);
+  }
 }
 
 namespace
@@ -648,7 +683,14 @@ SliverSurfaceMoves::SliverSurfaceMoves(
   SurfacePointMoves::Rules rules;
   rules.HasAngle = [&shape](const TetrahedronIds& ids, Id region)
   {
-    return !shape.Layers.IsAcross(ids, region) && !shape.Sharp.IsAcross(ids, SharpAngleUse::Sliver);
+    return !shape.Sharp.IsAcross(ids, SharpAngleUse::Sliver) && !shape.Layers.IsAcross(ids, region);
+  };
+  rules.GetSmallerAngle = [&mesh](Id t, double angle)
+  {
+    const double own = mesh.GetAngle(t);
+    return own < angle && !mesh.IsAcrossSharp(t, SharpAngleUse::Sliver) && !mesh.IsInLayer(t)
+      ? own
+      : angle;
   };
   rules.BreaksLimit = [&mesh](const TetrahedronIds& ids, const std::array<Vec3, 4>& corners)
   { return mesh.BreaksLimit(ids, corners); };
@@ -706,7 +748,12 @@ bool SliverSurfaceMoves::Mend(std::size_t i)
     SetHopeless(sliver, SliverAttempt::SurfaceMove, this->Mesh);
     return false;
   }
-  this->Searches.front().Make(move.Point, move.Position, this->Mesh.GetTetrahedra());
+  const std::vector<Id>& changed =
+    this->Searches.front().Make(move.Point, move.Position, this->Mesh.GetTetrahedra());
+  for (SurfacePointMoves& search : this->Searches)
+  {
+    search.Forget(changed);
+  }
   this->Points[move.Point] = move.Position;
   this->Mesh.NoteSurfaceMove();
   return true;
