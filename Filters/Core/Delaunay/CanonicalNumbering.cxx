@@ -4,6 +4,7 @@
 #include "Core/Basics/ParallelLoop.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -60,7 +61,10 @@ void SortStar(TetrahedronIds* items, Id size)
 {
   // Two tetrahedra with the same first three vertices would lie on the same side of a facet.
   const auto getKey = [](const TetrahedronIds& item)
-  { return static_cast<std::uint64_t>(item[0]) << 32 | static_cast<std::uint64_t>(item[1]); };
+  {
+    return static_cast<std::uint64_t>(std::get<0>(item)) << 32 |
+      static_cast<std::uint64_t>(std::get<1>(item));
+  };
   constexpr Id Many = 16;
   if (size > Many)
   {
