@@ -10,7 +10,9 @@
 #include "Core/Basics/Types.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace cdm
@@ -82,6 +84,36 @@ inline void SortUnique(std::vector<EdgeIds>& edges)
   for (const std::uint64_t number : numbers)
   {
     edges.push_back(UnpackIds(number));
+  }
+}
+
+/**
+ * Calls visit(id) for each of the ids once, in ascending order. For many ids below some thousands
+ * this takes a tenth of the time of SortUnique(): with that, two percent of the time of small meshes
+ * went into lists of new tetrahedra.
+ * @param marks work space, one bit for each id; the same one again for the next call
+ */
+template <typename Iterator, typename Visitor>
+void VisitAscending(
+  Iterator begin, Iterator end, std::vector<std::uint64_t>& marks, Visitor&& visit)
+{
+  if (begin == end)
+  {
+    return;
+  }
+  const auto [lowest, highest] = std::minmax_element(begin, end);
+  const std::size_t last = static_cast<std::size_t>(*highest) / 64;
+  marks.resize(std::max(marks.size(), last + 1), 0);
+  for (Iterator id = begin; id != end; ++id)
+  {
+    marks[static_cast<std::size_t>(*id) / 64] |= std::uint64_t(1) << (*id % 64);
+  }
+  for (std::size_t i = static_cast<std::size_t>(*lowest) / 64; i <= last; ++i)
+  {
+    for (std::uint64_t left = std::exchange(marks[i], 0); left != 0; left &= left - 1)
+    {
+      visit(static_cast<Id>(64 * i) + __builtin_ctzll(left));
+    }
   }
 }
 

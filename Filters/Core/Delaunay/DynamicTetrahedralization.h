@@ -149,10 +149,10 @@ public:
   /**
    * Calls visit(slot) for the slots of all tetrahedra that have been made since there were so many,
    * once each, ascending. If that is too long ago to be known, all slots are visited.
-   * @param scratch is overwritten
+   * @param marks work space, as for VisitAscending()
    */
   template <typename Visitor>
-  void VisitMadeSince(std::int64_t count, std::vector<Id>& scratch, Visitor&& visit) const
+  void VisitMadeSince(std::int64_t count, std::vector<std::uint64_t>& marks, Visitor&& visit) const
   {
     if (count < this->FirstNoted)
     {
@@ -162,9 +162,8 @@ public:
       }
       return;
     }
-    scratch.assign(this->Noted.begin() + (count - this->FirstNoted), this->Noted.end());
-    SortUnique(scratch);
-    std::for_each(scratch.begin(), scratch.end(), visit);
+    VisitAscending(
+      this->Noted.begin() + (count - this->FirstNoted), this->Noted.end(), marks, visit);
   }
 
 private:

@@ -351,10 +351,12 @@ bool BoundarySplits::FindSides(const TriangleIds& ids)
       const Id t = this->Open.back();
       this->Open.pop_back();
       const TetrahedronIds& vertices = mesh.Tetrahedra[t];
+      const bool isFacet = std::all_of(
+        ids.begin(), ids.end(), [&vertices](Id id) { return Contains(vertices, id); });
       for (int i = 0; i < 4; ++i)
       {
         const Id neighbor = mesh.Neighbors[t][i];
-        if (Sorted(GetFacet(vertices, i)) == ids)
+        if (isFacet && !Contains(ids, vertices[i]))
         {
           this->Sides.push_back(4 * t + i);
           if (neighbor != NoId)
@@ -508,7 +510,8 @@ void BoundarySplits::CollectCavity()
       const TriangleIds key = Sorted(facet);
       const Id neighbor = mesh.Neighbors[t][i];
       const bool isInside = neighbor != NoId && this->IsInCavity[neighbor / 4] != 0;
-      const bool isVanished = IsInSorted(this->Vanished, key);
+      const bool isOnSurface = key[2] < this->FirstInside;
+      const bool isVanished = isOnSurface && IsInSorted(this->Vanished, key);
       if (isInside && !isVanished && mesh.Regions[neighbor / 4] != mesh.Regions[t])
       {
         this->IsNoCone = true;
@@ -521,8 +524,8 @@ void BoundarySplits::CollectCavity()
       else if (!isInside && !isVanished)
       {
         const TriangleIds border{ facet[0], facet[2], facet[1] };
-        const Id region =
-          IsInSorted(this->Made, key) ? this->GetRegionInFront(border) : mesh.Regions[t];
+        const bool isMade = isOnSurface && IsInSorted(this->Made, key);
+        const Id region = isMade ? this->GetRegionInFront(border) : mesh.Regions[t];
         if (region < 0)
         {
           // The surface is now on the other side of a flat tetrahedron, which is gone.
@@ -534,7 +537,7 @@ void BoundarySplits::CollectCavity()
           cavity.Regions.push_back(region);
           this->Outer.push_back(neighbor);
         }
-        if (neighbor != NoId && IsInSorted(this->Made, key))
+        if (neighbor != NoId && isMade)
         {
           this->FoundRegions.emplace_back(key, mesh.Regions[neighbor / 4]);
         }

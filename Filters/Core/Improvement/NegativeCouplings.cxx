@@ -277,7 +277,7 @@ bool NegativeCouplings::CollectChanged(
   else
   {
     const Id numberOfPoints = static_cast<Id>(boundary.Points.size());
-    mesh.VisitMadeSince(this->NumberMade, this->New,
+    mesh.VisitMadeSince(this->NumberMade, this->Marks,
       [&](Id t)
       {
         ++this->NumberOfVisits;

@@ -66,8 +66,8 @@ private:
   std::int64_t NextStamp = 0;
   /** How many tetrahedra the mesh had made by then. */
   std::int64_t NumberMade = 0;
-  /** Work space. */
-  std::vector<Id> New;
+  /** Work space, as for VisitAscending(). */
+  std::vector<std::uint64_t> Marks;
   std::int64_t NumberOfVisits = 0;
 };
 

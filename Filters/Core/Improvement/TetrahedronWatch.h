@@ -44,7 +44,7 @@ public:
         this->New.push_back(t);
       }
     };
-    mesh.VisitMadeSince(this->NumberMade, this->Made, visit);
+    mesh.VisitMadeSince(this->NumberMade, this->Marks, visit);
     this->NumberOfTests += static_cast<std::int64_t>(this->New.size());
     this->Test(team, hasProperty);
     for (std::size_t i = 0; i < this->New.size(); ++i)
@@ -120,8 +120,8 @@ private:
   std::int64_t NumberOfVisits = 0;
   /** How many tetrahedra the mesh had made at the last update; negative: all have to be visited. */
   std::int64_t NumberMade = -1;
-  /** Work space: tetrahedra that have been made, those of them that are new, and what these have. */
-  std::vector<Id> Made;
+  /** Work space: marks for VisitAscending(), new tetrahedra, and what these have. */
+  std::vector<std::uint64_t> Marks;
   std::vector<Id> New;
   std::vector<char> HasProperty;
 };

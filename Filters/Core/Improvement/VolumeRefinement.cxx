@@ -123,9 +123,12 @@ private:
 
   const bool IsShapeTested;
   RefinedMesh& Mesh;
-  /** Tetrahedra that may have become tasks. */
+  /** Tetrahedra that have been made, some more than once. */
   std::vector<Id> Made;
-  /** Work space: for each of these tetrahedra its task, or one without a fault. */
+  /** Work space: marks for VisitAscending(). */
+  std::vector<std::uint64_t> Marks;
+  /** Work space: tetrahedra that may be tasks, once each; and their tasks, or ones without a fault. */
+  std::vector<Id> Candidates;
   std::vector<Task> Found;
   TaskList Tasks;
   std::vector<Task> Batch;
@@ -149,19 +152,21 @@ Task LimitRefinement::MakeTask(Id tetrahedron) const
 /** Makes tasks of the tetrahedra that have been made and break a limit. */
 void LimitRefinement::Schedule()
 {
-  SortUnique(this->Made);
-  this->Found.resize(this->Made.size());
+  this->Candidates.clear();
+  VisitAscending(this->Made.begin(), this->Made.end(), this->Marks,
+    [this](Id t) { this->Candidates.push_back(t); });
+  this->Made.clear();
+  this->Found.resize(this->Candidates.size());
   this->Mesh.MakeRoomForFacts();
   ThreadTeam& team = this->Mesh.GetThreads();
-  team.RunBlocks(team.GetNumberOfThreads(), this->Made.size(), TestsAtOnce,
+  team.RunBlocks(team.GetNumberOfThreads(), this->Candidates.size(), TestsAtOnce,
     [this](std::size_t begin, std::size_t end, int)
     {
       for (std::size_t i = begin; i < end; ++i)
       {
-        this->Found[i] = this->MakeTask(this->Made[i]);
+        this->Found[i] = this->MakeTask(this->Candidates[i]);
       }
     });
-  this->Made.clear();
   for (const Task& task : this->Found)
   {
     if (task.Fault != TetrahedronFault::None)
