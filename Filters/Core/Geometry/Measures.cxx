@@ -125,18 +125,25 @@ Vec3 GetCircumcenter(const Vec3& a, const Vec3& b, const Vec3& c)
 double GetDistanceToTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
 {
   const Vec3 normal = Cross(b - a, c - a);
-  const Vec3 corners[3] = { a, b, c };
+  const Vec3 edges[3] = { b - a, c - b, a - c };
+  const Vec3 arms[3] = { p - a, p - b, p - c };
   bool isAbove = true;
-  double distance = Infinity;
   for (int i = 0; i < 3; ++i)
   {
-    const Vec3 edge = corners[(i + 1) % 3] - corners[i];
-    const Vec3 arm = p - corners[i];
-    isAbove = isAbove && Dot(normal, Cross(edge, arm)) >= 0.0;
-    const double along = std::min(std::max(Dot(arm, edge) / SquaredNorm(edge), 0.0), 1.0);
-    distance = std::min(distance, Norm(arm - along * edge));
+    isAbove = isAbove && Dot(normal, Cross(edges[i], arms[i])) >= 0.0;
   }
-  return isAbove ? std::abs(Dot(normal, p - a)) / Norm(normal) : distance;
+  if (isAbove)
+  {
+    return std::abs(Dot(normal, arms[0])) / Norm(normal);
+  }
+  double square = Infinity;
+  for (int i = 0; i < 3; ++i)
+  {
+    const double along =
+      std::min(std::max(Dot(arms[i], edges[i]) / SquaredNorm(edges[i]), 0.0), 1.0);
+    square = std::min(square, SquaredNorm(arms[i] - along * edges[i]));
+  }
+  return std::sqrt(square);
 }
 
 Vec3 GetBarycentricWeights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)

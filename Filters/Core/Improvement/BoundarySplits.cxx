@@ -351,8 +351,8 @@ bool BoundarySplits::FindSides(const TriangleIds& ids)
       const Id t = this->Open.back();
       this->Open.pop_back();
       const TetrahedronIds& vertices = mesh.Tetrahedra[t];
-      const bool isFacet = std::all_of(
-        ids.begin(), ids.end(), [&vertices](Id id) { return Contains(vertices, id); });
+      const bool isFacet =
+        std::all_of(ids.begin(), ids.end(), [&vertices](Id id) { return Contains(vertices, id); });
       for (int i = 0; i < 4; ++i)
       {
         const Id neighbor = mesh.Neighbors[t][i];

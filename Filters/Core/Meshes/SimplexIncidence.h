@@ -12,9 +12,11 @@
 #ifndef cdmSimplexIncidence_h
 #define cdmSimplexIncidence_h
 
+#include "Core/Basics/SortedIds.h"
 #include "Core/Meshes/TetMesh.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -37,9 +39,9 @@ public:
 
     friend bool operator<(const Record& a, const Record& b)
     {
-      return a.Second != b.Second ? a.Second < b.Second
-        : a.Third != b.Third      ? a.Third < b.Third
-                                  : a.Simplex < b.Simplex;
+      const std::uint64_t points = PackIds(a.Second, a.Third);
+      const std::uint64_t others = PackIds(b.Second, b.Third);
+      return points != others ? points < others : a.Simplex < b.Simplex;
     }
   };
 

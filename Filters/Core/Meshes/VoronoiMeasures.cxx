@@ -76,9 +76,14 @@ struct Frame
     : U(Subtract(b, a, Real3())), V(Subtract(c, a, Real3())), W(Subtract(d, a, Real3())),
       NormalC(Cross(W, U)), NormalB(Cross(V, W)), NormalD(Cross(U, V)), SixVolumes(Dot(NormalD, W))
   {
+  }
+
+  /** Normal of the facet opposite to the first vertex. */
+  Real3 GetNormalA() const
+  {
     // The normals of the four facets, each oriented inwards and as long as twice the area, vanish
     // in sum.
-    this->NormalA = Negate(this->NormalB + this->NormalC + this->NormalD);
+    return Negate(this->NormalB + this->NormalC + this->NormalD);
   }
 
   /** Circumcenter times twelve volumes. */
@@ -88,6 +93,15 @@ struct Frame
       Dot(this->U, this->U) * this->NormalB;
   }
 
+  /**
+   * Distance of the circumcenter from a facet, over four lengths of the normal.
+   * @param scaled the scaled circumcenter, relative to a vertex of the facet
+   */
+  Real GetFacetPart(const Real3& normal, const Real3& scaled) const
+  {
+    return Dot(scaled, normal) / (Scale(8.0, this->SixVolumes) * Dot(normal, normal));
+  }
+
   Real3 U;
   Real3 V;
   Real3 W;
@@ -95,7 +109,6 @@ struct Frame
   Real3 NormalC;
   Real3 NormalB;
   Real3 NormalD;
-  Real3 NormalA;
   Real SixVolumes;
 };
 using DoubleDoubleFrame = Frame<DoubleDouble, DoubleDouble3>;
@@ -145,15 +158,11 @@ template <typename Real, typename Real3>
 std::array<std::array<Real, 2>, 6> GetCouplingParts(const Frame<Real, Real3>& frame)
 {
   const Real3 center = frame.GetScaledCircumcenter();
-  const Real twelveVolumes = Scale(2.0, frame.SixVolumes);
-  const Real denominator = Scale(4.0, twelveVolumes);
-  // For a facet: distance of the circumcenter, over four lengths of the normal.
-  const auto facet = [&](const Real3& normal, const Real3& fromVertex)
-  { return Dot(fromVertex, normal) / (denominator * Dot(normal, normal)); };
-  const Real facetB = facet(frame.NormalB, center);
-  const Real facetC = facet(frame.NormalC, center);
-  const Real facetD = facet(frame.NormalD, center);
-  const Real facetA = facet(frame.NormalA, center - twelveVolumes * frame.U);
+  const Real facetB = frame.GetFacetPart(frame.NormalB, center);
+  const Real facetC = frame.GetFacetPart(frame.NormalC, center);
+  const Real facetD = frame.GetFacetPart(frame.NormalD, center);
+  const Real facetA =
+    frame.GetFacetPart(frame.GetNormalA(), center - Scale(2.0, frame.SixVolumes) * frame.U);
 
   const Real3& u = frame.U;
   const Real3& v = frame.V;
@@ -171,18 +180,35 @@ std::array<std::array<Real, 2>, 6> GetCouplingParts(const Frame<Real, Real3>& fr
     { Dot(v, w) * facetB, Dot(vu, wu) * facetA } } };      // cd: acd, bcd
 }
 
-using DoubleParts = std::array<std::array<double, 2>, 6>;
-
-/** Parts of couplings in doubles; false if the tetrahedron is too flat, or inverted. */
-bool FindDoubleParts(const std::array<Vec3, 4>& corners, double longest, DoubleParts& parts)
+/** The coupling of the edge between the first two vertices: half of the work for all edges. */
+template <typename Real, typename Real3>
+Real GetFirstCoupling(const Frame<Real, Real3>& frame)
 {
-  const Frame<double, Vec3> frame(corners[0], corners[1], corners[2], corners[3]);
-  if (!(frame.SixVolumes > WellShapedRatio * longest * longest * longest))
-  {
-    return false;
-  }
-  parts = GetCouplingParts(frame);
-  return true;
+  const Real3 center = frame.GetScaledCircumcenter();
+  const Real facetC = frame.GetFacetPart(frame.NormalC, center);
+  const Real facetD = frame.GetFacetPart(frame.NormalD, center);
+  return Dot(frame.V, frame.V - frame.U) * facetD + Dot(frame.W, frame.W - frame.U) * facetC;
+}
+
+/** The corners in an order of the same orientation in which the given edge comes first. */
+std::array<Vec3, 4> StartWithEdge(const std::array<Vec3, 4>& corners, int edge)
+{
+  constexpr int Order[6][4] = { { 0, 1, 2, 3 }, { 0, 2, 3, 1 }, { 0, 3, 1, 2 }, { 1, 2, 0, 3 },
+    { 1, 3, 2, 0 }, { 2, 3, 0, 1 } };
+  const int* order = Order[edge];
+  return { corners[order[0]], corners[order[1]], corners[order[2]], corners[order[3]] };
+}
+
+template <typename Real, typename Real3>
+Frame<Real, Real3> MakeFrame(const std::array<Vec3, 4>& corners)
+{
+  return { corners[0], corners[1], corners[2], corners[3] };
+}
+
+/** Whether a tetrahedron is neither inverted nor too flat for doubles. */
+bool IsWellShaped(const Frame<double, Vec3>& frame, double longest)
+{
+  return frame.SixVolumes > WellShapedRatio * longest * longest * longest;
 }
 
 /**
@@ -195,7 +221,6 @@ bool IsSurelyPositive(const TetMesh& mesh,
 {
   double sum = 0.0;
   double lengths = 0.0;
-  DoubleParts parts;
   for (auto record = begin; record != end; ++record)
   {
     const Id tetrahedron = record->Simplex / 6;
@@ -210,12 +235,12 @@ bool IsSurelyPositive(const TetMesh& mesh,
       longest = std::max(longest, SquaredNorm(corners[ends[1]] - corners[ends[0]]));
     }
     longest = std::sqrt(longest);
-    if (!FindDoubleParts(corners, longest, parts))
+    const auto frame = MakeFrame<double, Vec3>(StartWithEdge(corners, record->Simplex % 6));
+    if (!IsWellShaped(frame, longest))
     {
       return false;
     }
-    const std::array<double, 2>& own = parts[record->Simplex % 6];
-    sum += own[0] + own[1];
+    sum += GetFirstCoupling(frame);
     lengths += longest;
   }
   return sum > SurelyPositiveRatio * lengths;
@@ -248,9 +273,10 @@ double GetUnsignedBoxVolume(const Vec3& a, const Vec3& b, const Vec3& c, const V
   };
   // All but the flattest tetrahedra lose four digits at most: one needs no more than these.
   const double longest = std::sqrt(*std::max_element(squares.begin(), squares.end()));
-  DoubleParts doubles;
-  if (FindDoubleParts({ a, b, c, d }, longest, doubles))
+  const Frame<double, Vec3> frame(a, b, c, d);
+  if (IsWellShaped(frame, longest))
   {
+    const auto doubles = GetCouplingParts(frame);
     return add([&doubles](int edge, int side) { return doubles[edge][side]; });
   }
   const auto parts = GetCouplingParts(DoubleDoubleFrame(a, b, c, d));
@@ -299,10 +325,11 @@ bool HasNegativeCoupling(const TetMesh& mesh, const EdgeIds& edge,
   for (auto record = begin; record != end; ++record)
   {
     const Id tetrahedron = record->Simplex / 6;
-    const auto [a, b, c, d] = GetCorners(mesh.Points, mesh.Tetrahedra[tetrahedron]);
-    if (mesh.Regions[tetrahedron] == region && IsPositive({ a, b, c, d }))
+    const std::array<Vec3, 4> corners = GetCorners(mesh.Points, mesh.Tetrahedra[tetrahedron]);
+    if (mesh.Regions[tetrahedron] == region && IsPositive(corners))
     {
-      sum.Add(GetCouplings(a, b, c, d)[record->Simplex % 6]);
+      sum.Add(GetFirstCoupling(
+        MakeFrame<DoubleDouble, DoubleDouble3>(StartWithEdge(corners, record->Simplex % 6))));
     }
   }
   return sum.IsNegative(Distance(mesh.Points[edge[0]], mesh.Points[edge[1]]),
@@ -330,9 +357,10 @@ std::array<DoubleDouble, 6> GetOppositeCotangents(
   const DoubleDoubleFrame frame(a, b, c, d);
   const auto get = [&frame](const DoubleDouble3& first, const DoubleDouble3& second)
   { return -(Dot(first, second)) / frame.SixVolumes; };
-  return { get(frame.NormalA, frame.NormalB), get(frame.NormalA, frame.NormalC),
-    get(frame.NormalA, frame.NormalD), get(frame.NormalB, frame.NormalC),
-    get(frame.NormalB, frame.NormalD), get(frame.NormalC, frame.NormalD) };
+  const DoubleDouble3 normalA = frame.GetNormalA();
+  return { get(normalA, frame.NormalB), get(normalA, frame.NormalC), get(normalA, frame.NormalD),
+    get(frame.NormalB, frame.NormalC), get(frame.NormalB, frame.NormalD),
+    get(frame.NormalC, frame.NormalD) };
 }
 
 DoubleDouble GetSquaredDistance(const Vec3& a, const Vec3& b)
