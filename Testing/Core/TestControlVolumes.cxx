@@ -4,6 +4,7 @@
 #include "Core/BoxMethod/ControlPolyhedra.h"
 #include "Core/Certificate/MeshCertificate.h"
 #include "Core/Geometry/Measures.h"
+#include "Core/Geometry/Predicates.h"
 #include "Core/Meshes/MeshInvariants.h"
 #include "Core/Meshes/VoronoiMeasures.h"
 
@@ -353,6 +354,35 @@ TEST(ControlVolumes, SharesOfSliversSumUp)
     const double volume = GetSignedVolume(a, b, d, c);
     EXPECT_NEAR(volume, sum.High / 3.0, 1e-8 * volume + 1e-16) << lift;
   }
+}
+
+TEST(ControlVolumes, CouplingsOfSingleEdgesAreThoseOfAll)
+{
+  // Each edge of a tetrahedron by itself, computed from its own end, against all six at once.
+  const std::vector<Vec3> points = MakeRandomPoints(4000, 17);
+  int negative = 0;
+  for (std::size_t i = 0; i + 3 < points.size(); i += 4)
+  {
+    TetMesh mesh;
+    mesh.Points.assign(points.begin() + i, points.begin() + i + 4);
+    const bool isPositive =
+      Orientation(mesh.Points[0], mesh.Points[1], mesh.Points[2], mesh.Points[3]) > 0;
+    mesh.Tetrahedra = { isPositive ? TetrahedronIds{ 0, 1, 2, 3 } : TetrahedronIds{ 1, 0, 2, 3 } };
+    mesh.Regions = { 0 };
+    const auto [a, b, c, d] = GetCorners(mesh.Points, mesh.Tetrahedra[0]);
+    const std::array<DoubleDouble, 6> couplings = GetCouplings(a, b, c, d);
+    for (int edge = 0; edge < 6; ++edge)
+    {
+      const EdgeIds ends{ mesh.Tetrahedra[0][TetrahedronEdges[edge][0]],
+        mesh.Tetrahedra[0][TetrahedronEdges[edge][1]] };
+      const std::vector<SimplexIncidence::Record> records{ { ends[1], NoId, edge } };
+      const bool isNegative = HasNegativeCoupling(mesh, ends, records.begin(), records.end(), 0);
+      EXPECT_EQ(couplings[edge].High < 0.0, isNegative) << i << " edge " << edge;
+      negative += isNegative ? 1 : 0;
+    }
+  }
+  EXPECT_GT(negative, 1000);
+  EXPECT_LT(negative, 5000);
 }
 
 TEST(ControlVolumes, SameForAnyNumberOfThreads)

@@ -86,50 +86,6 @@ void CompareDihedralAngles(
   }
 }
 
-/** A facet of a tetrahedron, or a triangle of the boundary, found by its sorted points. */
-struct FacetRecord
-{
-  TriangleIds Points;
-  /** Facet id, or id of the triangle. */
-  Id Source;
-  /** Whether the normal of the sorted points is the source's. */
-  bool IsEven;
-
-  friend bool operator<(const FacetRecord& a, const FacetRecord& b)
-  {
-    return a.HasPointsOf(b) ? a.Source < b.Source : a.HasLowerPoints(b);
-  }
-
-  /**
-   * Whether the points come first in lexicographic order. They are compared number by number:
-   * comparing arrays by their own operators took half of the sort's time.
-   */
-  bool HasLowerPoints(const FacetRecord& other) const
-  {
-    for (int i = 0; i < 2; ++i)
-    {
-      if (this->Points[i] != other.Points[i])
-      {
-        return this->Points[i] < other.Points[i];
-      }
-    }
-    return this->Points[2] < other.Points[2];
-  }
-
-  bool HasPointsOf(const FacetRecord& other) const
-  {
-    return this->Points[0] == other.Points[0] && this->Points[1] == other.Points[1] &&
-      this->Points[2] == other.Points[2];
-  }
-};
-
-template <typename Iterator>
-Iterator FindEndOfGroup(Iterator begin, Iterator end)
-{
-  return std::find_if(
-    begin, end, [&](const FacetRecord& other) { return !other.HasPointsOf(*begin); });
-}
-
 /** Two facets of one surface that go straight on at their common edge. */
 bool AreSmooth(const BorderFacet& first, const BorderFacet& second, const EdgeIds& edge,
   const std::vector<Vec3>& points)
@@ -192,6 +148,7 @@ private:
   bool CheckTetrahedra(const ExecutionContext& context);
   bool CheckFacets(const ExecutionContext& context);
   bool CheckSpheres(const SphereCriteria& criteria, const ExecutionContext& context);
+  void CountNonDelaunay();
   void CollectBorderEdges();
   void CompareVolumes(const std::vector<long double>& volumes);
   bool CheckBoundarySpheres(const SphereCriteria& criteria, const ExecutionContext& context);
@@ -205,8 +162,7 @@ private:
     return facet.IsEven == (this->Findings.Orientations[facet.Source / 4] >= 0);
   }
   bool IsInner(const std::vector<FacetRecord>& facets) const;
-  bool CollectFacets(const ExecutionContext& context, const std::vector<FacetRecord>& triangles,
-    std::vector<FacetRecord>& facets) const;
+  bool CollectFacets(const ExecutionContext& context, const std::vector<FacetRecord>& triangles);
   std::vector<FacetRecord> CollectBoundary();
   void CheckNeighbors(const FacetRecord* begin, const FacetRecord* end);
   void AddBorderFacet(const FacetRecord* begin, const FacetRecord* end);
@@ -241,13 +197,15 @@ Status Checker::Run(const SphereCriteria& criteria, const ExecutionContext& cont
   this->Report.HasBoundary = this->Boundary != nullptr;
   this->CollectRegions();
   if (!this->CheckPoints(context.Part(0.0, 0.05)) ||
-    !this->CheckTetrahedra(context.Part(0.05, 0.2)) || !this->CheckFacets(context.Part(0.2, 0.5)))
+    !this->CheckTetrahedra(context.Part(0.05, 0.2)) ||
+    !this->CheckSpheres(criteria, context.Part(0.2, 0.6)) ||
+    !this->CheckFacets(context.Part(0.6, 0.9)))
   {
     return Status::Aborted();
   }
   this->FinishVolumes();
-  if (!this->CheckSpheres(criteria, context.Part(0.5, 0.9)) ||
-    !this->CheckBoundarySpheres(criteria, context.Part(0.9, 1.0)))
+  this->CountNonDelaunay();
+  if (!this->CheckBoundarySpheres(criteria, context.Part(0.9, 1.0)))
   {
     return Status::Aborted();
   }
@@ -419,7 +377,10 @@ Id Checker::FindMeshPoint(Id boundaryPoint) const
   return found != this->SortedPoints.end() && points[*found] == position ? *found : NoId;
 }
 
-/** Whether two tetrahedra of one region meet in a facet, from two sides, and know each other. */
+/**
+ * Whether two tetrahedra of one region, one of which proves that the facet is Delaunay, meet in it,
+ * from two sides, and know each other.
+ */
 bool Checker::IsInner(const std::vector<FacetRecord>& facets) const
 {
   if (facets.size() != 2)
@@ -428,7 +389,8 @@ bool Checker::IsInner(const std::vector<FacetRecord>& facets) const
   }
   const Id first = facets[0].Source;
   const Id second = facets[1].Source;
-  return this->Mesh.Regions[first / 4] == this->Mesh.Regions[second / 4] &&
+  return (this->Findings.IsProof(first / 4) || this->Findings.IsProof(second / 4)) &&
+    this->Mesh.Regions[first / 4] == this->Mesh.Regions[second / 4] &&
     this->IsBehind(facets[0]) != this->IsBehind(facets[1]) &&
     (this->Mesh.Neighbors.empty() ||
       (this->Mesh.Neighbors[first / 4][first % 4] == second &&
@@ -436,16 +398,21 @@ bool Checker::IsInner(const std::vector<FacetRecord>& facets) const
 }
 
 /**
- * Sorted; without inner facets, but for those that are boundary triangles. Most facets are inner
- * ones: a list of all took as much memory as two meshes.
+ * Lists the facets that need to be looked at, and those that are boundary triangles. Most facets are
+ * inner ones: a list of all took as much memory as two meshes.
  */
-bool Checker::CollectFacets(const ExecutionContext& context,
-  const std::vector<FacetRecord>& triangles, std::vector<FacetRecord>& facets) const
+bool Checker::CollectFacets(
+  const ExecutionContext& context, const std::vector<FacetRecord>& triangles)
 {
   const std::size_t count = this->Mesh.Points.size();
   const SimplexIncidence incidence(this->Mesh, this->NumberOfThreads);
   const ParallelLoopOptions options{ this->NumberOfThreads, ContinueInterval };
-  std::vector<std::vector<FacetRecord>> found(GetNumberOfBlocks(count, options));
+  struct Block
+  {
+    std::vector<FacetRecord> Found;
+    Id NumberOfFacets = 0;
+  };
+  std::vector<Block> blocks(GetNumberOfBlocks(count, options));
   const auto collect = [&](std::size_t begin, std::size_t end, std::size_t block)
   {
     std::vector<SimplexIncidence::Record> scratch;
@@ -471,9 +438,11 @@ bool Checker::CollectFacets(const ExecutionContext& context,
           }
           const bool isOnBoundary =
             triangle != triangles.end() && triangle->HasPointsOf(group.front());
+          ++blocks[block].NumberOfFacets;
           if (isOnBoundary || !this->IsInner(group))
           {
-            found[block].insert(found[block].end(), group.begin(), group.end());
+            std::vector<FacetRecord>& found = blocks[block].Found;
+            found.insert(found.end(), group.begin(), group.end());
           }
         });
     }
@@ -482,9 +451,11 @@ bool Checker::CollectFacets(const ExecutionContext& context,
   {
     return false;
   }
-  for (const std::vector<FacetRecord>& part : found)
+  for (const Block& block : blocks)
   {
-    facets.insert(facets.end(), part.begin(), part.end());
+    this->Findings.NumberOfFacets += block.NumberOfFacets;
+    this->Findings.Facets.insert(
+      this->Findings.Facets.end(), block.Found.begin(), block.Found.end());
   }
   return true;
 }
@@ -597,11 +568,11 @@ bool Checker::CheckFacets(const ExecutionContext& context)
       this->AddEnclosedVolume(static_cast<Id>(i), this->Boundary->Labels[i]);
     }
   }
-  std::vector<FacetRecord> facets;
-  if (!this->CollectFacets(context.Part(0.0, 0.7), triangles, facets))
+  if (!this->CollectFacets(context.Part(0.0, 0.7), triangles))
   {
     return false;
   }
+  const std::vector<FacetRecord>& facets = this->Findings.Facets;
   const ExecutionContext rest = context.Part(0.7, 1.0);
   const auto countMissing = [&](const FacetRecord& triangle)
   {
@@ -708,20 +679,20 @@ bool Checker::CheckSpheres(const SphereCriteria& criteria, const ExecutionContex
       isDelaunay[i] = this->Findings.Orientations[i] == 0 || criteria.IsDelaunay(ids);
     }
   };
-  if (!ParallelLoop(count, { this->NumberOfThreads, ContinueInterval }, context,
-        "Checking circumspheres", check))
+  return ParallelLoop(
+    count, { this->NumberOfThreads, ContinueInterval }, context, "Checking circumspheres", check);
+}
+
+void Checker::CountNonDelaunay()
+{
+  for (std::size_t i = 0; i < this->Findings.IsDelaunay.size(); ++i)
   {
-    return false;
-  }
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    if (!isDelaunay[i])
+    if (this->Findings.IsDelaunay[i] == 0)
     {
       ++this->Report.GetCount(MeshFault::NonDelaunayTetrahedron);
       this->AddExample(static_cast<Id>(i));
     }
   }
-  return true;
 }
 
 /** Edges of the border facets, and those where they do not go straight on. */

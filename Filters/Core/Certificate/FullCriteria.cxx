@@ -33,7 +33,7 @@ struct BlockResult
   std::vector<MeshViolation> Violations;
   /** Facet ids of all tetrahedra at outer and interface facets. */
   std::vector<Id> BorderSides;
-  Id Simplices = 0;
+  Id Edges = 0;
   Id Couplings = 0;
 };
 
@@ -63,8 +63,8 @@ private:
 
   using Records = std::vector<SimplexIncidence::Record>;
   using RecordIterator = Records::const_iterator;
-  void EvaluateFacet(const SphereCriteria& criteria, const TriangleIds& points,
-    RecordIterator begin, RecordIterator end, BlockResult& result) const;
+  void EvaluateFacet(const SphereCriteria& criteria, const FacetRecord* begin,
+    const FacetRecord* end, BlockResult& result) const;
   void EvaluateEdge(const EdgeIds& edge, bool isBorder, RecordIterator begin, RecordIterator end,
     BlockResult& result) const;
   /** Crit. 3.1 of an outer or interface facet, by its ascending points. */
@@ -162,28 +162,26 @@ void Evaluator::ListTetrahedra()
   }
 }
 
-void Evaluator::EvaluateFacet(const SphereCriteria& criteria, const TriangleIds& points,
-  RecordIterator begin, RecordIterator end, BlockResult& result) const
+/** @param begin, end all records of one facet */
+void Evaluator::EvaluateFacet(const SphereCriteria& criteria, const FacetRecord* begin,
+  const FacetRecord* end, BlockResult& result) const
 {
+  const TriangleIds& points = begin->Points;
   const auto add = [&](MeshFault fault)
   {
-    const Id tetrahedron = begin->Simplex / 4;
+    const Id tetrahedron = begin->Source / 4;
     result.Violations.push_back({ fault, { points[0], points[1], points[2], NoId }, tetrahedron,
       this->Mesh.Regions[tetrahedron] });
   };
-  ++result.Simplices;
   bool isProven = false;
   bool isBorder = end - begin == 1;
   int sides[2] = {};
-  for (auto record = begin; record != end; ++record)
+  for (const FacetRecord* record = begin; record != end; ++record)
   {
-    const Id tetrahedron = record->Simplex / 4;
-    isProven = isProven ||
-      (this->Findings.Orientations[tetrahedron] != 0 && this->Findings.IsDelaunay[tetrahedron]);
-    isBorder =
-      isBorder || this->Mesh.Regions[tetrahedron] != this->Mesh.Regions[begin->Simplex / 4];
-    const TriangleIds facet = GetFacet(this->Mesh.Tetrahedra[tetrahedron], record->Simplex % 4);
-    ++sides[IsEven(facet) == (this->Findings.Orientations[tetrahedron] >= 0)];
+    const Id tetrahedron = record->Source / 4;
+    isProven = isProven || this->Findings.IsProof(tetrahedron);
+    isBorder = isBorder || this->Mesh.Regions[tetrahedron] != this->Mesh.Regions[begin->Source / 4];
+    ++sides[record->IsEven == (this->Findings.Orientations[tetrahedron] >= 0)];
   }
   if (sides[0] > 1 || sides[1] > 1)
   {
@@ -197,18 +195,18 @@ void Evaluator::EvaluateFacet(const SphereCriteria& criteria, const TriangleIds&
   {
     return;
   }
-  for (auto record = begin; record != end; ++record)
+  for (const FacetRecord* record = begin; record != end; ++record)
   {
-    result.BorderSides.push_back(record->Simplex);
+    result.BorderSides.push_back(record->Source);
   }
   if (!this->HasEmptySphere(points))
   {
     add(MeshFault::FacetSphere);
     const std::vector<Vec3>& p = this->Mesh.Points;
-    for (auto record = begin; record != end; ++record)
+    for (const FacetRecord* record = begin; record != end; ++record)
     {
-      const Id tetrahedron = record->Simplex / 4;
-      const Id apex = this->Mesh.Tetrahedra[tetrahedron][record->Simplex % 4];
+      const Id tetrahedron = record->Source / 4;
+      const Id apex = this->Mesh.Tetrahedra[tetrahedron][record->Source % 4];
       if (this->Findings.Orientations[tetrahedron] != 0 &&
         InEquatorialSphere(p[points[0]], p[points[1]], p[points[2]], p[apex]) > 0)
       {
@@ -218,28 +216,31 @@ void Evaluator::EvaluateFacet(const SphereCriteria& criteria, const TriangleIds&
   }
 }
 
+/** The others are in order: each lies between two tetrahedra, one of which proves it Delaunay. */
 bool Evaluator::EvaluateFacets(const SphereCriteria& criteria, const ExecutionContext& context)
 {
-  std::vector<BlockResult> results(GetNumberOfBlocks(this->Mesh.Points.size(), this->LoopOptions));
+  const std::vector<FacetRecord>& facets = this->Findings.Facets;
+  std::vector<BlockResult> results(GetNumberOfBlocks(facets.size(), this->LoopOptions));
   const auto evaluate = [&](std::size_t begin, std::size_t end, std::size_t block)
   {
-    Records scratch;
-    for (std::size_t point = begin; point < end; ++point)
+    const FacetRecord* const last = facets.data() + facets.size();
+    for (const FacetRecord* record = facets.data() + begin; record != facets.data() + end; ++record)
     {
-      this->Incidence.ForEachFacet(static_cast<Id>(point), scratch,
-        [&](const TriangleIds& points, RecordIterator first, RecordIterator last)
-        { this->EvaluateFacet(criteria, points, first, last, results[block]); });
+      const bool isFirst = record == facets.data() || !record[-1].HasPointsOf(*record);
+      if (isFirst)
+      {
+        this->EvaluateFacet(criteria, record, FindEndOfGroup(record, last), results[block]);
+      }
     }
   };
-  if (!ParallelLoop(
-        this->Mesh.Points.size(), this->LoopOptions, context, "Evaluating facets", evaluate))
+  if (!ParallelLoop(facets.size(), this->LoopOptions, context, "Evaluating facets", evaluate))
   {
     return false;
   }
   this->Join(results);
+  this->Report.Facets = this->Findings.NumberOfFacets;
   for (const BlockResult& result : results)
   {
-    this->Report.Facets += result.Simplices;
     this->BorderSides.insert(
       this->BorderSides.end(), result.BorderSides.begin(), result.BorderSides.end());
   }
@@ -308,7 +309,7 @@ void Evaluator::EvaluateEdge(const EdgeIds& edge, bool isBorder, RecordIterator 
   const auto add = [&](MeshFault fault, Id region, Id tetrahedron) {
     result.Violations.push_back({ fault, { edge[0], edge[1], NoId, NoId }, tetrahedron, region });
   };
-  ++result.Simplices;
+  ++result.Edges;
   if (this->HasNegativeCotangentSum(begin, end))
   {
     add(MeshFault::NegativeCotangentSum, NoId, begin->Simplex / 6);
@@ -316,13 +317,8 @@ void Evaluator::EvaluateEdge(const EdgeIds& edge, bool isBorder, RecordIterator 
   const auto getRegion = [&](const SimplexIncidence::Record& record)
   { return this->Mesh.Regions[record.Simplex / 6]; };
   const bool isConvex = !isBorder &&
-    std::all_of(begin, end,
-      [&](const auto& record)
-      {
-        const Id tetrahedron = record.Simplex / 6;
-        return this->Findings.Orientations[tetrahedron] != 0 &&
-          this->Findings.IsDelaunay[tetrahedron] != 0;
-      });
+    std::all_of(
+      begin, end, [&](const auto& record) { return this->Findings.IsProof(record.Simplex / 6); });
   for (auto record = begin; record != end; ++record)
   {
     const Id region = getRegion(*record);
@@ -372,7 +368,7 @@ bool Evaluator::EvaluateEdges(const ExecutionContext& context)
   this->Join(results);
   for (const BlockResult& result : results)
   {
-    this->Report.Edges += result.Simplices;
+    this->Report.Edges += result.Edges;
     this->Report.Couplings += result.Couplings;
   }
   return true;
