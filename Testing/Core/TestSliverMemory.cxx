@@ -12,18 +12,18 @@ TEST(SliverMemory, PointsAreImmovableUntilTheyGetOtherNeighbors)
   const Id onSurface = 7;
   for (const Id point : { inside, onSurface })
   {
-    EXPECT_FALSE(memory.IsImmovable(point));
-    memory.SetImmovable(point);
-    EXPECT_TRUE(memory.IsImmovable(point));
+    EXPECT_FALSE(memory.IsImmovable(point, SliverPlace::Elsewhere));
+    memory.SetImmovable(point, SliverPlace::Elsewhere);
+    EXPECT_TRUE(memory.IsImmovable(point, SliverPlace::Elsewhere));
     // Far away.
     memory.SetChanged({ 1, 2, 3, memory.MakeName() });
-    EXPECT_TRUE(memory.IsImmovable(point));
+    EXPECT_TRUE(memory.IsImmovable(point, SliverPlace::Elsewhere));
     memory.SetChanged({ 1, 2, 3, point });
-    EXPECT_FALSE(memory.IsImmovable(point));
-    memory.SetImmovable(point);
-    EXPECT_TRUE(memory.IsImmovable(point));
+    EXPECT_FALSE(memory.IsImmovable(point, SliverPlace::Elsewhere));
+    memory.SetImmovable(point, SliverPlace::Elsewhere);
+    EXPECT_TRUE(memory.IsImmovable(point, SliverPlace::Elsewhere));
   }
-  EXPECT_FALSE(memory.IsImmovable(memory.MakeName()));
+  EXPECT_FALSE(memory.IsImmovable(memory.MakeName(), SliverPlace::Elsewhere));
 }
 
 TEST(SliverMemory, SliversAreHopelessUntilAPointGetsOtherNeighbors)

@@ -337,11 +337,11 @@ void RefinedMesh::FollowBoundary(
   this->FirstPreliminary = std::numeric_limits<std::int64_t>::max();
 }
 
-void RefinedMesh::SetImmovable(const std::vector<Id>& points)
+void RefinedMesh::SetImmovable(const std::vector<Id>& points, SliverPlace place)
 {
   for (const Id point : points)
   {
-    this->Memory.SetImmovable(this->Points[point].Name);
+    this->Memory.SetImmovable(this->Points[point].Name, place);
   }
 }
 

@@ -223,8 +223,11 @@ public:
   TetrahedronIds GetNames(const TetrahedronIds& ids) const;
   SliverMemory& GetMemory() { return this->Memory; }
   /** Whether a point is immovable, see SliverMemory. */
-  bool IsImmovable(Id point) const { return this->Memory.IsImmovable(this->Points[point].Name); }
-  void SetImmovable(const std::vector<Id>& points);
+  bool IsImmovable(Id point, SliverPlace place) const
+  {
+    return this->Memory.IsImmovable(this->Points[point].Name, place);
+  }
+  void SetImmovable(const std::vector<Id>& points, SliverPlace place);
 
   /**
    * Finds the cavity of a point, see CavitySearch::FindCavity(). Insert() and Restore() fill it.

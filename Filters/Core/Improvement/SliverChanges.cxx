@@ -371,10 +371,9 @@ void SliverChanges::FindInsertion(Id tetrahedron, SliverChange& change)
   }
 }
 
-/** What improves tetrahedra at sharp angles is not what was searched for others. */
 bool SliverChanges::IsImmovable(Id point)
 {
-  const bool isImmovable = !this->Goal.IsSharp && this->Mesh.IsImmovable(point);
+  const bool isImmovable = this->Mesh.IsImmovable(point, this->Goal.GetPlace());
   if (isImmovable)
   {
     // For the record: the answer depends on the tetrahedra at the point.
@@ -397,10 +396,7 @@ SliverChange SliverChanges::Find(Id tetrahedron, SliverAttempt last)
     {
       return change;
     }
-    if (!this->Goal.IsSharp)
-    {
-      change.Immovable.push_back(id);
-    }
+    change.Immovable.push_back(id);
   }
   if (last == SliverAttempt::Insertion)
   {

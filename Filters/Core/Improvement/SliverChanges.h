@@ -39,6 +39,10 @@ struct SliverAim
   double Target;
   /** True: only tetrahedra across sharp angles are improved; false: only the others. */
   bool IsSharp = false;
+  SliverPlace GetPlace() const
+  {
+    return this->IsSharp ? SliverPlace::SharpAngle : SliverPlace::Elsewhere;
+  }
   /** Whether points may be left out for good. */
   bool MayRemove = false;
   /** For the search of each position. */

@@ -76,14 +76,15 @@ bool SliverMemory::IsUnroundable(const TetrahedronIds& names) const
   return failure != this->FailedRoundings.end() && !this->HasChangedSince(failure->second, names);
 }
 
-void SliverMemory::SetImmovable(Id name)
+void SliverMemory::SetImmovable(Id name, SliverPlace place)
 {
-  this->Get(name).Search = this->Time;
+  this->Get(name).Searches[static_cast<int>(place)] = this->Time;
 }
 
-bool SliverMemory::IsImmovable(Id name) const
+bool SliverMemory::IsImmovable(Id name, SliverPlace place) const
 {
   const Times times = this->Get(name);
-  return times.Search > 0 && times.Search >= times.Change;
+  const std::int64_t search = times.Searches[static_cast<int>(place)];
+  return search > 0 && search >= times.Change;
 }
 } // namespace cdm

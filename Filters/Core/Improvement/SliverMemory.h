@@ -34,6 +34,13 @@ enum class SliverAttempt
   SurfaceMove
 };
 
+/** What a position was searched for: to improve tetrahedra at sharp angles, or others. */
+enum class SliverPlace
+{
+  Elsewhere,
+  SharpAngle
+};
+
 class SliverMemory
 {
 public:
@@ -54,8 +61,8 @@ public:
   void SetUnroundable(const TetrahedronIds& names);
   bool IsUnroundable(const TetrahedronIds& names) const;
   /** Notes that no better position was found for a point. */
-  void SetImmovable(Id name);
-  bool IsImmovable(Id name) const;
+  void SetImmovable(Id name, SliverPlace place);
+  bool IsImmovable(Id name, SliverPlace place) const;
 
 private:
   struct Failure
@@ -68,8 +75,8 @@ private:
   {
     /** When a point has last got other neighbors. */
     std::int64_t Change = 0;
-    /** When the last search for a better position found none. */
-    std::int64_t Search = 0;
+    /** When the last search for a better position found none, by what it was for. */
+    std::int64_t Searches[2] = {};
   };
   Times Get(Id name) const;
   Times& Get(Id name);

@@ -42,7 +42,10 @@ enum class SliverMeans
 Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effort,
   const ExecutionContext& context, RefinedMesh& mesh);
 
-/** Moves points of tetrahedra across sharp angles, if no other tetrahedron gets worse. */
+/**
+ * Moves points of tetrahedra across sharp angles and inserts points there, if no other tetrahedron
+ * gets worse: in several passes, as long as each mends a good part of them.
+ */
 Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh& mesh);
 } // namespace cdm
 

@@ -695,7 +695,7 @@ SliverSurfaceMoves::SliverSurfaceMoves(
   rules.BreaksLimit = [&mesh](const TetrahedronIds& ids, const std::array<Vec3, 4>& corners)
   { return mesh.BreaksLimit(ids, corners); };
   rules.GetClearance = [&mesh](Id point) { return mesh.GetClearance(point); };
-  rules.IsImmovable = [&mesh](Id point) { return mesh.IsImmovable(point); };
+  rules.IsImmovable = [&mesh](Id point) { return mesh.IsImmovable(point, SliverPlace::Elsewhere); };
   const RefinedBoundary& boundary = mesh.GetBoundary();
   const int numberOfThreads = mesh.GetThreads().GetNumberOfThreads();
   for (int i = 0; i < numberOfThreads; ++i)
@@ -742,7 +742,7 @@ bool SliverSurfaceMoves::Mend(std::size_t i)
     return false;
   }
   const SurfaceMove& move = this->Find(i);
-  this->Mesh.SetImmovable(move.Immovable);
+  this->Mesh.SetImmovable(move.Immovable, SliverPlace::Elsewhere);
   if (move.Point == NoId)
   {
     SetHopeless(sliver, SliverAttempt::SurfaceMove, this->Mesh);
