@@ -198,9 +198,11 @@ std::vector<SimplexIncidence::Record> FindAroundEdge(
 std::ptrdiff_t CountTriangles(
   const TriangleMesh& boundary, const IdLists& pointTriangles, const EdgeIds& edge)
 {
-  const IdLists::Range triangles = pointTriangles[edge[0]];
+  // Corners of the input may have many triangles.
+  const int end = pointTriangles[edge[0]].size() < pointTriangles[edge[1]].size() ? 0 : 1;
+  const IdLists::Range triangles = pointTriangles[edge[end]];
   return std::count_if(triangles.begin(), triangles.end(),
-    [&](Id t) { return Contains(boundary.Triangles[t], edge[1]); });
+    [&](Id t) { return Contains(boundary.Triangles[t], edge[1 - end]); });
 }
 
 /**

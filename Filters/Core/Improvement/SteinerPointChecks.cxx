@@ -86,12 +86,17 @@ Status CheckBoundary(const SteinerPointRefinerInput& input)
     for (int i = 0; i < 4; ++i)
     {
       const Id neighbor = mesh.Neighbors[t][i];
+      const bool isInner = neighbor != NoId && mesh.Regions[neighbor / 4] == mesh.Regions[t];
+      if (isInner && neighbor / 4 < t)
+      {
+        continue;
+      }
       const Id triangle = find(GetFacet(mesh.Tetrahedra[t], i));
       if (triangle != NoId)
       {
         isFacet[triangle] = 1;
       }
-      else if (neighbor == NoId || mesh.Regions[neighbor / 4] != mesh.Regions[t])
+      else if (!isInner)
       {
         ++missing;
       }
