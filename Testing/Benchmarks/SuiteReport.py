@@ -93,7 +93,9 @@ def GetMedian(result, name):
 def GetTetrahedra(result):
     if result["certificate"]:
         return result["certificate"]["Tetrahedra"]
-    return result["runs"][-1].get("tetrahedra")
+    # One repetition may have failed where another one did not.
+    counts = [run["tetrahedra"] for run in result["runs"] if run.get("tetrahedra")]
+    return counts[-1] if counts else None
 
 
 def FormatShare(count, all_of_them):
