@@ -333,6 +333,7 @@ void RefinedMesh::FollowBoundary(
   this->Couplings.NoteTriangles(surface, change.Triangles);
   this->Facts.Forget(this->FirstPreliminary);
   this->Flatter.Forget(this->FirstPreliminary);
+  this->Slivers.Forget(this->FirstPreliminary);
   this->Faulty.Forget(this->FirstPreliminary);
   this->FirstPreliminary = std::numeric_limits<std::int64_t>::max();
 }
@@ -372,20 +373,35 @@ std::vector<Id> RefinedMesh::FindFlatTetrahedra() const
   return flat;
 }
 
-std::vector<Id> RefinedMesh::FindFlatter(double target) const
+/** Finds tetrahedra that have a property and an angle below the target. */
+template <typename Property>
+std::vector<Id> RefinedMesh::FindBelow(
+  double target, TetrahedronWatch& watch, Property&& hasProperty) const
 {
   if (target > this->FlatterTarget)
   {
     this->FlatterTarget = target;
     this->Flatter.Forget(0);
+    this->Slivers.Forget(0);
   }
   this->Facts.MakeRoom();
-  std::vector<Id> found = this->Flatter.Update(
-    this->Mesh, *this->Threads, [this](Id t) { return this->GetAngle(t) < this->FlatterTarget; });
+  std::vector<Id> found = watch.Update(this->Mesh, *this->Threads,
+    [&](Id t) { return this->GetAngle(t) < this->FlatterTarget && hasProperty(t); });
   found.erase(
     std::remove_if(found.begin(), found.end(), [&](Id t) { return !(this->GetAngle(t) < target); }),
     found.end());
   return found;
+}
+
+std::vector<Id> RefinedMesh::FindFlatter(double target) const
+{
+  return this->FindBelow(target, this->Flatter, [](Id) { return true; });
+}
+
+std::vector<Id> RefinedMesh::FindSlivers(double target) const
+{
+  return this->FindBelow(target, this->Slivers,
+    [this](Id t) { return !this->IsAcrossSharp(t, SharpAngleUse::Sliver) && !this->IsInLayer(t); });
 }
 
 bool RefinedMesh::IsFaulty(Id tetrahedron, bool isShapeTested) const

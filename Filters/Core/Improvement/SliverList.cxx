@@ -5,26 +5,20 @@
 
 namespace cdm
 {
-namespace
-{
-/** Whether a tetrahedron with an angle below the target counts as a sliver. */
-bool IsSliver(bool isSharp, Id tetrahedron, const RefinedMesh& mesh)
-{
-  return mesh.IsAcrossSharp(tetrahedron, SharpAngleUse::Sliver) == isSharp &&
-    !mesh.IsInLayer(tetrahedron);
-}
-} // namespace
-
 std::vector<Sliver> FindSlivers(double target, bool isSharp, const RefinedMesh& mesh)
 {
+  const auto isNoSharpSliver = [&mesh](Id t)
+  { return !mesh.IsAcrossSharp(t, SharpAngleUse::Sliver) || mesh.IsInLayer(t); };
+  std::vector<Id> found = isSharp ? mesh.FindFlatter(target) : mesh.FindSlivers(target);
+  if (isSharp)
+  {
+    found.erase(std::remove_if(found.begin(), found.end(), isNoSharpSliver), found.end());
+  }
   const DynamicTetrahedralization& tetrahedra = mesh.GetTetrahedra();
   std::vector<Sliver> slivers;
-  for (Id t : mesh.FindFlatter(target))
+  for (Id t : found)
   {
-    if (IsSliver(isSharp, t, mesh))
-    {
-      slivers.push_back({ mesh.GetAngle(t), t, tetrahedra.GetStamp(t) });
-    }
+    slivers.push_back({ mesh.GetAngle(t), t, tetrahedra.GetStamp(t) });
   }
   std::sort(slivers.begin(), slivers.end(),
     [](const Sliver& a, const Sliver& b)
@@ -34,9 +28,7 @@ std::vector<Sliver> FindSlivers(double target, bool isSharp, const RefinedMesh& 
 
 std::size_t CountSlivers(double target, const RefinedMesh& mesh)
 {
-  const std::vector<Id> flatter = mesh.FindFlatter(target);
-  return std::count_if(
-    flatter.begin(), flatter.end(), [&mesh](Id t) { return IsSliver(false, t, mesh); });
+  return mesh.FindSlivers(target).size();
 }
 
 bool IsGone(const Sliver& sliver, const RefinedMesh& mesh)
