@@ -16,11 +16,11 @@ namespace
 {
 constexpr std::size_t SliversBetweenChecks = 16;
 /**
- * Passes over slivers at sharp angles go on as long as one mends more than this part of them. A second
- * one mends two thirds as many as the first, a fifth one a tenth.
+ * Passes over slivers at sharp angles go on as long as one mends more than this part of them. The first
+ * one only moves points: where that helps few, as in thin layers, new ones do not either.
  */
 constexpr int MaximumSharpPasses = 6;
-constexpr double WorthwhileRatio = 0.1;
+constexpr double WorthwhileRatio = 0.05;
 
 /** Mends slivers of a list, one after the other; threads look ahead. */
 class Perturbation
@@ -211,7 +211,7 @@ Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh&
   bool isWorthwhile = true;
   for (int pass = 0; pass < MaximumSharpPasses && isWorthwhile; ++pass)
   {
-    perturbation.Start(FindSlivers(aim.Target, aim.IsSharp, mesh), target);
+    perturbation.Start(FindSlivers(aim.Target, aim.IsSharp, mesh), pass > 0 ? target : 0.0);
     const std::size_t count = perturbation.GetNumberOfSlivers();
     std::size_t mended = 0;
     for (std::size_t i = 0; i < count; ++i)
