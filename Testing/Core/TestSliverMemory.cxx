@@ -15,6 +15,8 @@ TEST(SliverMemory, PointsAreImmovableUntilTheyGetOtherNeighbors)
     EXPECT_FALSE(memory.IsImmovable(point, SliverPlace::Elsewhere));
     memory.SetImmovable(point, SliverPlace::Elsewhere);
     EXPECT_TRUE(memory.IsImmovable(point, SliverPlace::Elsewhere));
+    // What was searched for others says nothing about tetrahedra at sharp angles.
+    EXPECT_FALSE(memory.IsImmovable(point, SliverPlace::SharpAngle));
     // Far away.
     memory.SetChanged({ 1, 2, 3, memory.MakeName() });
     EXPECT_TRUE(memory.IsImmovable(point, SliverPlace::Elsewhere));

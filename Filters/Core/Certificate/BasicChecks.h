@@ -84,7 +84,7 @@ struct BasicFindings
   /**
    * Facets of all tetrahedra at facets that need to be looked at, ascending: all but those between
    * two tetrahedra of one region, at least one of which is Delaunay and not flat, that know each
-   * other.
+   * other. And those that are triangles of the boundary.
    */
   std::vector<FacetRecord> Facets;
   /** Ascending by points, and whether Crit. 3.1 holds. */

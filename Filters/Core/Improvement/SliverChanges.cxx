@@ -36,8 +36,8 @@ SliverChanges::SliverChanges(const SliverAim& aim, const RefinedMesh& mesh, Cavi
 template <typename IsSharp>
 void SliverChanges::Include(double angle, IsSharp&& isSharp, SmallestAngles& smallest) const
 {
-  double& one =
-    angle >= this->Goal.Target || isSharp() == this->Goal.IsSharp ? smallest.Aimed : smallest.Other;
+  double& one = angle >= this->Goal.Target || isSharp() == this->Goal.IsSharp() ? smallest.Aimed
+                                                                                : smallest.Other;
   one = std::min(one, angle);
 }
 
@@ -51,8 +51,8 @@ void SliverChanges::IncludeTetrahedron(Id tetrahedron, SmallestAngles& smallest)
 /** The angle that tetrahedra which the change is not meant to improve have to keep. */
 double SliverChanges::GetFloor(const SmallestAngles& before) const
 {
-  return this->Goal.IsSharp ? std::min(before.Other, this->Goal.Target)
-                            : std::min(before.Aimed, before.Other);
+  return this->Goal.IsSharp() ? std::min(before.Other, this->Goal.Target)
+                              : std::min(before.Aimed, before.Other);
 }
 
 /**
@@ -79,7 +79,7 @@ bool SliverChanges::IsAimed(const TriangleIds& facet, double tangent2) const
   constexpr Id inside = std::numeric_limits<Id>::max();
   return tangent2 >= this->TargetTangent2 ||
     this->Mesh.GetShape().Sharp.IsAcross(
-      { facet[0], facet[1], facet[2], inside }, SharpAngleUse::Sliver) == this->Goal.IsSharp;
+      { facet[0], facet[1], facet[2], inside }, SharpAngleUse::Sliver) == this->Goal.IsSharp();
 }
 
 /** Whether the tetrahedron of a facet of the cavity and the new point is not too flat. */
@@ -373,7 +373,7 @@ void SliverChanges::FindInsertion(Id tetrahedron, SliverChange& change)
 
 bool SliverChanges::IsImmovable(Id point)
 {
-  const bool isImmovable = this->Mesh.IsImmovable(point, this->Goal.GetPlace());
+  const bool isImmovable = this->Mesh.IsImmovable(point, this->Goal.Place);
   if (isImmovable)
   {
     // For the record: the answer depends on the tetrahedra at the point.

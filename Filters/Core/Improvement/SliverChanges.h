@@ -37,12 +37,9 @@ struct SliverAim
 {
   /** Degrees; larger angles are as good. */
   double Target;
-  /** True: only tetrahedra across sharp angles are improved; false: only the others. */
-  bool IsSharp = false;
-  SliverPlace GetPlace() const
-  {
-    return this->IsSharp ? SliverPlace::SharpAngle : SliverPlace::Elsewhere;
-  }
+  /** Which tetrahedra are improved. */
+  SliverPlace Place = SliverPlace::Elsewhere;
+  bool IsSharp() const { return this->Place == SliverPlace::SharpAngle; }
   /** Whether points may be left out for good. */
   bool MayRemove = false;
   /** For the search of each position. */

@@ -5,20 +5,17 @@
 
 namespace cdm
 {
-std::vector<Sliver> FindSlivers(double target, bool isSharp, const RefinedMesh& mesh)
+std::vector<Sliver> FindSlivers(double target, SliverPlace place, const RefinedMesh& mesh)
 {
-  const auto isNoSharpSliver = [&mesh](Id t)
-  { return !mesh.IsAcrossSharp(t, SharpAngleUse::Sliver) || mesh.IsInLayer(t); };
-  std::vector<Id> found = isSharp ? mesh.FindFlatter(target) : mesh.FindSlivers(target);
-  if (isSharp)
-  {
-    found.erase(std::remove_if(found.begin(), found.end(), isNoSharpSliver), found.end());
-  }
+  const bool isSharp = place == SliverPlace::SharpAngle;
   const DynamicTetrahedralization& tetrahedra = mesh.GetTetrahedra();
   std::vector<Sliver> slivers;
-  for (Id t : found)
+  for (Id t : isSharp ? mesh.FindFlatter(target) : mesh.FindSlivers(target))
   {
-    slivers.push_back({ mesh.GetAngle(t), t, tetrahedra.GetStamp(t) });
+    if (!isSharp || (mesh.IsAcrossSharp(t, SharpAngleUse::Sliver) && !mesh.IsInLayer(t)))
+    {
+      slivers.push_back({ mesh.GetAngle(t), t, tetrahedra.GetStamp(t) });
+    }
   }
   std::sort(slivers.begin(), slivers.end(),
     [](const Sliver& a, const Sliver& b)

@@ -46,10 +46,10 @@ struct Sliver
 };
 
 /**
- * Tetrahedra with a dihedral angle below the target (degrees).
- * @param isSharp whether those across sharp angles are meant, or all others
+ * Tetrahedra with a dihedral angle below the target (degrees): those across sharp angles, or all
+ * others.
  */
-std::vector<Sliver> FindSlivers(double target, bool isSharp, const RefinedMesh& mesh);
+std::vector<Sliver> FindSlivers(double target, SliverPlace place, const RefinedMesh& mesh);
 
 /** Number of slivers that are not across sharp angles. */
 std::size_t CountSlivers(double target, const RefinedMesh& mesh);

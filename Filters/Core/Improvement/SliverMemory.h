@@ -34,7 +34,7 @@ enum class SliverAttempt
   SurfaceMove
 };
 
-/** What a position was searched for: to improve tetrahedra at sharp angles, or others. */
+/** Which tetrahedra a position was searched for: those across sharp angles, or the others. */
 enum class SliverPlace
 {
   Elsewhere,

@@ -54,7 +54,7 @@ private:
 };
 
 Perturbation::Perturbation(const SliverAim& aim, RefinedMesh& mesh)
-  : Mesh(mesh), Place(aim.GetPlace()), Ahead(mesh, SliversPerThread, TetrahedraPerSliver)
+  : Mesh(mesh), Place(aim.Place), Ahead(mesh, SliversPerThread, TetrahedraPerSliver)
 {
   for (int i = 0; i < mesh.GetThreads().GetNumberOfThreads(); ++i)
   {
@@ -135,7 +135,8 @@ bool Perturbation::Mend(std::size_t i)
 Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effort,
   const ExecutionContext& context, RefinedMesh& mesh)
 {
-  const SliverAim aim{ MoveRatio * target, false, means != SliverMeans::Moves, effort };
+  const SliverAim aim{ MoveRatio * target, SliverPlace::Elsewhere, means != SliverMeans::Moves,
+    effort };
   Perturbation perturbation(aim, mesh);
   const IdLists& pointTriangles = mesh.GetShape().PointTriangles;
   BoundaryRequests& requests = mesh.GetRequests();
@@ -145,7 +146,7 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
   std::vector<TetrahedronIds> unmet;
   for (int pass = 0; pass < MaximumSliverPasses; ++pass)
   {
-    perturbation.Start(FindSlivers(aim.Target, aim.IsSharp, mesh), mayInsert ? target : 0.0);
+    perturbation.Start(FindSlivers(aim.Target, aim.Place, mesh), mayInsert ? target : 0.0);
     const std::size_t count = perturbation.GetNumberOfSlivers();
     bool isMended = false;
     for (std::size_t i = 0; i < count; ++i)
@@ -206,12 +207,12 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
 
 Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh& mesh)
 {
-  const SliverAim aim{ MoveRatio * target, true };
+  const SliverAim aim{ MoveRatio * target, SliverPlace::SharpAngle };
   Perturbation perturbation(aim, mesh);
   bool isWorthwhile = true;
   for (int pass = 0; pass < MaximumSharpPasses && isWorthwhile; ++pass)
   {
-    perturbation.Start(FindSlivers(aim.Target, aim.IsSharp, mesh), pass > 0 ? target : 0.0);
+    perturbation.Start(FindSlivers(aim.Target, aim.Place, mesh), pass > 0 ? target : 0.0);
     const std::size_t count = perturbation.GetNumberOfSlivers();
     std::size_t mended = 0;
     for (std::size_t i = 0; i < count; ++i)

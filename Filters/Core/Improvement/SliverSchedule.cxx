@@ -123,7 +123,7 @@ std::vector<Id> SliverSchedule::FindWhatIsLeft() const
 {
   std::vector<Id> left = this->GetMesh().FindFaulty(true);
   for (const Sliver& sliver :
-    FindSlivers(this->Options.DihedralAngleTarget, false, this->GetMesh()))
+    FindSlivers(this->Options.DihedralAngleTarget, SliverPlace::Elsewhere, this->GetMesh()))
   {
     left.push_back(sliver.Tetrahedron);
   }

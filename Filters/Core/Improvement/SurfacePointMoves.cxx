@@ -765,7 +765,7 @@ void SliverSurfaceMoves::Run()
   for (int pass = 0; pass < MaximumSliverPasses && isMended; ++pass)
   {
     isMended = false;
-    this->Slivers = FindSlivers(this->Target, false, this->Mesh);
+    this->Slivers = FindSlivers(this->Target, SliverPlace::Elsewhere, this->Mesh);
     this->Ahead.Clear();
     for (std::size_t i = 0; i < this->Slivers.size(); ++i)
     {

@@ -72,6 +72,10 @@ Vec3 Negate(const Vec3& a)
 template <typename Real, typename Real3>
 struct Frame
 {
+  explicit Frame(const std::array<Vec3, 4>& corners)
+    : Frame(corners[0], corners[1], corners[2], corners[3])
+  {
+  }
   Frame(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
     : U(Subtract(b, a, Real3())), V(Subtract(c, a, Real3())), W(Subtract(d, a, Real3())),
       NormalC(Cross(W, U)), NormalB(Cross(V, W)), NormalD(Cross(U, V)), SixVolumes(Dot(NormalD, W))
@@ -111,6 +115,7 @@ struct Frame
   Real3 NormalD;
   Real SixVolumes;
 };
+using DoubleFrame = Frame<double, Vec3>;
 using DoubleDoubleFrame = Frame<DoubleDouble, DoubleDouble3>;
 
 bool IsPositive(const std::array<Vec3, 4>& corners)
@@ -199,14 +204,8 @@ std::array<Vec3, 4> StartWithEdge(const std::array<Vec3, 4>& corners, int edge)
   return { corners[order[0]], corners[order[1]], corners[order[2]], corners[order[3]] };
 }
 
-template <typename Real, typename Real3>
-Frame<Real, Real3> MakeFrame(const std::array<Vec3, 4>& corners)
-{
-  return { corners[0], corners[1], corners[2], corners[3] };
-}
-
 /** Whether a tetrahedron is neither inverted nor too flat for doubles. */
-bool IsWellShaped(const Frame<double, Vec3>& frame, double longest)
+bool IsWellShaped(const DoubleFrame& frame, double longest)
 {
   return frame.SixVolumes > WellShapedRatio * longest * longest * longest;
 }
@@ -235,7 +234,7 @@ bool IsSurelyPositive(const TetMesh& mesh,
       longest = std::max(longest, SquaredNorm(corners[ends[1]] - corners[ends[0]]));
     }
     longest = std::sqrt(longest);
-    const auto frame = MakeFrame<double, Vec3>(StartWithEdge(corners, record->Simplex % 6));
+    const DoubleFrame frame(StartWithEdge(corners, record->Simplex % 6));
     if (!IsWellShaped(frame, longest))
     {
       return false;
@@ -273,7 +272,7 @@ double GetUnsignedBoxVolume(const Vec3& a, const Vec3& b, const Vec3& c, const V
   };
   // All but the flattest tetrahedra lose four digits at most: one needs no more than these.
   const double longest = std::sqrt(*std::max_element(squares.begin(), squares.end()));
-  const Frame<double, Vec3> frame(a, b, c, d);
+  const DoubleFrame frame(a, b, c, d);
   if (IsWellShaped(frame, longest))
   {
     const auto doubles = GetCouplingParts(frame);
@@ -328,8 +327,7 @@ bool HasNegativeCoupling(const TetMesh& mesh, const EdgeIds& edge,
     const std::array<Vec3, 4> corners = GetCorners(mesh.Points, mesh.Tetrahedra[tetrahedron]);
     if (mesh.Regions[tetrahedron] == region && IsPositive(corners))
     {
-      sum.Add(GetFirstCoupling(
-        MakeFrame<DoubleDouble, DoubleDouble3>(StartWithEdge(corners, record->Simplex % 6))));
+      sum.Add(GetFirstCoupling(DoubleDoubleFrame(StartWithEdge(corners, record->Simplex % 6))));
     }
   }
   return sum.IsNegative(Distance(mesh.Points[edge[0]], mesh.Points[edge[1]]),
