@@ -229,14 +229,14 @@ void ExpectFoundWithoutThePoint(Id point, const Vec3& position, DynamicTetrahedr
   ASSERT_EQ(mesh.Locate(position, made.front()), place == NoId ? NoId : getId(place));
   PointCavity cavity;
   ASSERT_EQ(place != NoId && mesh.FindCavity(position, point, getId(place), cavity), isForeseen);
-  EXPECT_EQ(foreseen.Facets, cavity.Facets);
-  ASSERT_EQ(foreseen.Tetrahedra.size(), cavity.Tetrahedra.size());
-  for (std::size_t i = 0; i < cavity.Tetrahedra.size(); ++i)
+  for (const Id t : foreseen.Tetrahedra)
   {
-    const Id t = foreseen.Tetrahedra[i];
-    EXPECT_EQ(getId(t), cavity.Tetrahedra[i]);
     EXPECT_TRUE(t >= first || std::count(visited.begin(), visited.end(), t) == 1);
   }
+  mesh.NumberCells(first, foreseen);
+  EXPECT_EQ(foreseen.Tetrahedra, cavity.Tetrahedra);
+  EXPECT_EQ(foreseen.Facets, cavity.Facets);
+  EXPECT_EQ(foreseen.Outer, cavity.Outer);
 }
 
 /** Inserts, removes and moves points at random; getPosition() proposes places. */

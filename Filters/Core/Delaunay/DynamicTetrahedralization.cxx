@@ -203,6 +203,17 @@ void DynamicTetrahedralization::Remove(
   this->PointTetrahedra[point] = NoId;
 }
 
+void DynamicTetrahedralization::NumberCells(Id firstCell, PointCavity& cavity) const
+{
+  const auto number = [&](Id& id, Id perTetrahedron)
+  {
+    const Id cell = id / perTetrahedron - firstCell;
+    id = id == NoId || cell < 0 ? id : perTetrahedron * this->Changed[cell] + id % perTetrahedron;
+  };
+  std::for_each(cavity.Tetrahedra.begin(), cavity.Tetrahedra.end(), [&](Id& t) { number(t, 1); });
+  std::for_each(cavity.Outer.begin(), cavity.Outer.end(), [&](Id& facet) { number(facet, 4); });
+}
+
 void DynamicTetrahedralization::UndoRemove()
 {
   for (Id t : this->Changed)

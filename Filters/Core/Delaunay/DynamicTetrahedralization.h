@@ -116,6 +116,12 @@ public:
    */
   void Remove(Id point, const std::vector<Id>& star, const std::vector<CavityCell>& cells);
   /**
+   * Gives the cells in a cavity that a search has found the numbers of the tetrahedra which the
+   * removal, the last change, has made of them.
+   * @param firstCell the first number of a cell in the search
+   */
+  void NumberCells(Id firstCell, PointCavity& cavity) const;
+  /**
    * Undoes the last removal, as long as nothing else has been changed: all tetrahedra get back
    * their slots and stamps.
    */

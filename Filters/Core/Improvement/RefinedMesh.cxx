@@ -573,9 +573,9 @@ void RefinedMesh::Insert(const Vec3& position, const PointCavity& cavity)
   ++this->Report.InsertedPoints;
 }
 
-void RefinedMesh::Restore(Id point, const Vec3& position)
+void RefinedMesh::Restore(Id point, const Vec3& position, const PointCavity& cavity)
 {
-  this->Mesh.Restore(point, position, this->FoundCavity);
+  this->Mesh.Restore(point, position, cavity);
   this->NoteMove(point);
 }
 

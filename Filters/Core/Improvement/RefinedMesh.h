@@ -254,10 +254,9 @@ public:
   /** @param scratch gets what the position encroaches on, if that is why it does */
   bool EncroachesOnBoundary(
     const PointCavity& cavity, const Vec3& position, BoundarySpheres::Encroached& scratch) const;
-  void Insert(const Vec3& position) { this->Insert(position, this->FoundCavity); }
   void Insert(const Vec3& position, const PointCavity& cavity);
   /** Inserts a free point again, which was removed, at another position. */
-  void Restore(Id point, const Vec3& position);
+  void Restore(Id point, const Vec3& position, const PointCavity& cavity);
   /** Notes that a free point has been moved in the tetrahedra. */
   void NoteMove(Id point);
   /** Counts a free point that was removed and is not restored. */

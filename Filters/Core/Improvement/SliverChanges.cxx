@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace cdm
 {
@@ -192,6 +193,13 @@ double SliverChanges::RateCavity() const
   return smallest < Infinity ? DegreesPerRadian * std::atan(std::sqrt(smallest)) : 180.0;
 }
 
+/** Keeps the cavity that was found: its position is better than all before. */
+double SliverChanges::KeepBest(double angle)
+{
+  std::swap(this->Found, this->Best);
+  return angle;
+}
+
 void SliverChanges::MeasureStar(Id point)
 {
   const DynamicTetrahedralization& mesh = this->Mesh.GetTetrahedra();
@@ -287,7 +295,7 @@ double SliverChanges::RateMove(Id point, const Vec3& position, double floor, dou
   const double angle = this->RateCavity();
   return angle > required && (this->Before.Broken > 0 || broken == 0) &&
       this->IsAllowed(position, this->Before.Broken > 0)
-    ? angle
+    ? this->KeepBest(angle)
     : 0.0;
 }
 
@@ -320,6 +328,8 @@ bool SliverChanges::FindMove(Id point, SliverChange& change)
   {
     change.What = SliverChange::Kind::Move;
     change.Position = best.Position;
+    change.Cavity = std::move(this->Best);
+    change.FirstCell = this->Search.GetFirstCell();
   }
   else
   {
@@ -346,7 +356,7 @@ double SliverChanges::RateInsertion(Id tetrahedron, const Vec3& position, double
   }
   this->SetBounds(this->GetFloor(before), required);
   const double angle = this->RateCavity();
-  return angle > required && this->IsAllowed(position, false) ? angle : 0.0;
+  return angle > required && this->IsAllowed(position, false) ? this->KeepBest(angle) : 0.0;
 }
 
 void SliverChanges::FindInsertion(Id tetrahedron, SliverChange& change)
@@ -368,6 +378,7 @@ void SliverChanges::FindInsertion(Id tetrahedron, SliverChange& change)
   {
     change.What = SliverChange::Kind::Insertion;
     change.Position = best.Position;
+    change.Cavity = std::move(this->Best);
   }
 }
 

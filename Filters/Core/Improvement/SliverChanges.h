@@ -64,6 +64,9 @@ struct SliverChange
   /** The tetrahedra around the point, and what fills their place: see CavitySearch. */
   std::vector<Id> Star;
   std::vector<CavityCell> Cells;
+  /** What the point replaces at its position; the cells are numbered from FirstCell on. */
+  PointCavity Cavity;
+  Id FirstCell = NoId;
   /** Points of the sliver for which no better position was found. */
   std::vector<Id> Immovable;
 };
@@ -136,6 +139,7 @@ private:
   void NoteSpoiler(Id facet, bool isByLimit);
   bool FindCavity(const Vec3& position, Id first, Id number);
   double RateCavity() const;
+  double KeepBest(double angle);
   void MeasureStar(Id point);
   void MeasureCells(double floor);
   bool LeavesFlatter(Id point, const Vec3& position, double required) const;
@@ -151,6 +155,8 @@ private:
   const RefinedMesh& Mesh;
   CavitySearch& Search;
   PointCavity Found;
+  /** That of the best position so far. */
+  PointCavity Best;
   /**
    * Smallest angles of the tetrahedra that would fill the cavity, facet by facet. Most of them are
    * looked at once: an arctangent of each took a fifteenth of the search.

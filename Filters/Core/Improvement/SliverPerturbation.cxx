@@ -42,7 +42,7 @@ private:
   }
   bool IsHopeless(const Sliver& sliver) const;
   const SliverChange& Find(std::size_t i);
-  void Make(const SliverChange& change, Id tetrahedron);
+  void Make(const SliverChange& change);
 
   RefinedMesh& Mesh;
   const SliverPlace Place;
@@ -93,13 +93,12 @@ const SliverChange& Perturbation::Find(std::size_t i)
     { return change.What != SliverChange::Kind::Insertion || !this->Mesh.IsFull(); });
 }
 
-void Perturbation::Make(const SliverChange& change, Id tetrahedron)
+void Perturbation::Make(const SliverChange& change)
 {
   DynamicTetrahedralization& mesh = this->Mesh.GetTetrahedra();
   if (change.What == SliverChange::Kind::Insertion)
   {
-    this->Mesh.FindCavity(change.Position, tetrahedron);
-    this->Mesh.Insert(change.Position);
+    this->Mesh.Insert(change.Position, change.Cavity);
     return;
   }
   mesh.Remove(change.Point, change.Star, change.Cells);
@@ -108,9 +107,9 @@ void Perturbation::Make(const SliverChange& change, Id tetrahedron)
     this->Mesh.NoteRemoval(change.Point);
     return;
   }
-  const Id first = mesh.Locate(change.Position, mesh.GetChanged().front());
-  this->Mesh.FindCavity(change.Position, first, change.Point);
-  this->Mesh.Restore(change.Point, change.Position);
+  PointCavity cavity = change.Cavity;
+  mesh.NumberCells(change.FirstCell, cavity);
+  this->Mesh.Restore(change.Point, change.Position, cavity);
 }
 
 bool Perturbation::Mend(std::size_t i)
@@ -127,7 +126,7 @@ bool Perturbation::Mend(std::size_t i)
     SetHopeless(sliver, this->GetLast(sliver), this->Mesh);
     return false;
   }
-  this->Make(change, sliver.Tetrahedron);
+  this->Make(change);
   return true;
 }
 } // namespace
