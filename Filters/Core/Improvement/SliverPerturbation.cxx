@@ -19,7 +19,7 @@ constexpr std::size_t SliversBetweenChecks = 16;
  * Passes over slivers at sharp angles go on as long as one mends more than this part of them. The first
  * one only moves points: where that helps few, as in thin layers, new ones do not either.
  */
-constexpr int MaximumSharpPasses = 6;
+constexpr int MaximumSharpPasses = 5;
 constexpr double WorthwhileRatio = 0.05;
 
 /** Mends slivers of a list, one after the other; threads look ahead. */
@@ -206,7 +206,8 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
 
 Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh& mesh)
 {
-  const SliverAim aim{ MoveRatio * target, SliverPlace::SharpAngle };
+  // Those just above the target stay: to move them, too, took longer and mended no more.
+  const SliverAim aim{ target, SliverPlace::SharpAngle };
   Perturbation perturbation(aim, mesh);
   bool isWorthwhile = true;
   for (int pass = 0; pass < MaximumSharpPasses && isWorthwhile; ++pass)
