@@ -31,6 +31,16 @@ struct Cavity
    */
   std::vector<TriangleIds> Walls;
 
+  /** Makes it empty, and keeps the memory: most cavities take a few microseconds. */
+  void Clear()
+  {
+    this->Numbers.clear();
+    this->Points.clear();
+    this->Border.clear();
+    this->Regions.clear();
+    this->Walls.clear();
+  }
+
   /** The indices of a facet's points; the number of points for one that the cavity does not have. */
   TriangleIds FindCorners(TriangleIds facet) const
   {

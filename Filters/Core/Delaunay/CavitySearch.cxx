@@ -152,8 +152,9 @@ bool CavitySearch::LeaveOut(Id point)
   {
     return false;
   }
-  Cavity cavity;
-  std::vector<Id> outer;
+  Cavity& cavity = this->Around;
+  cavity.Clear();
+  this->Beyond.clear();
   for (const Id t : this->Star)
   {
     const TetrahedronIds& vertices = this->Mesh.Tetrahedra[t];
@@ -161,7 +162,7 @@ bool CavitySearch::LeaveOut(Id point)
       static_cast<int>(std::find(vertices.begin(), vertices.end(), point) - vertices.begin());
     const TriangleIds facet = GetFacet(vertices, i);
     cavity.Border.push_back({ facet[0], facet[2], facet[1] });
-    outer.push_back(this->Mesh.Neighbors[t][i]);
+    this->Beyond.push_back(this->Mesh.Neighbors[t][i]);
     cavity.Numbers.insert(cavity.Numbers.end(), facet.begin(), facet.end());
   }
   SortUnique(cavity.Numbers);
@@ -186,7 +187,7 @@ bool CavitySearch::LeaveOut(Id point)
     {
       const Id inner = cell.Neighbors[i];
       const Id facet = CavityCell::GetBorderFacet(inner);
-      neighbors[i] = facet >= 0 ? outer[facet] : 4 * first + inner;
+      neighbors[i] = facet >= 0 ? this->Beyond[facet] : 4 * first + inner;
       if (facet >= 0)
       {
         this->Substitutes[facet] = 4 * (first + static_cast<Id>(this->CellNeighbors.size())) + i;

@@ -145,6 +145,9 @@ private:
   std::vector<Id> Star;
   Id HiddenRegion = NoId;
   CavityFilling Filling;
+  /** Work space of LeaveOut(): the cavity of the point, and the facet ids beyond its border. */
+  Cavity Around;
+  std::vector<Id> Beyond;
   /** Facet ids of the cells' neighbors, and the facet id that replaces each tetrahedron's. */
   std::vector<std::array<Id, 4>> CellNeighbors;
   std::vector<Id> Substitutes;

@@ -495,7 +495,7 @@ void BoundarySplits::CollectCavity()
 {
   const TetMesh& mesh = this->Mesh.GetMesh();
   Cavity& cavity = this->Around;
-  cavity = Cavity();
+  cavity.Clear();
   cavity.Walls = this->Made;
   this->Outer.clear();
   this->WallRegions.clear();

@@ -31,9 +31,13 @@ public:
   /** Begins with a list; slivers at or above the angle are not worth an insertion. */
   void Start(std::vector<Sliver> slivers, double insertedBelow);
   std::size_t GetNumberOfSlivers() const { return this->Slivers.size(); }
-  const Sliver& GetSliver(std::size_t i) const { return this->Slivers[i]; }
-  /** False if nothing helps, or is known not to; then nothing has changed. */
-  bool Mend(std::size_t i);
+  /**
+   * Mends what is left of the list.
+   * @param visit (sliver, isMended): called after each try. If nothing has helped, nothing has changed
+   * @return false if it is to stop
+   */
+  template <typename Visitor>
+  bool Run(const ExecutionContext& context, const char* activity, Visitor&& visit);
 
 private:
   SliverAttempt GetLast(const Sliver& sliver) const
@@ -41,6 +45,8 @@ private:
     return sliver.Angle < this->InsertedBelow ? SliverAttempt::Insertion : SliverAttempt::Move;
   }
   bool IsHopeless(const Sliver& sliver) const;
+  /** False if nothing helps, or is known not to. */
+  bool Mend(std::size_t i);
   const SliverChange& Find(std::size_t i);
   void Make(const SliverChange& change);
 
@@ -129,6 +135,62 @@ bool Perturbation::Mend(std::size_t i)
   this->Make(change);
   return true;
 }
+
+template <typename Visitor>
+bool Perturbation::Run(const ExecutionContext& context, const char* activity, Visitor&& visit)
+{
+  for (std::size_t i = 0; i < this->Slivers.size(); ++i)
+  {
+    if (i % SliversBetweenChecks == 0 &&
+      !context.Continue(
+        static_cast<double>(i) / static_cast<double>(this->Slivers.size()), activity))
+    {
+      return false;
+    }
+    if (!IsGone(this->Slivers[i], this->Mesh))
+    {
+      visit(this->Slivers[i], this->Mend(i));
+    }
+  }
+  return true;
+}
+
+/** The context of one of several passes. */
+ExecutionContext GetPass(const ExecutionContext& context, int pass, int numberOfPasses)
+{
+  return context.Part(
+    static_cast<double>(pass) / numberOfPasses, static_cast<double>(pass + 1) / numberOfPasses);
+}
+
+/** Requests a split of the boundary that is in the way of a sliver. */
+void RequestSplit(Id sliver, RefinedMesh& mesh)
+{
+  const auto [a, b, c, d] = mesh.GetTetrahedra().GetCorners(sliver);
+  const Vec3 center = GetCircumcenter(a, b, c, d);
+  if (!mesh.GetRequests().AddEdgeOfTwoTriangles(
+        mesh.GetMesh().Tetrahedra[sliver], mesh.GetShape().PointTriangles) &&
+    IsFinite(center))
+  {
+    mesh.RequestEncroached(center, true);
+  }
+}
+
+/**
+ * Requests a split of a boundary triangle beside slivers, which may still help where no edge or
+ * triangle is in the way: one for all that have a point in common.
+ */
+void RequestSplitsBeside(const std::vector<TetrahedronIds>& slivers, RefinedMesh& mesh)
+{
+  std::vector<Id> near;
+  for (const TetrahedronIds& ids : slivers)
+  {
+    if (std::none_of(ids.begin(), ids.end(), [&near](Id id) { return Contains(near, id); }))
+    {
+      mesh.GetRequests().AddLargestTriangle(ids, mesh.GetShape().PointTriangles);
+      near.insert(near.end(), ids.begin(), ids.end());
+    }
+  }
+}
 } // namespace
 
 Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effort,
@@ -137,8 +199,6 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
   const SliverAim aim{ MoveRatio * target, SliverPlace::Elsewhere, means != SliverMeans::Moves,
     effort };
   Perturbation perturbation(aim, mesh);
-  const IdLists& pointTriangles = mesh.GetShape().PointTriangles;
-  BoundaryRequests& requests = mesh.GetRequests();
   // First moves, then new points as well; when neither helps any more, requests.
   bool mayInsert = false;
   bool isLast = false;
@@ -146,60 +206,33 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
   for (int pass = 0; pass < MaximumSliverPasses; ++pass)
   {
     perturbation.Start(FindSlivers(aim.Target, aim.Place, mesh), mayInsert ? target : 0.0);
-    const std::size_t count = perturbation.GetNumberOfSlivers();
-    bool isMended = false;
-    for (std::size_t i = 0; i < count; ++i)
+    bool isAnyMended = false;
+    const auto visit = [&](const Sliver& sliver, bool isMended)
     {
-      if (i % SliversBetweenChecks == 0 &&
-        !context.Continue((pass + static_cast<double>(i) / count) / MaximumSliverPasses,
-          "Moving points of slivers"))
-      {
-        return Status::Aborted();
-      }
-      const Sliver& sliver = perturbation.GetSliver(i);
-      if (IsGone(sliver, mesh))
-      {
-        continue;
-      }
-      const TetrahedronIds ids = mesh.GetMesh().Tetrahedra[sliver.Tetrahedron];
       const bool isBad = sliver.Angle < target;
-      if (perturbation.Mend(i))
+      isAnyMended = isAnyMended || (isMended && isBad);
+      if (isBad && !isMended && isLast && means == SliverMeans::Requests)
       {
-        isMended = isMended || isBad;
-        continue;
+        unmet.push_back(mesh.GetMesh().Tetrahedra[sliver.Tetrahedron]);
+        RequestSplit(sliver.Tetrahedron, mesh);
       }
-      if (isBad && isLast && means == SliverMeans::Requests)
-      {
-        unmet.push_back(ids);
-        const auto [a, b, c, d] = mesh.GetTetrahedra().GetCorners(sliver.Tetrahedron);
-        const Vec3 center = GetCircumcenter(a, b, c, d);
-        if (!requests.AddEdgeOfTwoTriangles(ids, pointTriangles) && IsFinite(center))
-        {
-          mesh.RequestEncroached(center, true);
-        }
-      }
+    };
+    if (!perturbation.Run(
+          GetPass(context, pass, MaximumSliverPasses), "Moving points of slivers", visit))
+    {
+      return Status::Aborted();
     }
     const bool isMoving = means == SliverMeans::Moves;
-    if (isLast || count == 0 || (isMoving && !isMended))
+    if (isLast || perturbation.GetNumberOfSlivers() == 0 || (isMoving && !isAnyMended))
     {
       break;
     }
-    isLast = mayInsert && !isMended;
+    isLast = mayInsert && !isAnyMended;
     mayInsert = !isMoving;
   }
-  // No edge or triangle of the boundary is in the way. A point on a boundary triangle beside the
-  // sliver may still help: request one for all slivers that have a point in common.
-  if (requests.GetNumber() == 0)
+  if (mesh.GetRequests().GetNumber() == 0)
   {
-    std::vector<Id> near;
-    for (const TetrahedronIds& ids : unmet)
-    {
-      if (std::none_of(ids.begin(), ids.end(), [&near](Id id) { return Contains(near, id); }))
-      {
-        requests.AddLargestTriangle(ids, pointTriangles);
-        near.insert(near.end(), ids.begin(), ids.end());
-      }
-    }
+    RequestSplitsBeside(unmet, mesh);
   }
   return Status();
 }
@@ -213,20 +246,15 @@ Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh&
   for (int pass = 0; pass < MaximumSharpPasses && isWorthwhile; ++pass)
   {
     perturbation.Start(FindSlivers(aim.Target, aim.Place, mesh), pass > 0 ? target : 0.0);
-    const std::size_t count = perturbation.GetNumberOfSlivers();
     std::size_t mended = 0;
-    for (std::size_t i = 0; i < count; ++i)
+    const auto visit = [&mended](const Sliver&, bool isMended) { mended += isMended ? 1 : 0; };
+    if (!perturbation.Run(
+          GetPass(context, pass, MaximumSharpPasses), "Moving points at sharp angles", visit))
     {
-      if (i % SliversBetweenChecks == 0 &&
-        !context.Continue((pass + static_cast<double>(i) / count) / MaximumSharpPasses,
-          "Moving points at sharp angles"))
-      {
-        return Status::Aborted();
-      }
-      const bool isMended = !IsGone(perturbation.GetSliver(i), mesh) && perturbation.Mend(i);
-      mended += isMended ? 1 : 0;
+      return Status::Aborted();
     }
-    isWorthwhile = static_cast<double>(mended) > WorthwhileRatio * static_cast<double>(count);
+    isWorthwhile = static_cast<double>(mended) >
+      WorthwhileRatio * static_cast<double>(perturbation.GetNumberOfSlivers());
   }
   return Status();
 }
