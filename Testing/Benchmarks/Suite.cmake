@@ -23,6 +23,11 @@ if (CDM_CGAL_MESH_DIR)
 endif ()
 if (CONFORMINGDELAUNAY_WRAP_PYTHON)
   add_dependencies(BenchmarkSuite cdmMeshingPython)
+  add_test(NAME bench.SuiteMeasure
+    COMMAND "${Python3_EXECUTABLE}" "${CMAKE_CURRENT_SOURCE_DIR}/TestSuiteMeasure.py"
+      $<TARGET_FILE:SuiteMeasure>)
+  set_tests_properties(bench.SuiteMeasure PROPERTIES
+    LABELS bench TIMEOUT 120 RUN_SERIAL ON ENVIRONMENT "${test_environment}")
   # Its short form: it ends with an error if one of our results is not what it should be.
   add_test(NAME bench.Suite
     COMMAND "${with_display}" "${Python3_EXECUTABLE}" "${CMAKE_CURRENT_SOURCE_DIR}/Suite.py" run
