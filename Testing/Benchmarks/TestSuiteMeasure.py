@@ -22,7 +22,7 @@ while len(steps) < 9:
 print(statistics.median(steps))
 """
 ENDLESS = "while True: pass"
-# The interpreter's exit status for "command not found".
+# The exit status where a program cannot be started, as shells have it.
 NOT_FOUND = 127
 
 

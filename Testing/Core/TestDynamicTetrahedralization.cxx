@@ -236,6 +236,7 @@ void ExpectFoundWithoutThePoint(Id point, const Vec3& position, DynamicTetrahedr
   mesh.NumberCells(first, foreseen);
   EXPECT_EQ(foreseen.Tetrahedra, cavity.Tetrahedra);
   EXPECT_EQ(foreseen.Facets, cavity.Facets);
+  EXPECT_EQ(foreseen.Inner, cavity.Inner);
   EXPECT_EQ(foreseen.Outer, cavity.Outer);
 }
 

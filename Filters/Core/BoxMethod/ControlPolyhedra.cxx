@@ -60,7 +60,7 @@ private:
   {
     std::vector<Id> Offsets{ 0 };
     std::vector<Id> Vertices;
-    /** Their polygons are counted from the first of these. */
+    /** Who uses which polygon: polygons are counted from the first one here. */
     std::vector<Use> Uses;
 
     Id GetSize() const { return static_cast<Id>(this->Offsets.size()) - 1; }

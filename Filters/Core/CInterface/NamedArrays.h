@@ -21,7 +21,7 @@
 #include <variant>
 #include <vector>
 
-/** Those of an input or of an output. */
+/** The named arrays of an input or of an output. */
 struct cdmArrays
 {
   using Input = std::variant<std::vector<double>, std::vector<std::int64_t>>;

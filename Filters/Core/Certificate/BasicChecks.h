@@ -82,9 +82,9 @@ struct BasicFindings
   }
   Id NumberOfFacets = 0;
   /**
-   * Facets of all tetrahedra at facets that need to be looked at, ascending: all but those between
-   * two tetrahedra of one region, at least one of which is Delaunay and not flat, that know each
-   * other. And those that are triangles of the boundary.
+   * Facets of tetrahedra that need to be looked at, ascending: those that are triangles of the
+   * boundary, and all others but those between two tetrahedra of one region, at least one of which
+   * is Delaunay and not flat, that know each other.
    */
   std::vector<FacetRecord> Facets;
   /** Ascending by points, and whether Crit. 3.1 holds. */

@@ -34,7 +34,7 @@ struct PointCavity
   std::vector<Id> Tetrahedra;
   /** Facets around the cavity; the point lies in front of each. */
   std::vector<TriangleIds> Facets;
-  /** Their facet ids, in the tetrahedra of the cavity. */
+  /** For each of these facets its id in a tetrahedron of the cavity. */
   std::vector<Id> Inner;
   /** Facet ids of the tetrahedra beyond, NoId at the outer boundary. */
   std::vector<Id> Outer;

@@ -211,6 +211,7 @@ void DynamicTetrahedralization::NumberCells(Id firstCell, PointCavity& cavity) c
     id = id == NoId || cell < 0 ? id : perTetrahedron * this->Changed[cell] + id % perTetrahedron;
   };
   std::for_each(cavity.Tetrahedra.begin(), cavity.Tetrahedra.end(), [&](Id& t) { number(t, 1); });
+  std::for_each(cavity.Inner.begin(), cavity.Inner.end(), [&](Id& facet) { number(facet, 4); });
   std::for_each(cavity.Outer.begin(), cavity.Outer.end(), [&](Id& facet) { number(facet, 4); });
 }
 

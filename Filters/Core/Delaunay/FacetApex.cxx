@@ -24,7 +24,7 @@ struct Plane
   {
   }
 
-  /** Its sign is that of Orientation(). */
+  /** A determinant with the sign of Orientation(). */
   Determinant<double> GetSide(const Vec3& point, double bound) const
   {
     // Products of three components, each off by less than eight roundings.
@@ -54,7 +54,7 @@ struct FacetApex::Sphere
     this->Reach = plane.BoundU + plane.BoundV + length;
   }
 
-  /** Its sign is that of InSphere(). */
+  /** A determinant with the sign of InSphere(). */
   Determinant<double> GetPosition(const Vec3& point, double bound) const
   {
     return { Dot(point, this->Gradient) - this->Curvature * SquaredNorm(point),

@@ -46,7 +46,7 @@ inline Real GetLargest(Real a, Real b, Real c)
   return std::max(std::max(a, b), c);
 }
 
-/** Its sign is that of Orientation(). */
+/** A determinant with the sign of Orientation(). */
 template <typename Real>
 inline Determinant<Real> GetOrientationDeterminant(
   const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
@@ -69,7 +69,7 @@ inline Determinant<Real> GetOrientationDeterminant(
   return { value, Unit * x * y * z };
 }
 
-/** Its sign is that of InSphere(). */
+/** A determinant with the sign of InSphere(). */
 template <typename Real>
 inline Determinant<Real> GetInSphereDeterminant(
   const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e)

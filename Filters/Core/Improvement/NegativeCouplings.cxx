@@ -71,7 +71,7 @@ bool IsSphereFilled(const TetMesh& mesh, Id tetrahedron, int edge)
   return isInside(TetrahedronEdges[5 - edge][0]) || isInside(TetrahedronEdges[5 - edge][1]);
 }
 
-/** Those of the edges whose smallest spheres are not empty, ascending. */
+/** Finds those of the edges whose smallest spheres are not empty, ascending. */
 std::vector<EdgeIds> FindFilledEdges(
   const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfPoints)
 {
@@ -115,7 +115,7 @@ bool HasNegative(
     HasNegativeCouplingInAnyRegion(mesh, edge, records);
 }
 
-/** Those of the edges with a negative coupling, ascending. */
+/** Finds those of the edges that have a negative coupling, ascending. */
 std::vector<EdgeIds> FindNegative(
   const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfPoints)
 {

@@ -78,6 +78,8 @@ private:
   std::vector<std::int64_t> NextStamps;
   /** The tetrahedra around the point. */
   std::vector<Id> Star;
+  /** What FindCavity() has found. */
+  PointCavity Found;
   /** Work space. */
   BoundarySpheres::Encroached Encroached;
 };
@@ -144,7 +146,7 @@ Vec3 Smoothing::GetStep(Id point) const
 bool Smoothing::FindCavity(Id point, const Vec3& position, Id near)
 {
   const Id first = this->Tetrahedra.Locate(position, near);
-  return first != NoId && this->Mesh.FindCavity(position, first, point);
+  return first != NoId && this->Tetrahedra.FindCavity(position, point, first, this->Found);
 }
 
 /**
@@ -154,7 +156,7 @@ bool Smoothing::FindCavity(Id point, const Vec3& position, Id near)
  */
 bool Smoothing::Fits(const Vec3& position, const std::vector<Id>& filled, Measures before) const
 {
-  const PointCavity& cavity = this->Mesh.GetCavity();
+  const PointCavity& cavity = this->Found;
   Quality after;
   Vec3 target;
   double severity = 0.0;
@@ -221,8 +223,8 @@ bool Smoothing::Place(Id point, const Vec3& position, const std::vector<Id>& fil
   const Vec3 old = this->Tetrahedra.GetPoint(point);
   std::vector<Id> made;
   std::copy_if(filled.begin(), filled.end(), std::back_inserter(made),
-    [&](Id t) { return !Contains(this->Mesh.GetCavity().Tetrahedra, t); });
-  this->Tetrahedra.Restore(point, position, this->Mesh.GetCavity());
+    [&](Id t) { return !Contains(this->Found.Tetrahedra, t); });
+  this->Tetrahedra.Restore(point, position, this->Found);
   made.insert(
     made.end(), this->Tetrahedra.GetChanged().begin(), this->Tetrahedra.GetChanged().end());
   if (!this->MakesNegativeCoupling(made))
@@ -232,7 +234,7 @@ bool Smoothing::Place(Id point, const Vec3& position, const std::vector<Id>& fil
   }
   this->Tetrahedra.Remove(point);
   this->FindCavity(point, old, this->Tetrahedra.GetChanged().front());
-  this->Tetrahedra.Restore(point, old, this->Mesh.GetCavity());
+  this->Tetrahedra.Restore(point, old, this->Found);
   return false;
 }
 
@@ -255,8 +257,8 @@ bool Smoothing::MoveBy(Id point, const Vec3& step)
   {
     const Vec3 position = old + part * step;
     if (this->FindCavity(point, position, filled.front()) &&
-      this->Mesh.IsClear(this->Mesh.GetCavity(), position) &&
-      !this->Mesh.EncroachesOnBoundary(this->Mesh.GetCavity(), position, this->Encroached) &&
+      this->Mesh.IsClear(this->Found, position) &&
+      !this->Mesh.EncroachesOnBoundary(this->Found, position, this->Encroached) &&
       this->Fits(position, filled, before))
     {
       return this->Place(point, position, filled);

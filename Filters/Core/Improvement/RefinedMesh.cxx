@@ -573,12 +573,6 @@ void RefinedMesh::Insert(const Vec3& position, const PointCavity& cavity)
   ++this->Report.InsertedPoints;
 }
 
-void RefinedMesh::Restore(Id point, const Vec3& position, const PointCavity& cavity)
-{
-  this->Mesh.Restore(point, position, cavity);
-  this->NoteMove(point);
-}
-
 void RefinedMesh::NoteMove(Id point)
 {
   this->Points[point].Position = this->Mesh.GetPoint(point);

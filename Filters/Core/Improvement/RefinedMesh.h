@@ -235,16 +235,6 @@ public:
   void SetImmovable(const std::vector<Id>& points, SliverPlace place);
 
   /**
-   * Finds the cavity of a point, see CavitySearch::FindCavity(). Insert() and Restore() fill it.
-   * @param number id of the point; NoId: that of the next new point
-   */
-  bool FindCavity(const Vec3& position, Id first, Id number = NoId)
-  {
-    return this->Mesh.FindCavity(
-      position, number == NoId ? this->Mesh.GetNumberOfPoints() : number, first, this->FoundCavity);
-  }
-  const PointCavity& GetCavity() const { return this->FoundCavity; }
-  /**
    * The first facet whose tetrahedron would break a limit if the cavity were filled from the
    * position, or the number of facets.
    */
@@ -254,9 +244,8 @@ public:
   /** @param scratch gets what the position encroaches on, if that is why it does */
   bool EncroachesOnBoundary(
     const PointCavity& cavity, const Vec3& position, BoundarySpheres::Encroached& scratch) const;
+  /** Inserts a new free point. */
   void Insert(const Vec3& position, const PointCavity& cavity);
-  /** Inserts a free point again, which was removed, at another position. */
-  void Restore(Id point, const Vec3& position, const PointCavity& cavity);
   /** Notes that a free point has been moved in the tetrahedra. */
   void NoteMove(Id point);
   /** Counts a free point that was removed and is not restored. */
@@ -303,7 +292,6 @@ private:
   mutable double FlatterTarget = 0.0;
   mutable TetrahedronWatch Faulty;
   mutable bool IsFaultyShape = false;
-  PointCavity FoundCavity;
   /** Work space. */
   BoundarySpheres::Encroached Encroached;
 };

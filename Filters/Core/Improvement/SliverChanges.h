@@ -155,7 +155,7 @@ private:
   const RefinedMesh& Mesh;
   CavitySearch& Search;
   PointCavity Found;
-  /** That of the best position so far. */
+  /** The cavity of the best position so far. */
   PointCavity Best;
   /**
    * Smallest angles of the tetrahedra that would fill the cavity, facet by facet. Most of them are
@@ -166,7 +166,7 @@ private:
   AngleBound Floor;
   AngleBound Required;
   const double TargetTangent2;
-  /** The last ones. Eight instead of three took 0.98 times the time of the whole mesher. */
+  /** The last spoilers. With eight instead of three the mesher took 0.98 times the time. */
   std::array<Spoiler, 8> Spoilers;
   BoundarySpheres::Encroached EncroachedBefore;
   Around Before;

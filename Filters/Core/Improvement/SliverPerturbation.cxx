@@ -115,7 +115,8 @@ void Perturbation::Make(const SliverChange& change)
   }
   PointCavity cavity = change.Cavity;
   mesh.NumberCells(change.FirstCell, cavity);
-  this->Mesh.Restore(change.Point, change.Position, cavity);
+  mesh.Restore(change.Point, change.Position, cavity);
+  this->Mesh.NoteMove(change.Point);
 }
 
 bool Perturbation::Mend(std::size_t i)
@@ -165,11 +166,14 @@ ExecutionContext GetPass(const ExecutionContext& context, int pass, int numberOf
 /** Requests a split of the boundary that is in the way of a sliver. */
 void RequestSplit(Id sliver, RefinedMesh& mesh)
 {
+  if (mesh.GetRequests().AddEdgeOfTwoTriangles(
+        mesh.GetMesh().Tetrahedra[sliver], mesh.GetShape().PointTriangles))
+  {
+    return;
+  }
   const auto [a, b, c, d] = mesh.GetTetrahedra().GetCorners(sliver);
   const Vec3 center = GetCircumcenter(a, b, c, d);
-  if (!mesh.GetRequests().AddEdgeOfTwoTriangles(
-        mesh.GetMesh().Tetrahedra[sliver], mesh.GetShape().PointTriangles) &&
-    IsFinite(center))
+  if (IsFinite(center))
   {
     mesh.RequestEncroached(center, true);
   }
@@ -239,7 +243,7 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
 
 Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh& mesh)
 {
-  // Those just above the target stay: to move them, too, took longer and mended no more.
+  // Tetrahedra just above the target stay: to improve them, too, took longer and mended no more.
   const SliverAim aim{ target, SliverPlace::SharpAngle };
   Perturbation perturbation(aim, mesh);
   bool isWorthwhile = true;

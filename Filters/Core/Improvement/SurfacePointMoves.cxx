@@ -61,7 +61,7 @@ std::vector<Vec3> MakeDirections(const Vec3& axis, bool isLine)
   return directions;
 }
 
-/** Those along a coordinate axis are exact: a factor of 1 / norm would be rounded. */
+/** Unit vectors along a coordinate axis are exact: a factor of 1 / norm would be rounded. */
 Vec3 GetUnitVector(const Vec3& v)
 {
   const double norm = Norm(v);

@@ -153,7 +153,7 @@ private:
   const Rules Given;
   /** Triangles count as coplanar if they deviate by less than this. Model units. */
   double Flatness = 0.0;
-  /** Those of hubs, by the point, and that of the last other point. */
+  /** Neighborhoods of hubs, by the point, and of the last other point. */
   std::unordered_map<Id, Neighborhood> Hubs;
   Neighborhood Last;
   /** Work space for one position: the tetrahedra that it changes. */

@@ -139,7 +139,7 @@ struct ConformingMesherOutput
   MeshCertificate Certificate;
   /** Findings about the polygons, also of a run that failed. */
   std::vector<SurfaceProblem> Problems;
-  /** Those of all stages; cells are polygons of the input. */
+  /** Warnings of all stages; cells are polygons of the input. */
   std::vector<Warning> Warnings;
 };
 

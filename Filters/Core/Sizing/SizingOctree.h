@@ -109,7 +109,7 @@ private:
   };
   /** Adds the neighbors of a leaf that are too coarse for it; the stack is work space. */
   void RequestSplits(Id index, std::vector<Id>& stack, std::vector<SplitRequest>& requests) const;
-  /** Those of the active leaves, of which only leaves with requests stay; false if aborted. */
+  /** Collects the requests of active leaves, of which only those with requests stay; false if aborted. */
   bool CollectRequests(const ExecutionContext& context, std::vector<Id>& active,
     std::vector<SplitRequest>& requests) const;
   Status SplitRequested(std::vector<SplitRequest>& requests);

@@ -373,7 +373,7 @@ private:
   bool IsSettled = false;
   /** Whether the facets of the last attempt were plane but for rounding. */
   bool HasRoundedFacets = false;
-  /** Those that gave up at needles, with few points. */
+  /** Ways that gave up at needles, with few points. */
   std::set<ThinWay> StoppedByNeedles;
   double Begin = 0.0;
 };
