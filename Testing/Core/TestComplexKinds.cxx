@@ -274,6 +274,7 @@ void RefineComplexes(ComplexKind kind, std::uint64_t usualCount, std::uint64_t u
 {
   const std::uint64_t first = GetFromEnvironment("CDM_FIRST_SEED", usualFirst);
   const std::uint64_t count = GetFromEnvironment("CDM_STEINER_COMPLEXES", usualCount);
+  const bool isUnplaced = GetFromEnvironment("CDM_UNPLACED", 0) != 0;
   for (const SurfaceCriterion criterion :
     { SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
   {
@@ -281,8 +282,9 @@ void RefineComplexes(ComplexKind kind, std::uint64_t usualCount, std::uint64_t u
     for (std::uint64_t seed = first; seed < first + count; ++seed)
     {
       BoundaryTriangulatorOutput triangulated;
-      if (!TriangulateBoundary(ComplexMaker(kind, seed).Make(), {}, {}, triangulated).IsOk() ||
-        triangulated.Surface.Triangles.empty())
+      const bool isMade = isUnplaced ? MakeUnplaced(kind, seed, triangulated)
+                                     : MakePlaced(kind, seed, triangulated);
+      if (!isMade)
       {
         continue;
       }
