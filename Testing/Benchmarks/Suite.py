@@ -42,7 +42,7 @@ from vtkmodules.vtkIOXML import (
 
 # A program that has used this much on an input is not repeated there. Models are many.
 REPEAT_SECONDS = 4.0
-REPEAT_SECONDS_MODEL = 1.0
+REPEAT_SECONDS_MODEL = 3.0
 VOLUME_TOLERANCE = 1e-6
 # By how much of their size polygons may leave their plane: the default of its switch -T.
 TETGEN_TOLERANCE = 1e-8
