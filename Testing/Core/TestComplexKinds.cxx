@@ -11,6 +11,7 @@
 #include "Core/Improvement/SteinerPointRefiner.h"
 #include "Core/Repair/BoundaryTriangulator.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
+#include "Core/Surface/StructuralEdges.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
 
 #include <gtest/gtest.h>
@@ -243,8 +244,18 @@ void RefineComplex(const TriangleMesh& surface, const SteinerPointRefinerOptions
   SteinerPointRefinerInput steinerInput;
   steinerInput.Mesh = &mesh.Mesh;
   steinerInput.Boundary = &mesh.Boundary;
+  // As the composite filter does: facets that were plane stay what they were, however they are rounded.
+  SteinerPointRefinerOptions steinerOptions = options;
+  const std::vector<Id> facets =
+    NumberFacets(SortEdgeUses(refined.Surface.Triangles, refined.Surface.Points.size()),
+      refined.StructuralEdges);
+  for (const Id triangle : mesh.Boundary.SourceCells)
+  {
+    steinerOptions.StructuralEdges.Facets.push_back(facets[triangle]);
+  }
   SteinerPointRefinerOutput output;
-  const Status status = RefineBySteinerPoints(steinerInput, options, MakeTimedContext(), output);
+  const Status status =
+    RefineBySteinerPoints(steinerInput, steinerOptions, MakeTimedContext(), output);
   if (status.IsAborted())
   {
     counts.Late.push_back(seed);
@@ -282,8 +293,8 @@ void RefineComplexes(ComplexKind kind, std::uint64_t usualCount, std::uint64_t u
     for (std::uint64_t seed = first; seed < first + count; ++seed)
     {
       BoundaryTriangulatorOutput triangulated;
-      const bool isMade = isUnplaced ? MakeUnplaced(kind, seed, triangulated)
-                                     : MakePlaced(kind, seed, triangulated);
+      const bool isMade =
+        isUnplaced ? MakeUnplaced(kind, seed, triangulated) : MakePlaced(kind, seed, triangulated);
       if (!isMade)
       {
         continue;
@@ -591,6 +602,28 @@ TEST(ComplexKinds, ManySliversAtFewPoints)
   SteinerCounts counts;
   RefineComplex(triangulated.Surface, options, 3145, counts);
   EXPECT_EQ(counts.Fulfilled, 1);
+}
+
+/**
+ * Fans 8,000 and 200,000 times their size away from the origin. Their facets are refined for 3.2, and bend
+ * by what new points are rounded. As long as nobody said that they were plane, 3.2 was missed with Steiner
+ * points.
+ */
+TEST(ComplexKinds, FacetsFarFromTheOriginAreKnown)
+{
+  for (const std::uint64_t seed : { 6337, 6475 })
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    BoundaryTriangulatorOutput triangulated;
+    ASSERT_TRUE(MakePlaced(ComplexKind::Fan, seed, triangulated));
+    SteinerPointRefinerOptions options;
+    options.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
+    options.RadiusEdgeRatio = 1.4;
+    options.DihedralAngleTarget = 20.0;
+    SteinerCounts counts;
+    RefineComplex(triangulated.Surface, options, seed, counts);
+    EXPECT_EQ(counts.Fulfilled, 1);
+  }
 }
 
 /**

@@ -2,6 +2,7 @@
 // Plane facets whose points were rounded in a file, and curved facets that bend as little.
 #include "Core/Geometry/Measures.h"
 #include "Core/Meshes/EdgeUses.h"
+#include "Core/Meshes/SurfaceArea.h"
 #include "Core/Pipeline/ConformingMesher.h"
 #include "Core/Pipeline/RegionVolumes.h"
 #include "Core/Surface/FlatFacets.h"
@@ -292,6 +293,25 @@ TEST(FlatFacets, StayWhenTheSurfaceIsRefined)
       EXPECT_EQ(edges[e].Points, refined.StructuralEdges[e].Points);
     }
   }
+}
+
+/**
+ * A square 200 million times its size away from the origin, refined by a point on one side. Rounding has
+ * lifted that by one unit in the last place, so that one triangle is upright. Its facet is known.
+ */
+TEST(FlatFacets, RoundingMayTurnTrianglesOfKnownFacets)
+{
+  const double unit = std::ldexp(1.0, -25);
+  const double place = 2e8;
+  TriangleMesh square;
+  square.Points = { { place, place, place }, { place + 1.0, place, place },
+    { place + 1.0, place + 1.0, place }, { place, place + 1.0, place },
+    { place + 0.5, place, place + unit } };
+  square.Triangles = { { 0, 1, 4 }, { 0, 4, 3 }, { 4, 1, 2 }, { 4, 2, 3 } };
+  EXPECT_EQ(GetAreaVector(square, square.Triangles[0]).Z, 0.0);
+  StructuralEdgeOptions known;
+  known.Facets.assign(square.Triangles.size(), 0);
+  EXPECT_EQ(Extract(square, known).size(), 4u);
 }
 
 /** What rounding costs: no sliver, and few more tetrahedra than the box has as it was drawn. */

@@ -7,6 +7,7 @@
 #define cdmVec3_h
 
 #include <cmath>
+#include <limits>
 
 namespace cdm
 {
@@ -64,6 +65,15 @@ inline double Norm(const Vec3& a)
 inline double SumNorm(const Vec3& a)
 {
   return std::abs(a.X) + std::abs(a.Y) + std::abs(a.Z);
+}
+
+/**
+ * More than the distance by which rounding moves a point whose coordinates are computed as one sum: far
+ * from the origin that may be as much as things there are large.
+ */
+inline double GetRounding(const Vec3& position)
+{
+  return 2.0 * std::numeric_limits<double>::epsilon() * SumNorm(position);
 }
 
 inline double Distance(const Vec3& a, const Vec3& b)

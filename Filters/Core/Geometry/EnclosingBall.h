@@ -11,6 +11,7 @@
 #ifndef cdmEnclosingBall_h
 #define cdmEnclosingBall_h
 
+#include "Core/Basics/Types.h"
 #include "Core/Basics/Vec3.h"
 
 #include <algorithm>
@@ -49,8 +50,11 @@ public:
       Dot(uv, w), SumNorm(u) * SumNorm(v) * SumNorm(w), SumNorm(u) + SumNorm(v) + SumNorm(w));
   }
 
-  /** False: nothing can be told. */
+  /** False: it may be much larger than the sphere, or nothing can be told at all. */
   bool IsUsable() const { return this->Usable; }
+  const Vec3& GetCenter() const { return this->Center; }
+  /** Whether it is usable or not; infinity where nothing can be told. */
+  double GetRadius() const { return this->Radius; }
   /** False only if no point of the box lies inside or on the circumsphere. */
   bool MayTouch(const Vec3& lower, const Vec3& upper) const
   {
@@ -75,6 +79,8 @@ private:
   static constexpr double Wider = 1.0 + 1e-12;
   /** The largest error of the center, in radii, with which the ball leaves few points. */
   static constexpr double LargestError = 1e-7;
+  /** The largest error of the denominator, as part of it, with which there is a ball. */
+  static constexpr double LargestPart = 0.25;
   /** Below this, digits may have been lost to underflow. */
   static constexpr double SmallestDenominator = 1e-280;
 
@@ -92,15 +98,17 @@ private:
     this->Center = origin + offset;
     // The products are off by less than 24 roundings each, the sum by one; the bound is more than
     // twice as large.
-    const double error = 64.0 * Roundoff * product * std::abs(half) * (lengths + SumNorm(offset)) +
-      4.0 * Roundoff * SumNorm(this->Center);
+    const double part = 64.0 * Roundoff * product * std::abs(half);
+    const double error = part * (lengths + SumNorm(offset)) + GetRounding(this->Center);
     const double radius = Norm(offset);
-    const double outer = Wider * (radius + 2.0 * error);
-    this->SquaredRadius = Wider * outer * outer;
+    const bool isKnown = part < LargestPart && denominator > SmallestDenominator;
+    this->Radius = isKnown ? Wider * (radius + 2.0 * error) : Infinity;
+    this->SquaredRadius = Wider * this->Radius * this->Radius;
     this->Usable = error < LargestError * radius && denominator > SmallestDenominator;
   }
 
   Vec3 Center;
+  double Radius;
   double SquaredRadius;
   bool Usable;
 };

@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/BoundarySpheres.h"
 
-#include "Core/Geometry/Measures.h"
+#include "Core/Geometry/EnclosingBall.h"
 #include "Core/Geometry/Predicates.h"
 
 #include <algorithm>
 
 namespace cdm
 {
-namespace
-{
-/**
- * Balls are enlarged by this, as their centers and radii are rounded: the exact test has to see all
- * candidates.
- */
-constexpr double Margin = 1.0 + 1e-6;
-} // namespace
-
 BoundarySpheres::BoundarySpheres(
   const TriangleMesh& surface, const std::vector<StructuralEdge>& edges)
   : Surface(surface), Edges(edges)
@@ -36,17 +27,16 @@ BoundarySpheres::BoundarySpheres(
 void BoundarySpheres::SetTriangle(Id triangle)
 {
   const TriangleIds& ids = this->Surface.Triangles[triangle];
-  const Vec3& a = this->Surface.Points[ids[0]];
-  const Vec3 offset =
-    GetCircumcenterOffset(a, this->Surface.Points[ids[1]], this->Surface.Points[ids[2]]);
-  this->Balls.Set(2 * triangle, a + offset, Margin * Norm(offset));
+  const std::vector<Vec3>& points = this->Surface.Points;
+  const EnclosingBall ball(points[ids[0]], points[ids[1]], points[ids[2]]);
+  this->Balls.Set(2 * triangle, ball.GetCenter(), ball.GetRadius());
 }
 
 void BoundarySpheres::SetEdge(Id edge, Id segment)
 {
-  const Vec3& a = this->Surface.Points[this->Edges[edge].Points[0]];
-  const Vec3& b = this->Surface.Points[this->Edges[edge].Points[1]];
-  this->Balls.Set(2 * segment + 1, 0.5 * (a + b), 0.5 * Margin * Distance(a, b));
+  const EdgeIds& ends = this->Edges[edge].Points;
+  const EnclosingBall ball(this->Surface.Points[ends[0]], this->Surface.Points[ends[1]]);
+  this->Balls.Set(2 * segment + 1, ball.GetCenter(), ball.GetRadius());
 }
 
 void BoundarySpheres::Follow(const std::vector<Id>& triangles, const std::vector<Id>& changedEdges,

@@ -66,7 +66,7 @@ private:
 
   const TriangleMesh& Surface;
   const std::vector<StructuralEdge>& Edges;
-  /** Balls around triangles t (2 t) and segments s (2 s + 1), a little too large. */
+  /** Balls that enclose the spheres of triangles t (2 t) and segments s (2 s + 1). */
   BallIndex Balls;
   /** The edge of each segment. */
   std::vector<Id> SegmentEdges;

@@ -28,7 +28,10 @@ namespace cdm
 class BallIndex
 {
 public:
-  /** Add a ball under an id, or replace the one it had. An infinite radius holds every point. */
+  /**
+   * Add a ball under an id, or replace the one it had. An infinite radius holds every point. The ball is
+   * made larger by what its center is rounded by: far from the origin that may be most of its radius.
+   */
   void Set(Id id, const Vec3& center, double radius);
 
   void Remove(Id id);

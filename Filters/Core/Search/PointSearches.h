@@ -64,7 +64,7 @@ class DiametralSphereVisitor
 public:
   DiametralSphereVisitor(const std::vector<Vec3>& points, const EdgeIds& edge)
     : Edge(edge), A(points[edge[0]]), B(points[edge[1]]), Center(0.5 * (this->A + this->B)),
-      Reach(0.5 * Distance(this->A, this->B) * (1.0 + 1e-9))
+      Reach(0.5 * Distance(this->A, this->B) * (1.0 + 1e-9) + GetRounding(this->Center))
   {
   }
 

@@ -52,9 +52,10 @@ public:
 
   /**
    * Unites triangles where a condition holds for a pair of them. False if it holds for none.
+   * @param mayBeTurned whether triangles may be turned from the plane of their facet
    */
   template <typename Condition>
-  bool FindPlaneFacets(double tolerance, const Condition& areUnited);
+  bool FindPlaneFacets(double tolerance, bool mayBeTurned, const Condition& areUnited);
   bool AreFlat(const UsePair& pair, double tolerance) const;
   void FindRoundedEdges();
   std::vector<char> TakeFlatEdges() { return std::move(this->IsFlat); }
@@ -156,7 +157,7 @@ bool FlatFacets::AreFlat(const UsePair& pair, double tolerance) const
 }
 
 template <typename Condition>
-bool FlatFacets::FindPlaneFacets(double tolerance, const Condition& areUnited)
+bool FlatFacets::FindPlaneFacets(double tolerance, bool mayBeTurned, const Condition& areUnited)
 {
   DisjointSets sets(this->IsPlane.size());
   bool isAny = false;
@@ -180,8 +181,9 @@ bool FlatFacets::FindPlaneFacets(double tolerance, const Condition& areUnited)
     const Id first = this->Pairs[i].first / 3;
     const Id second = this->Pairs[i].second / 3;
     const Facet& facet = measured[facets[first]];
-    if (facets[first] == facets[second] && this->IsOpen(this->Pairs[i]) && !facet.IsTurned &&
-      facet.Highest - facet.Lowest <= 2.0 * tolerance)
+    const bool isPlane =
+      (mayBeTurned || !facet.IsTurned) && facet.Highest - facet.Lowest <= 2.0 * tolerance;
+    if (facets[first] == facets[second] && this->IsOpen(this->Pairs[i]) && isPlane)
     {
       this->IsFlat[i] = 1;
       found.insert(found.end(), { first, second });
@@ -217,11 +219,12 @@ std::vector<char> FindFlatEdges(
   double tolerance = options.Tolerance;
   if (options.AreFacetsKnown)
   {
-    facets.FindPlaneFacets(KnownFacetRatio * tolerance, [](const UsePair&) { return true; });
+    // Rounding turns triangles that are as narrow as it is.
+    facets.FindPlaneFacets(KnownFacetRatio * tolerance, true, [](const UsePair&) { return true; });
   }
   while (tolerance > last &&
     facets.FindPlaneFacets(
-      tolerance, [&](const UsePair& pair) { return facets.AreFlat(pair, tolerance); }))
+      tolerance, false, [&](const UsePair& pair) { return facets.AreFlat(pair, tolerance); }))
   {
     tolerance *= ToleranceStep;
   }
