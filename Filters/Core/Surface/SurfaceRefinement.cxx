@@ -494,7 +494,8 @@ bool SurfaceRefinement::ResolveByFlip(Id t)
     const Id b = ids[(use % 3 + 1) % 3];
     const Id c = this->Surface->GetApex(use);
     const Id d = this->Surface->GetApex(other);
-    if (Distance(center, this->Points[d]) > CocircularRadii * Distance(center, this->Points[a]))
+    if (Distance(center, this->Points[d]) >
+      CocircularRadii * Distance(center, this->Points[a]) + 2.0 * GetRounding(center))
     {
       continue;
     }
