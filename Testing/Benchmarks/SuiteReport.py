@@ -105,9 +105,10 @@ def FormatShare(count, all_of_them):
 def GetCells(result, ours, kind):
     """The cells of a row after the name of the program."""
     seconds = GetMedian(result, "seconds")
-    if seconds is None:
-        return [result["runs"][-1]["status"]]
     certificate = result["certificate"]
+    # TetGen may make a mesh once, and crash the next time.
+    if seconds is None or not certificate:
+        return [result["runs"][-1]["status"]]
     reference = GetMedian(ours, "seconds")
     isLong = reference is not None and max(seconds, reference) >= SHORTEST
     cells = ["%.3f" % seconds,
