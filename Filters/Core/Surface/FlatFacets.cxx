@@ -52,10 +52,10 @@ public:
 
   /**
    * Unites triangles where a condition holds for a pair of them. False if it holds for none.
-   * @param mayBeTurned whether triangles may be turned from the plane of their facet
+   * @param areKnown whether the facets are known: triangles as narrow as rounding may be turned there
    */
   template <typename Condition>
-  bool FindPlaneFacets(double tolerance, bool mayBeTurned, const Condition& areUnited);
+  bool FindPlaneFacets(double tolerance, bool areKnown, const Condition& areUnited);
   bool AreFlat(const UsePair& pair, double tolerance) const;
   void FindRoundedEdges();
   std::vector<char> TakeFlatEdges() { return std::move(this->IsFlat); }
@@ -76,7 +76,8 @@ private:
   }
   void Orient();
   Vec3 GetNormal(Id triangle) const;
-  std::vector<Facet> MeasureFacets(const std::vector<Id>& facets) const;
+  bool IsNarrow(Id triangle) const;
+  std::vector<Facet> MeasureFacets(const std::vector<Id>& facets, bool areKnown) const;
 
   const TriangleMesh& Surface;
   const std::vector<UsePair>& Pairs;
@@ -114,8 +115,23 @@ Vec3 FlatFacets::GetNormal(Id triangle) const
   return this->IsReversed[triangle] != 0 ? -1.0 * normal : normal;
 }
 
-/** @param facets the smallest triangle of each triangle's facet */
-std::vector<FlatFacets::Facet> FlatFacets::MeasureFacets(const std::vector<Id>& facets) const
+/** Whether a triangle is no wider than its points are rounded. */
+bool FlatFacets::IsNarrow(Id triangle) const
+{
+  const TriangleIds& ids = this->Surface.Triangles[triangle];
+  const Vec3& a = this->Surface.Points[ids[0]];
+  const Vec3& b = this->Surface.Points[ids[1]];
+  const Vec3& c = this->Surface.Points[ids[2]];
+  const double longest = std::max({ Distance(a, b), Distance(b, c), Distance(c, a) });
+  return Norm(Cross(b - a, c - a)) <= GetRounding(a) * longest;
+}
+
+/**
+ * @param facets the smallest triangle of each triangle's facet
+ * @param areKnown whether narrow triangles may be turned
+ */
+std::vector<FlatFacets::Facet> FlatFacets::MeasureFacets(
+  const std::vector<Id>& facets, bool areKnown) const
 {
   const Id count = static_cast<Id>(facets.size());
   std::vector<Facet> measured(facets.size());
@@ -130,7 +146,8 @@ std::vector<FlatFacets::Facet> FlatFacets::MeasureFacets(const std::vector<Id>& 
     const double norm = Norm(facet.Normal);
     const Vec3 normal = this->GetNormal(t);
     facet.IsTurned = facet.IsTurned || !(norm > 0.0) ||
-      Dot(normal, facet.Normal) < LeastCosine * Norm(normal) * norm;
+      (Dot(normal, facet.Normal) < LeastCosine * Norm(normal) * norm &&
+        !(areKnown && this->IsNarrow(t)));
     const Vec3& origin = this->Surface.Points[this->Surface.Triangles[facets[t]][0]];
     for (Id id : this->Surface.Triangles[t])
     {
@@ -157,7 +174,7 @@ bool FlatFacets::AreFlat(const UsePair& pair, double tolerance) const
 }
 
 template <typename Condition>
-bool FlatFacets::FindPlaneFacets(double tolerance, bool mayBeTurned, const Condition& areUnited)
+bool FlatFacets::FindPlaneFacets(double tolerance, bool areKnown, const Condition& areUnited)
 {
   DisjointSets sets(this->IsPlane.size());
   bool isAny = false;
@@ -174,16 +191,15 @@ bool FlatFacets::FindPlaneFacets(double tolerance, bool mayBeTurned, const Condi
     return false;
   }
   const std::vector<Id> facets = sets.TakeNames();
-  const std::vector<Facet> measured = this->MeasureFacets(facets);
+  const std::vector<Facet> measured = this->MeasureFacets(facets, areKnown);
   std::vector<Id> found;
   for (std::size_t i = 0; i < this->Pairs.size(); ++i)
   {
     const Id first = this->Pairs[i].first / 3;
     const Id second = this->Pairs[i].second / 3;
     const Facet& facet = measured[facets[first]];
-    const bool isPlane =
-      (mayBeTurned || !facet.IsTurned) && facet.Highest - facet.Lowest <= 2.0 * tolerance;
-    if (facets[first] == facets[second] && this->IsOpen(this->Pairs[i]) && isPlane)
+    if (facets[first] == facets[second] && this->IsOpen(this->Pairs[i]) && !facet.IsTurned &&
+      facet.Highest - facet.Lowest <= 2.0 * tolerance)
     {
       this->IsFlat[i] = 1;
       found.insert(found.end(), { first, second });
@@ -219,7 +235,6 @@ std::vector<char> FindFlatEdges(
   double tolerance = options.Tolerance;
   if (options.AreFacetsKnown)
   {
-    // Rounding turns triangles that are as narrow as it is.
     facets.FindPlaneFacets(KnownFacetRatio * tolerance, true, [](const UsePair&) { return true; });
   }
   while (tolerance > last &&

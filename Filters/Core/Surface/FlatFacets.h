@@ -19,8 +19,8 @@
  *     triangles of the facet are flat;
  *  4. what is not plane is tried again with a tenth of the tolerance, until that would be less than
  *     the rounding of double precision. There each edge counts by itself (IsSmoothEdge()).
- * Known facets, of a surface that has been refined since, are looked at first, as a whole. Triangles may
- * be turned in these: far from the origin some are as narrow as their coordinates are rounded.
+ * Known facets, of a surface that has been refined since, are looked at first, as a whole. Far from the
+ * origin triangles may be no wider than their coordinates are rounded: these may be turned there.
  *
  * Guarantees: deterministic; no edge is flat whose facet is off its plane by more than the
  * tolerance, but for edges that are flat to RoundedFlatnessRatio.
