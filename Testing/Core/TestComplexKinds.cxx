@@ -123,6 +123,13 @@ bool MakePlaced(ComplexKind kind, std::uint64_t seed, BoundaryTriangulatorOutput
     !triangulated.Surface.Triangles.empty();
 }
 
+/** A complex, as it is made if CDM_UNPLACED asks for that; whether it is one. */
+bool MakeAsAsked(ComplexKind kind, std::uint64_t seed, BoundaryTriangulatorOutput& triangulated)
+{
+  return GetFromEnvironment("CDM_UNPLACED", 0) != 0 ? MakeUnplaced(kind, seed, triangulated)
+                                                    : MakePlaced(kind, seed, triangulated);
+}
+
 /** ExpectStrongerFulfilled() for a complex as it is made. */
 void ExpectUnplacedFulfilled(ComplexKind kind, std::uint64_t seed, std::size_t pointBound)
 {
@@ -149,13 +156,10 @@ KindCounts MeshComplexes(ComplexKind kind, std::uint64_t usualCount, std::uint64
   KindCounts counts;
   const std::uint64_t first = GetFromEnvironment("CDM_FIRST_SEED", usualFirst);
   const std::uint64_t count = GetFromEnvironment("CDM_COMPLEXES", usualCount);
-  const bool isUnplaced = GetFromEnvironment("CDM_UNPLACED", 0) != 0;
   for (std::uint64_t seed = first; seed < first + count; ++seed)
   {
     BoundaryTriangulatorOutput triangulated;
-    const bool isMade =
-      isUnplaced ? MakeUnplaced(kind, seed, triangulated) : MakePlaced(kind, seed, triangulated);
-    if (!isMade)
+    if (!MakeAsAsked(kind, seed, triangulated))
     {
       // All is outside, or what is thin intersects itself when it is turned and rounded.
       continue;
@@ -244,7 +248,7 @@ void RefineComplex(const TriangleMesh& surface, const SteinerPointRefinerOptions
   SteinerPointRefinerInput steinerInput;
   steinerInput.Mesh = &mesh.Mesh;
   steinerInput.Boundary = &mesh.Boundary;
-  // As the composite filter does: facets that were plane stay what they were, however they are rounded.
+  // Facets that were plane stay plane however new points are rounded: the composite filter hands them over, too.
   SteinerPointRefinerOptions steinerOptions = options;
   const std::vector<Id> facets =
     NumberFacets(SortEdgeUses(refined.Surface.Triangles, refined.Surface.Points.size()),
@@ -280,12 +284,32 @@ void RefineComplex(const TriangleMesh& surface, const SteinerPointRefinerOptions
   }
 }
 
+/** RefineComplex(), where the criterion has to be fulfilled. Returns the new points on the boundary. */
+Id ExpectRefinedFulfilled(
+  const TriangleMesh& surface, const SteinerPointRefinerOptions& options, std::uint64_t seed)
+{
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  SteinerCounts counts;
+  RefineComplex(surface, options, seed, counts);
+  EXPECT_EQ(counts.Fulfilled, 1);
+  return counts.BoundaryPoints;
+}
+
+/** Criterion 3.2, ratio 1.4 and 20 degrees. */
+SteinerPointRefinerOptions MakeStrictOptions()
+{
+  SteinerPointRefinerOptions options;
+  options.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
+  options.RadiusEdgeRatio = 1.4;
+  options.DihedralAngleTarget = 20.0;
+  return options;
+}
+
 /** Ratios of 2, 1.4 and 1.2, angles of 15 and 20 degrees, in turns; both stronger criteria. */
 void RefineComplexes(ComplexKind kind, std::uint64_t usualCount, std::uint64_t usualFirst = 1)
 {
   const std::uint64_t first = GetFromEnvironment("CDM_FIRST_SEED", usualFirst);
   const std::uint64_t count = GetFromEnvironment("CDM_STEINER_COMPLEXES", usualCount);
-  const bool isUnplaced = GetFromEnvironment("CDM_UNPLACED", 0) != 0;
   for (const SurfaceCriterion criterion :
     { SurfaceCriterion::SmallestSphere, SurfaceCriterion::SmallestSphereAndEdges })
   {
@@ -293,9 +317,7 @@ void RefineComplexes(ComplexKind kind, std::uint64_t usualCount, std::uint64_t u
     for (std::uint64_t seed = first; seed < first + count; ++seed)
     {
       BoundaryTriangulatorOutput triangulated;
-      const bool isMade =
-        isUnplaced ? MakeUnplaced(kind, seed, triangulated) : MakePlaced(kind, seed, triangulated);
-      if (!isMade)
+      if (!MakeAsAsked(kind, seed, triangulated))
       {
         continue;
       }
@@ -575,15 +597,11 @@ TEST(ComplexKinds, FacetsWithACommonCornerTakeFewSteinerPoints)
 {
   for (const std::uint64_t seed : { 3013, 3023 })
   {
-    SCOPED_TRACE("seed " + std::to_string(seed));
     BoundaryTriangulatorOutput triangulated;
-    ASSERT_TRUE(MakeUnplaced(ComplexKind::CubeTetrahedra, seed, triangulated));
+    ASSERT_TRUE(MakeUnplaced(ComplexKind::CubeTetrahedra, seed, triangulated)) << seed;
     SteinerPointRefinerOptions options;
     options.RadiusEdgeRatio = 2.0;
-    SteinerCounts counts;
-    RefineComplex(triangulated.Surface, options, seed, counts);
-    EXPECT_EQ(counts.Fulfilled, 1);
-    EXPECT_LT(counts.BoundaryPoints, 5000);
+    EXPECT_LT(ExpectRefinedFulfilled(triangulated.Surface, options, seed), 5000) << seed;
   }
 }
 
@@ -595,13 +613,7 @@ TEST(ComplexKinds, ManySliversAtFewPoints)
 {
   BoundaryTriangulatorOutput triangulated;
   ASSERT_TRUE(MakeUnplaced(ComplexKind::CubeTetrahedra, 3145, triangulated));
-  SteinerPointRefinerOptions options;
-  options.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
-  options.RadiusEdgeRatio = 1.4;
-  options.DihedralAngleTarget = 20.0;
-  SteinerCounts counts;
-  RefineComplex(triangulated.Surface, options, 3145, counts);
-  EXPECT_EQ(counts.Fulfilled, 1);
+  ExpectRefinedFulfilled(triangulated.Surface, MakeStrictOptions(), 3145);
 }
 
 /**
@@ -613,16 +625,9 @@ TEST(ComplexKinds, FacetsFarFromTheOriginAreKnown)
 {
   for (const std::uint64_t seed : { 6337, 6475 })
   {
-    SCOPED_TRACE("seed " + std::to_string(seed));
     BoundaryTriangulatorOutput triangulated;
-    ASSERT_TRUE(MakePlaced(ComplexKind::Fan, seed, triangulated));
-    SteinerPointRefinerOptions options;
-    options.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
-    options.RadiusEdgeRatio = 1.4;
-    options.DihedralAngleTarget = 20.0;
-    SteinerCounts counts;
-    RefineComplex(triangulated.Surface, options, seed, counts);
-    EXPECT_EQ(counts.Fulfilled, 1);
+    ASSERT_TRUE(MakePlaced(ComplexKind::Fan, seed, triangulated)) << seed;
+    ExpectRefinedFulfilled(triangulated.Surface, MakeStrictOptions(), seed);
   }
 }
 

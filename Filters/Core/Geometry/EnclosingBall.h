@@ -104,7 +104,7 @@ private:
     const bool isKnown = part < LargestPart && denominator > SmallestDenominator;
     this->Radius = isKnown ? Wider * (radius + 2.0 * error) : Infinity;
     this->SquaredRadius = Wider * this->Radius * this->Radius;
-    this->Usable = error < LargestError * radius && denominator > SmallestDenominator;
+    this->Usable = isKnown && error < LargestError * radius;
   }
 
   Vec3 Center;

@@ -134,7 +134,7 @@ void BallIndex::Set(Id id, const Vec3& center, double radius)
   {
     this->Places.resize(static_cast<std::size_t>(id) + 1);
   }
-  const Ball ball{ center, radius + GetRounding(center), id };
+  const Ball ball{ center, radius, id };
   if (this->Slots.empty())
   {
     this->Places[id].Index = static_cast<Id>(this->Waiting.size());

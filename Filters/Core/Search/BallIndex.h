@@ -29,8 +29,8 @@ class BallIndex
 {
 public:
   /**
-   * Add a ball under an id, or replace the one it had. An infinite radius holds every point. The ball is
-   * made larger by what its center is rounded by: far from the origin that may be most of its radius.
+   * Add a ball under an id, or replace the one it had. An infinite radius holds every point. A ball that
+   * is to enclose a sphere has to be larger by what its center is rounded by (EnclosingBall.h).
    */
   void Set(Id id, const Vec3& center, double radius);
 

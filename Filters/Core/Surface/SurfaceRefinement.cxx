@@ -4,6 +4,7 @@
 #include "Core/Basics/IdLimits.h"
 #include "Core/Basics/ParallelLoop.h"
 #include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/EnclosingBall.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Surface/SurfaceChecks.h"
@@ -672,7 +673,8 @@ void SurfaceRefinement::ProcessEdge()
   const Id encroaching = this->FindDeepestPoint(ends);
   if (encroaching == NoId)
   {
-    this->EmptyEdges.Set(segment, 0.5 * (a + b), 0.5 * length * (1.0 + 1e-6));
+    const EnclosingBall ball(a, b);
+    this->EmptyEdges.Set(segment, ball.GetCenter(), ball.GetRadius());
     return;
   }
   this->CollectIncidences();

@@ -3,6 +3,7 @@
 #include "Core/Surface/SurfaceRefinement.h"
 
 #include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/EnclosingBall.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 
@@ -126,9 +127,8 @@ void SurfaceRefinement::NoteSegment(Id segment)
   if (this->Plan.Rules == MatchingRules::Stacks)
   {
     const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
-    const Vec3& a = this->Points[ends[0]];
-    const Vec3& b = this->Points[ends[1]];
-    this->SegmentBalls.Set(segment, 0.5 * (a + b), 0.5 * Distance(a, b));
+    const EnclosingBall ball(this->Points[ends[0]], this->Points[ends[1]]);
+    this->SegmentBalls.Set(segment, ball.GetCenter(), ball.GetRadius());
   }
 }
 
