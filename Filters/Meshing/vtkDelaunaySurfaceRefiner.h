@@ -33,7 +33,9 @@
  *
  * Failure: an error that names the cells or points, and empty outputs, for an empty input, cells
  * that are not triangles, coordinates that are not finite, or a surface that intersects itself.
- * Triangles that a limit leaves unresolved give a warning and the array Unresolved.
+ * Triangles that a limit leaves unresolved give a warning and the array Unresolved. They can be meshed
+ * whatever the limits are: points that this needs beyond MaximumNewPoints and MinimumEdgeRatio are
+ * counted in a warning.
  *
  * Cost: about proportional to the points made, each with a search in an octree.
  *
@@ -127,9 +129,10 @@ public:
 
   ///@{
   /**
-   * No edge is made shorter: a guard against endless refinement. Far from the origin, where coordinates
-   * are rounded farther, 8 times their rounding is the limit. Points of different sheets may be closer
-   * to each other. Ratio of the bounding box diagonal; default 1e-12; range 0 to 1.
+   * No edge is made shorter, unless there is no mesh without it: a guard against endless refinement. Far
+   * from the origin, where coordinates are rounded farther, 8 times their rounding is the limit. Points of
+   * different sheets may be closer to each other. Ratio of the bounding box diagonal; default 1e-12; range
+   * 0 to 1.
    */
   vtkSetInRangeMacro(MinimumEdgeRatio, double, 0.0, 1.0, "ratio of the bounding box diagonal");
   vtkGetMacro(MinimumEdgeRatio, double);
@@ -137,7 +140,7 @@ public:
 
   ///@{
   /**
-   * The refinement stops when it has made so many points. Default 0: 50 for each triangle, at
+   * The refinement stops when it has made so many points, unless there is no mesh without more. Default 0: 50 for each triangle, at
    * least 200000, or 1000000 where sizes or angles are asked for, and one for each mesh point;
    * range >= 0. Surfaces that need more have sheets a hair apart that run into each other.
    */

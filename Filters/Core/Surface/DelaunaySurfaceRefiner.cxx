@@ -36,6 +36,8 @@ constexpr std::size_t MostInStacks = 400000;
 /** The largest numbers of tests of needles (SurfaceRefinementPlan) in thin layers, at first and at last. */
 constexpr std::size_t MostNeedlesInThinLayers = 5000;
 constexpr std::size_t MostNeedlesAtLast = 100000;
+/** Of the lengths below which the criterion may be missed, each is this part of the one before. */
+constexpr double RelaxedLengthPart = 0.2;
 
 /** One attempt to refine the surface, by one plan. */
 class SurfaceRefiner
@@ -62,10 +64,15 @@ public:
     return this->Refinement && this->Refinement->HasTooManyNeedles();
   }
 
-  /** Whether no limit was reached: all triangles are as the plan wants them. */
+  /**
+   * Whether no limit was reached: all triangles are as the plan wants them. A plan that goes beyond the
+   * limits wants a surface that can be meshed.
+   */
   bool IsSettled() const
   {
-    return !this->Refinement->IsFull() && this->Refinement->GetNumberOfFailures() == 0;
+    return this->Plan.MakesShorterEdges
+      ? this->Output.NonDelaunayTriangles.empty()
+      : !this->Refinement->IsFull() && this->Refinement->GetNumberOfFailures() == 0;
   }
 
 private:
@@ -230,6 +237,7 @@ Status SurfaceRefiner::Finish()
   report.EdgePoints = this->Refinement->GetNumberOfEdgePoints();
   report.FacetPoints = static_cast<Id>(this->Output.NewPoints.size()) - report.EdgePoints;
   report.Flips = this->Refinement->GetNumberOfFlips();
+  report.PointsBeyondLimits = this->Refinement->GetNumberOfRescuePoints();
   // Mesh points lie between the given and the new points of the surface: take them out.
   const Id shift = this->NumberOfGivenPoints - this->NumberOfSurfacePoints;
   const auto renumber = [this, shift](Id id)
@@ -314,8 +322,9 @@ Status SurfaceRefiner::Run()
 
 /**
  * Attempts to refine one surface: with the usual rules, with facets that are plane in double
- * precision only, with the rules for corners, thin layers and stacks, with edges before all triangles
- * or after them, and by the criterion Delaunay alone, until one attempt ends.
+ * precision only, with the rules for corners, thin layers and stacks, and with edges before all
+ * triangles or after them, until one attempt ends; otherwise by the criterion Delaunay, for all of the
+ * surface and then for ever smaller triangles only.
  */
 class SurfaceAttempts
 {
@@ -340,10 +349,16 @@ private:
   void RunUsual(SurfaceRefinementPlan plan);
   void RunThinWay(const SurfaceRefinementPlan& first, const ThinWay& way);
   void RunThin(const SurfaceRefinementPlan& first);
+  void RunRelaxed(SurfaceRefinementPlan plan);
   bool HasSizes() const
   {
     return this->Options.MaximumEdgeLength > 0.0 || this->Options.MaximumArea > 0.0 ||
       this->Options.MinimumAngle > 0.0 || this->Input.Sizing;
+  }
+  bool HasUserLimits() const
+  {
+    return this->Options.MaximumNewPoints > 0 ||
+      this->Options.MinimumEdgeRatio > DelaunaySurfaceRefinerOptions().MinimumEdgeRatio;
   }
   /** Whether to try again. What was too fine for the user's limit would be so again. */
   bool IsOpen() const
@@ -423,14 +438,20 @@ bool SurfaceAttempts::RunPlan(const SurfaceRefinementPlan& plan)
 
 /**
  * Keeps an output if it is better than the best so far: fewer triangles that cannot be meshed, then
- * fewer that miss the criterion, then fewer points.
+ * less of the surface that misses the criterion, then fewer points.
  */
 void SurfaceAttempts::Keep(DelaunaySurfaceRefinerOutput&& output)
 {
   const auto rate = [](const DelaunaySurfaceRefinerOutput& x)
   {
-    return std::make_tuple(
-      x.NonDelaunayTriangles.size(), x.UnresolvedTriangles.size(), x.NewPoints.size());
+    double area = 0.0;
+    for (const Id t : x.UnresolvedTriangles)
+    {
+      const TriangleIds& ids = x.Surface.Triangles[t];
+      const std::vector<Vec3>& points = x.Surface.Points;
+      area += Norm(Cross(points[ids[1]] - points[ids[0]], points[ids[2]] - points[ids[0]]));
+    }
+    return std::make_tuple(x.NonDelaunayTriangles.size(), area, x.NewPoints.size());
   };
   if (!this->HasBest || rate(output) < rate(this->Best))
   {
@@ -481,7 +502,12 @@ void SurfaceAttempts::RunThinWay(const SurfaceRefinementPlan& first, const ThinW
   plan.Rules = rules;
   plan.AreEdgesLast = !areEdgesFirst;
   plan.CutsArcs = cutsArcs;
-  if (first.GivesUp)
+  if (first.GivesUp && first.RelaxesSome())
+  {
+    plan.MostPoints = MostInFirstPlans;
+    plan.MostPerTriangle = MostPerTriangleInFirstPlans;
+  }
+  else if (first.GivesUp)
   {
     plan.MostPoints = rules == MatchingRules::Stacks ? MostInStacks : MostInThinLayers;
     plan.MostNeedles = std::max(first.MostNeedles, MostNeedlesInThinLayers);
@@ -515,7 +541,7 @@ void SurfaceAttempts::RunThin(const SurfaceRefinementPlan& first)
     return;
   }
   const bool areEdgesTested =
-    this->Options.Criterion != SurfaceCriterion::Delaunay && !first.IsRelaxed;
+    this->Options.Criterion != SurfaceCriterion::Delaunay && first.RelaxedLength == 0.0;
   std::vector<ThinWay> ways{ { MatchingRules::ThinLayers, areEdgesTested, false },
     { MatchingRules::Stacks, false, false }, { MatchingRules::Stacks, false, true } };
   if (areEdgesTested)
@@ -529,6 +555,33 @@ void SurfaceAttempts::RunThin(const SurfaceRefinementPlan& first)
       this->RunThinWay(first, way);
     }
   }
+}
+
+/**
+ * Refines as if the criterion Delaunay were asked for, by which each plan either ends soon or not at all.
+ * Then only triangles and edges shorter than a length may miss the criterion: with ever smaller lengths,
+ * as long as that ends.
+ */
+void SurfaceAttempts::RunRelaxed(SurfaceRefinementPlan plan)
+{
+  double& flatness = this->Options.StructuralEdges.FlatnessRatio;
+  const double givenFlatness = flatness;
+  SurfaceRefinementPlan partly = plan;
+  partly.RelaxedLength = GetBoundingBoxDiagonal(this->Input.Surface->Points);
+  partly.GivesUp = this->Options.MaximumNewPoints == 0;
+  plan.RelaxedLength = Infinity;
+  this->RunUsual(plan);
+  this->RunThin(plan);
+  const bool hasEnded = this->IsSettled;
+  while (this->IsSettled && !this->IsAborted)
+  {
+    partly.RelaxedLength *= RelaxedLengthPart;
+    this->IsSettled = false;
+    flatness = givenFlatness;
+    this->RunUsual(partly);
+    this->RunThin(partly);
+  }
+  this->IsSettled = hasEnded;
 }
 
 Status SurfaceAttempts::Run()
@@ -561,10 +614,16 @@ Status SurfaceAttempts::Run()
   }
   if (isStrong && this->IsOpen())
   {
-    // The surface is refined as if the criterion Delaunay were asked for, by which each plan either ends
-    // soon or not at all; beyond the user's limit with what it needs.
-    plan.IsRelaxed = true;
-    plan.GivesUp = plan.GivesUp && this->Options.MaximumNewPoints == 0;
+    flatness = givenFlatness;
+    this->RunRelaxed(plan);
+  }
+  if (this->IsOpen() && this->HasBest && !this->Best.NonDelaunayTriangles.empty() &&
+    this->HasUserLimits())
+  {
+    // Limits are for what the user asks for beyond a mesh, not for the mesh itself.
+    plan.RelaxedLength = Infinity;
+    plan.GivesUp = false;
+    plan.MakesShorterEdges = true;
     flatness = givenFlatness;
     this->RunUsual(plan);
     this->RunThin(plan);
@@ -594,6 +653,13 @@ std::vector<Warning> MakeWarnings(
       warning.Cells.push_back(output.Surface.SourceCells[triangle]);
     }
     warnings.push_back(std::move(warning));
+  }
+  if (output.Report.PointsBeyondLimits > 0)
+  {
+    warnings.push_back({ std::to_string(output.Report.PointsBeyondLimits) +
+      " new points of the surface go beyond the limits (MinimumEdgeRatio, MaximumNewPoints): "
+      "without "
+      "them the mesh would not conform to the surface." });
   }
   if (output.Report.TooCoarse > 0)
   {

@@ -25,7 +25,11 @@
  *  4. test again the triangles whose proving sphere holds the new point;
  *  5. if that does not end within the limits: start again with the rules for corners, with those
  *     for thin layers, with those for stacks (MatchingRules in PartnerPoints.h), with criterion 3.2
- *     if 3.1 was asked for, then with the criterion Delaunay, which takes facets as they were first;
+ *     if 3.1 was asked for. Then with the criterion Delaunay, which takes facets as they were first:
+ *     for all of the surface, and for triangles and edges below a length only, a fifth of the
+ *     diagonal, a fifth of that and so on, as long as that ends. The least area that misses the
+ *     criterion asked for is kept. Where the limits of the user leave triangles that cannot be
+ *     meshed, what the criterion Delaunay needs is made beyond them;
  *  6. with an accuracy angle surface facets are curved, and points that mend one triangle may
  *     encroach on its neighbors without end. Where new points come much closer to each other than
  *     those of the input, the edges of the input triangles become structural, and the refinement
@@ -37,7 +41,7 @@
  * sheets within FlatnessRatio which become the same triangles whatever edges are structural;
  * LimitReached for a MaximumEdgeLength that needs more points than ids can count.
  * Triangles that miss the criterion are listed in UnresolvedTriangles; those that cannot even be
- * meshed also in NonDelaunayTriangles.
+ * meshed also in NonDelaunayTriangles: MaximumNewPoints and MinimumEdgeRatio leave none of these.
  * Cost: a triangle that is Delaunay takes one search of the octree, O(log n); a new point takes a
  * few searches and one query of the spheres that prove the other triangles. About 350 bytes per
  * triangle. Measured in Testing/Benchmarks/Surface.md.
@@ -82,9 +86,9 @@ struct DelaunaySurfaceRefinerOptions
   /** Mesh points closer to the surface, as a ratio of the diagonal, are dropped. >= 0. */
   double MeshPointClearanceRatio = 1e-3;
   /**
-   * No edge is made shorter than this ratio of the diagonal. >= 0. Far from the origin, where
-   * coordinates are rounded farther, 8 times their rounding is the limit. Points of different sheets may
-   * be closer to each other: they are as close as the sheets.
+   * No edge is made shorter than this ratio of the diagonal, except for what the criterion Delaunay
+   * needs. >= 0. Far from the origin, where coordinates are rounded farther, 8 times their rounding is
+   * the limit. Points of different sheets may be closer to each other: they are as close as the sheets.
    */
   double MinimumEdgeRatio = 1e-12;
   /**
@@ -122,6 +126,8 @@ struct DelaunaySurfaceRefinerReport
   Id FacetPoints = 0;
   Id Flips = 0;
   Id DroppedMeshPoints = 0;
+  /** New points that were made beyond the limits, as there is no mesh without them. */
+  Id PointsBeyondLimits = 0;
   /** Triangles that are larger than asked for, as a limit has ended the refinement. */
   Id TooCoarse = 0;
   /** Whether facets count as plane that are so but for the digits of their points (FlatFacets.h). */

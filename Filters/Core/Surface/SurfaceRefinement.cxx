@@ -47,6 +47,8 @@ SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
     NumberOfSurfacePoints(static_cast<Id>(surface.Points.size())),
     Diagonal(GetBoundingBoxDiagonal(surface.Points)),
     Flatness(GetFlatness(options.StructuralEdges.FlatnessRatio, surface.Points)),
+    LeastEdge(std::max(DelaunaySurfaceRefinerOptions().MinimumEdgeRatio * this->Diagonal,
+      RoundedEdgeRatio * GetLargestCoordinate(surface.Points))),
     MinimumEdge(std::max(options.MinimumEdgeRatio * this->Diagonal,
       RoundedEdgeRatio * GetLargestCoordinate(surface.Points))),
     Test(this->Points, this->Octree), Limits{ options.MaximumEdgeLength, options.MaximumArea,
@@ -372,6 +374,17 @@ bool SurfaceRefinement::IsCocircularFacet(Id t, const SurfaceDelaunayTest::Resul
   return reached == cocircular;
 }
 
+bool SurfaceRefinement::IsStrong(Id t) const
+{
+  const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
+  bool isStrong = false;
+  for (int i = 0; i < 3 && !isStrong && this->Options.Criterion != SurfaceCriterion::Delaunay; ++i)
+  {
+    isStrong = !this->IsRelaxed(Distance(this->Points[ids[i]], this->Points[ids[(i + 1) % 3]]));
+  }
+  return isStrong;
+}
+
 bool SurfaceRefinement::IsGood(Id t, SurfaceDelaunayTest::Result& found, bool isStrong) const
 {
   this->Test.Run(this->Surface->GetTriangle(t).Points, found, isStrong);
@@ -382,11 +395,28 @@ bool SurfaceRefinement::IsGood(Id t, SurfaceDelaunayTest::Result& found, bool is
   return !isStrong || found.InsideSmallestSphere.empty();
 }
 
-/** The limit of points is reached: as many again for what the criterion Delaunay needs. */
+/** A limit is reached: as many points again as usual for what the criterion Delaunay needs. */
 void SurfaceRefinement::StartRescue()
 {
   this->MaximumRescuePoints = static_cast<Id>(this->NewPoints.size()) + this->UsualMaximum;
   this->EdgeQueue.clear();
+  if (this->Plan.MakesShorterEdges)
+  {
+    this->MinimumEdge = std::min(this->MinimumEdge, this->LeastEdge);
+  }
+}
+
+/** Puts bad triangles that are not even Delaunay into the queue again; whether there are any. */
+bool SurfaceRefinement::EnqueueNonDelaunay()
+{
+  for (Id t = 0; t < this->Surface->GetNumberOfTriangles(); ++t)
+  {
+    if (this->IsBadTriangle(t) && !this->IsDelaunay(t))
+    {
+      this->Enqueue(t);
+    }
+  }
+  return !this->Queue.empty();
 }
 
 void SurfaceRefinement::AllowNewPoints(std::size_t count)
@@ -417,7 +447,8 @@ void SurfaceRefinement::JudgeRelaxed()
   this->WeakTriangles.clear();
   this->NumberOfFailures = static_cast<Id>(std::count(this->IsBad.begin(), this->IsBad.end(), 1) +
     std::count(this->IsEncroached.begin(), this->IsEncroached.end(), 1));
-  if (this->Options.Criterion == SurfaceCriterion::Delaunay || !this->IsRelaxed())
+  if (this->Options.Criterion == SurfaceCriterion::Delaunay ||
+    (this->Plan.RelaxedLength == 0.0 && !this->IsRescuing()))
   {
     return;
   }
@@ -502,7 +533,7 @@ bool SurfaceRefinement::ResolveByFlip(Id t)
     }
     SurfaceDelaunayTest::Result first;
     SurfaceDelaunayTest::Result second;
-    const bool isStronger = this->IsStrong();
+    const bool isStronger = this->IsStrong(t);
     this->Test.Run({ a, d, c }, first, isStronger);
     this->Test.Run({ d, b, c }, second, isStronger);
     const bool isAllowed =
@@ -643,12 +674,13 @@ void SurfaceRefinement::Process(Id t, QueueState state)
 
 void SurfaceRefinement::EnqueueEdge(Id segment)
 {
-  if (this->IsRelaxed())
+  const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
+  const double length = Distance(this->Points[ends[0]], this->Points[ends[1]]);
+  if (this->IsRelaxed(length))
   {
     return;
   }
-  const EdgeIds& ends = this->Surface->GetSegment(segment).Points;
-  this->EdgeQueue.emplace_back(Distance(this->Points[ends[0]], this->Points[ends[1]]), segment);
+  this->EdgeQueue.emplace_back(length, segment);
   std::push_heap(this->EdgeQueue.begin(), this->EdgeQueue.end(), std::greater<>());
 }
 
@@ -694,6 +726,24 @@ bool SurfaceRefinement::HasTooManyInFacets() const
 }
 
 Status SurfaceRefinement::Refine(const ExecutionContext& context)
+{
+  if (!this->Plan.MakesShorterEdges)
+  {
+    return this->RefineQueued(context);
+  }
+  Status status = this->RefineQueued(context.Part(0.0, 0.5));
+  if (status.IsOk() && this->EnqueueNonDelaunay())
+  {
+    if (!this->IsRescuing())
+    {
+      this->StartRescue();
+    }
+    status = this->RefineQueued(context.Part(0.5, 1.0));
+  }
+  return status;
+}
+
+Status SurfaceRefinement::RefineQueued(const ExecutionContext& context)
 {
   // A step may leave more to do than before: what is reported never goes back.
   double done = 0.0;

@@ -42,8 +42,12 @@ namespace cdm
 struct SurfaceRefinementPlan
 {
   MatchingRules Rules = MatchingRules::Usual;
-  /** Whether triangles only have to fulfil the criterion Delaunay, and edges none. */
-  bool IsRelaxed = false;
+  /**
+   * Triangles of edges shorter than this only have to fulfil the criterion Delaunay, and such edges none.
+   * 0: none of them; infinity: all of them, and the plan goes as that criterion does.
+   */
+  double RelaxedLength = 0.0;
+  bool RelaxesSome() const { return this->RelaxedLength > 0.0 && this->RelaxedLength < Infinity; }
   /** Whether edges are made fine enough after all triangles, where they count. */
   bool AreEdgesLast = false;
   /**
@@ -57,6 +61,8 @@ struct SurfaceRefinementPlan
    * what the criterion Delaunay needs.
    */
   bool GivesUp = false;
+  /** Whether edges shorter than MinimumEdgeRatio are made where there is no mesh without them. */
+  bool MakesShorterEdges = false;
   /**
    * The largest number of new points if the user gives none and no sizes: so many, or so many for
    * each triangle, if that is more.
@@ -130,15 +136,19 @@ public:
   {
     return static_cast<Id>(this->NewPoints.size()) >= this->MaximumNewPoints || this->HasGivenUp;
   }
+  /** Whether the limits are reached, and only the criterion Delaunay is refined for. */
+  bool IsRescuing() const { return this->MaximumRescuePoints > 0; }
+  /** How many points have been made since then. */
+  Id GetNumberOfRescuePoints() const
+  {
+    return this->IsRescuing()
+      ? static_cast<Id>(this->NewPoints.size()) + this->UsualMaximum - this->MaximumRescuePoints
+      : 0;
+  }
 
   /**
-   * Whether triangles only have to fulfil the criterion Delaunay, by the plan or because the object
-   * is full.
-   */
-  bool IsRelaxed() const { return this->Plan.IsRelaxed || this->IsRescuing(); }
-  /**
-   * After a relaxed refinement: finds the triangles that miss the criterion asked for.
-   * IsUnresolved() and IsWeak() need it.
+   * After a refinement in which some or all triangles only had to fulfil the criterion Delaunay: finds
+   * those that miss the criterion asked for. IsUnresolved() and IsWeak() need it.
    */
   void JudgeRelaxed();
 
@@ -242,21 +252,24 @@ private:
    */
   bool AreEdgesFirst() const
   {
-    return this->AreEdgesTested() && !this->Plan.IsRelaxed && !this->Plan.AreEdgesLast &&
-      this->Plan.Rules != MatchingRules::Stacks;
+    return this->AreEdgesTested() && this->Plan.RelaxedLength < Infinity &&
+      !this->Plan.AreEdgesLast && this->Plan.Rules != MatchingRules::Stacks;
   }
   bool IsGood(Id t, SurfaceDelaunayTest::Result& found) const
   {
-    return this->IsGood(t, found, this->IsStrong());
+    return this->IsGood(t, found, this->IsStrong(t));
   }
   bool IsGood(Id t, SurfaceDelaunayTest::Result& found, bool isStrong) const;
-  /** Whether the smallest spheres of triangles have to be empty. */
-  bool IsStrong() const
+  /** Whether what is so long only has to fulfil the criterion Delaunay. */
+  bool IsRelaxed(double length) const
   {
-    return this->Options.Criterion != SurfaceCriterion::Delaunay && !this->IsRelaxed();
+    return length < this->Plan.RelaxedLength || this->IsRescuing();
   }
-  bool IsRescuing() const { return this->MaximumRescuePoints > 0; }
+  /** Whether the smallest sphere of a triangle has to be empty. */
+  bool IsStrong(Id t) const;
   void StartRescue();
+  bool EnqueueNonDelaunay();
+  Status RefineQueued(const ExecutionContext& context);
   void GiveUp();
   bool TestAll(const ExecutionContext& context);
   bool IsCocircularFacet(Id t, const SurfaceDelaunayTest::Result& found) const;
@@ -309,7 +322,9 @@ private:
   const Id NumberOfSurfacePoints;
   const double Diagonal;
   const double Flatness;
-  const double MinimumEdge;
+  /** Coordinates do not allow shorter edges than the first one; shorter ones than the second are not made. */
+  const double LeastEdge;
+  double MinimumEdge;
   Id MaximumNewPoints = 0;
   bool HasLeftTooCoarse = false;
   /** The limit if the user gives none; and the limit in all once the first one is reached. */

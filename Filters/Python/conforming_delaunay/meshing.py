@@ -548,7 +548,7 @@ def refine_surface(
     maximum_area: float = 0.0,
     accuracy_angle: float = 0.0,
     mesh_point_clearance_ratio: float = 1e-3,
-    minimum_edge_ratio: float = 1e-9,
+    minimum_edge_ratio: float = 1e-12,
     maximum_new_points: int = 0,
     progress: Optional[Progress] = None,
     threads: int = 0,
@@ -560,11 +560,14 @@ def refine_surface(
     surface, edge_length, criterion, sizing, mesh_points, minimum_angle, maximum_area
         As for mesh(), as are accuracy_angle, progress and threads.
     mesh_point_clearance_ratio : float, default: 1e-3
-        Mesh points that are closer to the surface are left out: in lengths of its edges, 0 to 1.
-    minimum_edge_ratio : float, default: 1e-9
-        No edge becomes shorter: in diagonals of the bounding box, 0 to 1.
+        Mesh points that are closer to the surface are left out: in diagonals of the bounding box,
+        0 to 1.
+    minimum_edge_ratio : float, default: 1e-12
+        No edge becomes shorter, unless there is no mesh without it: in diagonals of the bounding
+        box, 0 to 1.
     maximum_new_points : int, default: 0
-        Where the refinement gives up; 0: by the size of the surface.
+        Where the refinement stops, unless there is no mesh without more; 0: by the size of the
+        surface.
 
     Returns
     -------
