@@ -152,6 +152,11 @@ int vtkMovingBoundaryRemesher::RequestData(
     vtkWarningMacro(<< this->NumberOfUnresolvedTriangles
                     << " triangles of the boundary do not fulfil the criterion.");
   }
+  if (result.Report.PointsBeyondLimits > 0)
+  {
+    vtkWarningMacro(<< result.Report.PointsBeyondLimits
+                    << " new points are beyond the limits: there is no mesh without them.");
+  }
   return 1;
 }
 

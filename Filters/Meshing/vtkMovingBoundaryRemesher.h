@@ -129,7 +129,10 @@ public:
   ///@}
 
   ///@{
-  /** The refinement of a step stops when it has made so many points. Default 0: no limit. */
+  /**
+   * The refinement of a step stops when it has made so many points, unless there is no mesh without
+   * more. Default 0: no limit.
+   */
   vtkSetInRangeMacro(MaximumNewPoints, int, 0, VTK_INT_MAX, "points");
   vtkGetMacro(MaximumNewPoints, int);
   ///@}

@@ -379,40 +379,45 @@ void RefineComplexes(ComplexKind kind, std::uint64_t usualCount, std::uint64_t u
   }
 }
 
-/** The criterion Delaunay always, the others but for one in a hundred. */
+/**
+ * The criterion Delaunay always, the others but for one in a hundred, far from the origin, in a hundredth
+ * of the area. At most 600 times the points of the criterion Delaunay.
+ */
 void ExpectFulfilled(const KindCounts& counts)
 {
   EXPECT_EQ(counts[0].Missed.size(), 0u);
   for (const Counts& own : counts)
   {
     EXPECT_LE(100 * own.Missed.size(), static_cast<std::size_t>(own.Complexes));
+    EXPECT_LE(own.LargestMissedPart, 0.01);
+    EXPECT_LE(own.Ratios.back(), 600.0);
   }
 }
 } // namespace
 
 TEST(ComplexKinds, CubeTetrahedra)
 {
-  ExpectFulfilled(MeshComplexes(ComplexKind::CubeTetrahedra, 200));
+  ExpectFulfilled(MeshComplexes(ComplexKind::CubeTetrahedra, 1600));
 }
 
 TEST(ComplexKinds, GridTetrahedra)
 {
-  ExpectFulfilled(MeshComplexes(ComplexKind::GridTetrahedra, 600));
+  ExpectFulfilled(MeshComplexes(ComplexKind::GridTetrahedra, 1600));
 }
 
 TEST(ComplexKinds, Pyramids)
 {
-  ExpectFulfilled(MeshComplexes(ComplexKind::Pyramids, 600));
+  ExpectFulfilled(MeshComplexes(ComplexKind::Pyramids, 1600));
 }
 
 TEST(ComplexKinds, VoronoiCells)
 {
-  ExpectFulfilled(MeshComplexes(ComplexKind::VoronoiCells, 400));
+  ExpectFulfilled(MeshComplexes(ComplexKind::VoronoiCells, 1800));
 }
 
 TEST(ComplexKinds, Boxes)
 {
-  ExpectFulfilled(MeshComplexes(ComplexKind::Boxes, 400));
+  ExpectFulfilled(MeshComplexes(ComplexKind::Boxes, 1800));
 }
 
 /**
@@ -493,6 +498,34 @@ TEST(ComplexKinds, OnlySmallTrianglesMissTheStrongerCriteria)
 }
 
 /**
+ * Nothing but rounding is to blame where complexes far from the origin miss the stronger criteria: those
+ * that do fulfil them as soon as their first point is moved to the origin. That rounds nothing, as all
+ * points are about as far away.
+ */
+TEST(ComplexKinds, MovedToTheOriginAllFulfilTheStrongerCriteria)
+{
+  const std::pair<ComplexKind, std::uint64_t> complexes[] = { { ComplexKind::TiltedPlates, 504 },
+    { ComplexKind::TiltedPlates, 911 }, { ComplexKind::TiltedPlates, 9244 },
+    { ComplexKind::CubeTetrahedra, 6197 }, { ComplexKind::Pyramids, 11098 },
+    { ComplexKind::SmallSlabs, 1022 }, { ComplexKind::SmallSlabs, 1045 } };
+  for (const auto& [kind, seed] : complexes)
+  {
+    SCOPED_TRACE(std::string(GetComplexKindName(kind)) + ", seed " + std::to_string(seed));
+    BoundaryTriangulatorOutput triangulated;
+    ASSERT_TRUE(MakePlaced(kind, seed, triangulated));
+    std::vector<Vec3>& points = triangulated.Surface.Points;
+    const Vec3 origin = points.front();
+    for (Vec3& p : points)
+    {
+      const Vec3 old = p;
+      p = p - origin;
+      EXPECT_EQ(p + origin, old);
+    }
+    ExpectStrongerFulfilled(triangulated.Surface, 10000u);
+  }
+}
+
+/**
  * A sheet passes 1.2e-5 from a corner of a wedge of 0.04 degrees. Matches across the wedge were refused
  * as too close to their points, and 100,000 points filled it.
  */
@@ -567,10 +600,9 @@ TEST(ComplexKinds, GivesUpSoonByTheCriterionDelaunay)
   EXPECT_LT(MeshComplex(triangulated.Surface, SurfaceCriterion::SmallestSphere).MissedPart, 0.01);
 }
 
-/** Not all fulfil the stronger criteria; all are meshed. */
 TEST(ComplexKinds, Fans)
 {
-  EXPECT_EQ(MeshComplexes(ComplexKind::Fan, 40)[0].Missed.size(), 0u);
+  ExpectFulfilled(MeshComplexes(ComplexKind::Fan, 800));
 }
 
 /**
@@ -618,7 +650,7 @@ TEST(ComplexKinds, WalksAroundCorners)
 
 TEST(ComplexKinds, TiltedPlates)
 {
-  EXPECT_EQ(MeshComplexes(ComplexKind::TiltedPlates, 10)[0].Missed.size(), 0u);
+  ExpectFulfilled(MeshComplexes(ComplexKind::TiltedPlates, 900));
 }
 
 /**
@@ -645,7 +677,7 @@ TEST_P(SteinerPointsInComplexes, BoundaryIsKept)
   const auto kind = static_cast<ComplexKind>(this->GetParam());
   // The slab by the seed 1 takes two minutes.
   const bool isSlab = kind == ComplexKind::SlabTetrahedra;
-  RefineComplexes(kind, isSlab ? 1 : 6, isSlab ? 2 : 1);
+  RefineComplexes(kind, isSlab ? 1 : 20, isSlab ? 2 : 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(ComplexKinds, SteinerPointsInComplexes,

@@ -318,6 +318,7 @@ TEST(DelaunaySurfaceRefinerFilter, ReportsUnresolvedTriangles)
   builder.AddBox({ 0, 0, 0 }, { 1, 1, 0.01 });
   builder.AddBox({ 0.3, 0.3, 0.02 }, { 0.6, 0.6, 0.5 });
   Pipeline run(builder.Build());
+  run.Refiner->SetCriterionToSmallestSphere();
   run.Refiner->SetMaximumNewPoints(1);
   run.Refiner->Update();
   EXPECT_EQ(run.Recorder->Errors, "");

@@ -77,6 +77,8 @@ struct MovingBoundaryReport
   /** Points of the input that were inside or on the boundary, and are in the output no more. */
   Id RemovedPoints = 0;
   Id NewPoints = 0;
+  /** New points of all steps beyond the limits of the refinement, without which there is no mesh. */
+  Id PointsBeyondLimits = 0;
   /** Triangles of the boundary that do not fulfil the criterion, after the last step. */
   Id UnresolvedTriangles = 0;
 };

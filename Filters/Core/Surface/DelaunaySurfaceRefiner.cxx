@@ -10,6 +10,7 @@
 #include "Core/Surface/SurfaceRefinement.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <optional>
@@ -36,8 +37,15 @@ constexpr std::size_t MostInStacks = 400000;
 /** The largest numbers of tests of needles (SurfaceRefinementPlan) in thin layers, at first and at last. */
 constexpr std::size_t MostNeedlesInThinLayers = 5000;
 constexpr std::size_t MostNeedlesAtLast = 100000;
-/** Of the lengths below which the criterion may be missed, each is this part of the one before. */
+/**
+ * The first length below which the criterion may be missed, in diagonals of the bounding box, and which part
+ * of one the next one is. Stacks of many sheets end with a fifth of the diagonal at times, with thousands
+ * of points for little more of their area.
+ */
+constexpr double FirstRelaxedLength = 0.05;
 constexpr double RelaxedLengthPart = 0.2;
+/** The largest coordinate in diagonals of the bounding box from which on rounding may be to blame. */
+constexpr double FarFromOrigin = 100.0;
 
 /** One attempt to refine the surface, by one plan. */
 class SurfaceRefiner
@@ -466,7 +474,7 @@ void SurfaceAttempts::Keep(DelaunaySurfaceRefinerOutput&& output)
  */
 void SurfaceAttempts::RunUsual(SurfaceRefinementPlan plan)
 {
-  if (plan.GivesUp)
+  if (plan.GivesUp && !plan.RelaxesSome())
   {
     plan.MostPoints = MostInFirstPlans;
     plan.MostPerTriangle = MostPerTriangleInFirstPlans;
@@ -502,12 +510,7 @@ void SurfaceAttempts::RunThinWay(const SurfaceRefinementPlan& first, const ThinW
   plan.Rules = rules;
   plan.AreEdgesLast = !areEdgesFirst;
   plan.CutsArcs = cutsArcs;
-  if (first.GivesUp && first.RelaxesSome())
-  {
-    plan.MostPoints = MostInFirstPlans;
-    plan.MostPerTriangle = MostPerTriangleInFirstPlans;
-  }
-  else if (first.GivesUp)
+  if (first.GivesUp && !first.RelaxesSome())
   {
     plan.MostPoints = rules == MatchingRules::Stacks ? MostInStacks : MostInThinLayers;
     plan.MostNeedles = std::max(first.MostNeedles, MostNeedlesInThinLayers);
@@ -567,19 +570,21 @@ void SurfaceAttempts::RunRelaxed(SurfaceRefinementPlan plan)
   double& flatness = this->Options.StructuralEdges.FlatnessRatio;
   const double givenFlatness = flatness;
   SurfaceRefinementPlan partly = plan;
-  partly.RelaxedLength = GetBoundingBoxDiagonal(this->Input.Surface->Points);
+  partly.RelaxedLength = FirstRelaxedLength * GetBoundingBoxDiagonal(this->Input.Surface->Points);
   partly.GivesUp = this->Options.MaximumNewPoints == 0;
+  partly.MostPerTriangle = MostPerTriangleInFirstPlans;
   plan.RelaxedLength = Infinity;
   this->RunUsual(plan);
   this->RunThin(plan);
   const bool hasEnded = this->IsSettled;
-  while (this->IsSettled && !this->IsAborted)
+  while (this->IsSettled && !this->IsAborted && !this->Best.UnresolvedTriangles.empty())
   {
-    partly.RelaxedLength *= RelaxedLengthPart;
+    partly.MostPoints = MostInFirstPlans + this->Best.NewPoints.size();
     this->IsSettled = false;
     flatness = givenFlatness;
     this->RunUsual(partly);
     this->RunThin(partly);
+    partly.RelaxedLength *= RelaxedLengthPart;
   }
   this->IsSettled = hasEnded;
 }
@@ -631,6 +636,23 @@ Status SurfaceAttempts::Run()
   return this->IsAborted ? Status::Aborted() : this->HasBest ? Status() : *this->First;
 }
 
+/** Far from the origin coordinates are rounded to more than matching points differ by. */
+std::string GetAdviceOnOrigin(const std::vector<Vec3>& points)
+{
+  const double ratio = GetLargestCoordinate(points) / GetBoundingBoxDiagonal(points);
+  if (ratio < FarFromOrigin)
+  {
+    return {};
+  }
+  char text[200];
+  std::snprintf(text, sizeof(text),
+    "The coordinates are %.0f times as large as the surface, and rounded accordingly: move it to "
+    "the "
+    "origin first. ",
+    ratio);
+  return text;
+}
+
 /** What the result does not fulfil, with the triangles of the input that it comes from. */
 std::vector<Warning> MakeWarnings(
   const DelaunaySurfaceRefinerOptions& options, const DelaunaySurfaceRefinerOutput& output)
@@ -647,7 +669,9 @@ std::vector<Warning> MakeWarnings(
           : std::to_string(output.NonDelaunayTriangles.size()) +
             " of them are not even Delaunay: no mesh can be made with them. ") +
       "Sheets that lie a hair apart can be united with a MergeTolerance of the boundary "
-      "triangulator. The triangles come from these cells of the input.";
+      "triangulator. " +
+      GetAdviceOnOrigin(output.Surface.Points) +
+      "The triangles come from these cells of the input.";
     for (const Id triangle : output.UnresolvedTriangles)
     {
       warning.Cells.push_back(output.Surface.SourceCells[triangle]);
@@ -657,9 +681,8 @@ std::vector<Warning> MakeWarnings(
   if (output.Report.PointsBeyondLimits > 0)
   {
     warnings.push_back({ std::to_string(output.Report.PointsBeyondLimits) +
-      " new points of the surface go beyond the limits (MinimumEdgeRatio, MaximumNewPoints): "
-      "without "
-      "them the mesh would not conform to the surface." });
+      " new points of the surface are beyond the limits (MinimumEdgeRatio, MaximumNewPoints): the "
+      "mesh would not conform to the surface without them." });
   }
   if (output.Report.TooCoarse > 0)
   {

@@ -26,7 +26,7 @@
  *  5. if that does not end within the limits: start again with the rules for corners, with those
  *     for thin layers, with those for stacks (MatchingRules in PartnerPoints.h), with criterion 3.2
  *     if 3.1 was asked for. Then with the criterion Delaunay, which takes facets as they were first:
- *     for all of the surface, and for triangles and edges below a length only, a fifth of the
+ *     for all of the surface, and for triangles and edges below a length only, a twentieth of the
  *     diagonal, a fifth of that and so on, as long as that ends. The least area that misses the
  *     criterion asked for is kept. Where the limits of the user leave triangles that cannot be
  *     meshed, what the criterion Delaunay needs is made beyond them;

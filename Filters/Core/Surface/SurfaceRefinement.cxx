@@ -60,9 +60,9 @@ SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
   const std::size_t forTriangles = plan.MostPerTriangle * surface.Triangles.size();
   const auto makeId = [](std::size_t most)
   { return static_cast<Id>(std::min<std::size_t>(most, LargestId / 8)); };
-  this->UsualMaximum =
-    makeId(std::max(this->Limits.HasAny() ? MostForSizes : plan.MostPoints, forTriangles) +
-      meshPoints.size());
+  const bool hasManyForSizes = this->Limits.HasAny() && !plan.RelaxesSome();
+  this->UsualMaximum = makeId(
+    std::max(hasManyForSizes ? MostForSizes : plan.MostPoints, forTriangles) + meshPoints.size());
   this->MaximumNeedles = makeId(std::max(plan.MostNeedles, forTriangles / NeedlePart));
   this->MaximumNewPoints =
     options.MaximumNewPoints > 0 ? options.MaximumNewPoints : this->UsualMaximum;

@@ -64,8 +64,8 @@ struct SurfaceRefinementPlan
   /** Whether edges shorter than MinimumEdgeRatio are made where there is no mesh without them. */
   bool MakesShorterEdges = false;
   /**
-   * The largest number of new points if the user gives none and no sizes: so many, or so many for
-   * each triangle, if that is more.
+   * The largest number of new points if the user gives none and no sizes, or if some triangles are
+   * relaxed: so many, or so many for each triangle, if that is more.
    */
   std::size_t MostPoints = 20000;
   std::size_t MostPerTriangle = 50;
