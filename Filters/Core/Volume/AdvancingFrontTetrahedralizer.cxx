@@ -574,7 +574,6 @@ void AdvancingFront::CompleteBoundary()
       : 0;
   }
   this->AppendHull();
-  this->Surface.Points = this->Points;
 }
 
 void AdvancingFront::Finish()
@@ -587,18 +586,20 @@ void AdvancingFront::Finish()
   }
   this->VertexPoints = RawVector<Vec3>();
   this->States = RawVector<unsigned char>();
-  if (this->NumberOfTetrahedra == 0)
+  if (this->NumberOfTetrahedra > 0)
   {
-    return;
+    for (std::size_t side = 0; side < this->Facets.Sides.size(); ++side)
+    {
+      // What was behind the barrier.
+      const Id facet = this->Facets.Sides[side];
+      this->All.Neighbors[facet / 4][facet % 4] = this->Facets.Sides[side ^ 1];
+    }
+    CollectTetrahedra(
+      this->All, this->Regions, this->Order, this->NumberOfThreads, this->Output.Mesh);
   }
-  for (std::size_t side = 0; side < this->Facets.Sides.size(); ++side)
-  {
-    // What was behind the barrier.
-    const Id facet = this->Facets.Sides[side];
-    this->All.Neighbors[facet / 4][facet % 4] = this->Facets.Sides[side ^ 1];
-  }
-  CollectTetrahedra(
-    this->All, this->Regions, this->Order, this->NumberOfThreads, this->Output.Mesh);
+  // Not before: the old and the new tetrahedra side by side are the peak of memory.
+  this->All = DelaunayTetrahedralization();
+  this->Surface.Points = this->Points;
 }
 
 Status AdvancingFront::MeshRegions()
