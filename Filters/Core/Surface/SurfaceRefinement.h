@@ -47,6 +47,7 @@ struct SurfaceRefinementPlan
    * 0: none of them; infinity: all of them, and the plan goes as that criterion does.
    */
   double RelaxedLength = 0.0;
+  /** Whether that is so of some triangles, but not of all. */
   bool RelaxesSome() const { return this->RelaxedLength > 0.0 && this->RelaxedLength < Infinity; }
   /** Whether edges are made fine enough after all triangles, where they count. */
   bool AreEdgesLast = false;
@@ -322,8 +323,9 @@ private:
   const Id NumberOfSurfacePoints;
   const double Diagonal;
   const double Flatness;
-  /** Coordinates do not allow shorter edges than the first one; shorter ones than the second are not made. */
+  /** The shortest edge that coordinates allow. */
   const double LeastEdge;
+  /** No shorter edge is made. */
   double MinimumEdge;
   Id MaximumNewPoints = 0;
   bool HasLeftTooCoarse = false;
