@@ -140,9 +140,10 @@ public:
 
   ///@{
   /**
-   * The refinement stops when it has made so many points, unless there is no mesh without more. Default 0: 50 for each triangle, at
-   * least 200000, or 1000000 where sizes or angles are asked for, and one for each mesh point;
-   * range >= 0. Surfaces that need more have sheets a hair apart that run into each other.
+   * The refinement stops when it has made so many points, unless there is no mesh without more.
+   * Default 0: 50 for each triangle, at least 200000, or 1000000 where sizes or angles are asked for,
+   * and one for each mesh point; range >= 0. Surfaces that need more have sheets a hair apart that run
+   * into each other.
    */
   vtkSetInRangeMacro(MaximumNewPoints, int, 0, VTK_INT_MAX, "points");
   vtkGetMacro(MaximumNewPoints, int);

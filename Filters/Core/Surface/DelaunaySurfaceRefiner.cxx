@@ -3,6 +3,7 @@
 
 #include "Core/Basics/IdLimits.h"
 #include "Core/Basics/SortedIds.h"
+#include "Core/Geometry/Measures.h"
 #include "Core/Meshes/DuplicateTriangles.h"
 #include "Core/Surface/FlatFacets.h"
 #include "Core/Surface/MeshPointClearance.h"
@@ -340,7 +341,8 @@ public:
   SurfaceAttempts(const DelaunaySurfaceRefinerInput& input,
     const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
     DelaunaySurfaceRefinerOutput& output)
-    : Input(input), Options(options), Context(context), Best(output)
+    : Input(input), Options(options), GivenFlatness(options.StructuralEdges.FlatnessRatio),
+      Context(context), Best(output)
   {
   }
 
@@ -384,8 +386,9 @@ private:
   ExecutionContext GetNextPart();
 
   const DelaunaySurfaceRefinerInput& Input;
-  /** The options, whose IsExact is extended from attempt to attempt. */
+  /** The options, whose IsExact is extended from attempt to attempt, and the flatness they came with. */
   DelaunaySurfaceRefinerOptions Options;
+  const double GivenFlatness;
   const ExecutionContext& Context;
   DelaunaySurfaceRefinerOutput& Best;
   bool HasBest = false;
@@ -457,7 +460,7 @@ void SurfaceAttempts::Keep(DelaunaySurfaceRefinerOutput&& output)
     {
       const TriangleIds& ids = x.Surface.Triangles[t];
       const std::vector<Vec3>& points = x.Surface.Points;
-      area += Norm(Cross(points[ids[1]] - points[ids[0]], points[ids[2]] - points[ids[0]]));
+      area += GetTriangleArea(points[ids[0]], points[ids[1]], points[ids[2]]);
     }
     return std::make_tuple(x.NonDelaunayTriangles.size(), area, x.NewPoints.size());
   };
@@ -469,8 +472,9 @@ void SurfaceAttempts::Keep(DelaunaySurfaceRefinerOutput&& output)
 }
 
 /**
- * Refines by a plan, then with facets that are plane in double precision only, and with the rules for
- * corners, until an attempt ends. The flatness stays as the last attempt had it.
+ * Refines by a plan with facets as the user wants them, then with facets that are plane in double
+ * precision only, and with the rules for corners, until an attempt ends. The flatness stays as the last
+ * attempt had it.
  */
 void SurfaceAttempts::RunUsual(SurfaceRefinementPlan plan)
 {
@@ -479,8 +483,9 @@ void SurfaceAttempts::RunUsual(SurfaceRefinementPlan plan)
     plan.MostPoints = MostInFirstPlans;
     plan.MostPerTriangle = MostPerTriangleInFirstPlans;
   }
-  this->RunPlan(plan);
   double& flatness = this->Options.StructuralEdges.FlatnessRatio;
+  flatness = this->GivenFlatness;
+  this->RunPlan(plan);
   if (this->IsOpen() && this->HasRoundedFacets && flatness > RoundedFlatnessRatio)
   {
     flatness = RoundedFlatnessRatio;
@@ -567,8 +572,6 @@ void SurfaceAttempts::RunThin(const SurfaceRefinementPlan& first)
  */
 void SurfaceAttempts::RunRelaxed(SurfaceRefinementPlan plan)
 {
-  double& flatness = this->Options.StructuralEdges.FlatnessRatio;
-  const double givenFlatness = flatness;
   SurfaceRefinementPlan partly = plan;
   partly.RelaxedLength = FirstRelaxedLength * GetBoundingBoxDiagonal(this->Input.Surface->Points);
   partly.GivesUp = this->Options.MaximumNewPoints == 0;
@@ -581,7 +584,6 @@ void SurfaceAttempts::RunRelaxed(SurfaceRefinementPlan plan)
   {
     partly.MostPoints = MostInFirstPlans + this->Best.NewPoints.size();
     this->IsSettled = false;
-    flatness = givenFlatness;
     this->RunUsual(partly);
     this->RunThin(partly);
     partly.RelaxedLength *= RelaxedLengthPart;
@@ -594,8 +596,6 @@ Status SurfaceAttempts::Run()
   SurfaceRefinementPlan plan;
   // Where sizes are asked for, they are what most of the points are for.
   plan.GivesUp = !this->HasSizes();
-  double& flatness = this->Options.StructuralEdges.FlatnessRatio;
-  const double givenFlatness = flatness;
   this->RunUsual(plan);
   const SurfaceCriterion criterion = this->Options.Criterion;
   const bool isStrong = criterion != SurfaceCriterion::Delaunay;
@@ -606,7 +606,6 @@ Status SurfaceAttempts::Run()
     SurfaceRefinementPlan other = plan;
     other.AreEdgesLast = criterion == SurfaceCriterion::SmallestSphereAndEdges;
     this->Options.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
-    flatness = givenFlatness;
     this->RunUsual(other);
     this->Options.Criterion = criterion;
   }
@@ -619,7 +618,6 @@ Status SurfaceAttempts::Run()
   }
   if (isStrong && this->IsOpen())
   {
-    flatness = givenFlatness;
     this->RunRelaxed(plan);
   }
   if (this->IsOpen() && this->HasBest && !this->Best.NonDelaunayTriangles.empty() &&
@@ -629,7 +627,6 @@ Status SurfaceAttempts::Run()
     plan.RelaxedLength = Infinity;
     plan.GivesUp = false;
     plan.MakesShorterEdges = true;
-    flatness = givenFlatness;
     this->RunUsual(plan);
     this->RunThin(plan);
   }

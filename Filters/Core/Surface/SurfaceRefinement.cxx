@@ -47,10 +47,8 @@ SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
     NumberOfSurfacePoints(static_cast<Id>(surface.Points.size())),
     Diagonal(GetBoundingBoxDiagonal(surface.Points)),
     Flatness(GetFlatness(options.StructuralEdges.FlatnessRatio, surface.Points)),
-    LeastEdge(std::max(DelaunaySurfaceRefinerOptions().MinimumEdgeRatio * this->Diagonal,
-      RoundedEdgeRatio * GetLargestCoordinate(surface.Points))),
-    MinimumEdge(std::max(options.MinimumEdgeRatio * this->Diagonal,
-      RoundedEdgeRatio * GetLargestCoordinate(surface.Points))),
+    RoundedEdge(RoundedEdgeRatio * GetLargestCoordinate(surface.Points)),
+    MinimumEdge(std::max(options.MinimumEdgeRatio * this->Diagonal, this->RoundedEdge)),
     Test(this->Points, this->Octree), Limits{ options.MaximumEdgeLength, options.MaximumArea,
       options.MinimumAngle, std::move(sizing) },
     Proofs(this->Points)
@@ -377,12 +375,10 @@ bool SurfaceRefinement::IsCocircularFacet(Id t, const SurfaceDelaunayTest::Resul
 bool SurfaceRefinement::IsStrong(Id t) const
 {
   const TriangleIds& ids = this->Surface->GetTriangle(t).Points;
-  bool isStrong = false;
-  for (int i = 0; i < 3 && !isStrong && this->Options.Criterion != SurfaceCriterion::Delaunay; ++i)
-  {
-    isStrong = !this->IsRelaxed(Distance(this->Points[ids[i]], this->Points[ids[(i + 1) % 3]]));
-  }
-  return isStrong;
+  const auto isAsked = [&](int i, int k)
+  { return !this->IsRelaxed(Distance(this->Points[ids[i]], this->Points[ids[k]])); };
+  return this->Options.Criterion != SurfaceCriterion::Delaunay &&
+    (isAsked(0, 1) || isAsked(1, 2) || isAsked(2, 0));
 }
 
 bool SurfaceRefinement::IsGood(Id t, SurfaceDelaunayTest::Result& found, bool isStrong) const
@@ -402,7 +398,8 @@ void SurfaceRefinement::StartRescue()
   this->EdgeQueue.clear();
   if (this->Plan.MakesShorterEdges)
   {
-    this->MinimumEdge = std::min(this->MinimumEdge, this->LeastEdge);
+    const double usual = DelaunaySurfaceRefinerOptions().MinimumEdgeRatio * this->Diagonal;
+    this->MinimumEdge = std::min(this->MinimumEdge, std::max(usual, this->RoundedEdge));
   }
 }
 

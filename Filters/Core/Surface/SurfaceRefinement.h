@@ -323,8 +323,8 @@ private:
   const Id NumberOfSurfacePoints;
   const double Diagonal;
   const double Flatness;
-  /** The shortest edge that coordinates allow. */
-  const double LeastEdge;
+  /** The shortest edge that the rounding of coordinates allows. */
+  const double RoundedEdge;
   /** No shorter edge is made. */
   double MinimumEdge;
   Id MaximumNewPoints = 0;
