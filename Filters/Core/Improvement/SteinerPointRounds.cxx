@@ -346,6 +346,7 @@ Status SteinerPointRounds::RefineSurface(
     input.TrianglesToSplit = std::move(this->Mesh->GetRequests().Triangles);
     input.EdgesToSplit = std::move(this->Mesh->GetRequests().Edges);
     this->Mesh.reset();
+    options.IsTrial = true;
   }
   const std::vector<Vec3> points = GetPositions(this->Interior);
   input.MeshPoints = &points;

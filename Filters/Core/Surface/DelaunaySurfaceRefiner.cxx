@@ -374,7 +374,8 @@ private:
   bool IsOpen() const
   {
     const bool isTooFine = this->HasSizes() && this->HasBest &&
-      this->Best.NonDelaunayTriangles.empty() && this->IsStoppedByUser(this->Best);
+      (this->Best.NonDelaunayTriangles.empty() || this->Options.IsTrial) &&
+      this->IsStoppedByUser(this->Best);
     return !this->IsAborted && !this->IsSettled && !isTooFine;
   }
   void Keep(DelaunaySurfaceRefinerOutput&& output);
@@ -384,6 +385,10 @@ private:
       static_cast<Id>(output.NewPoints.size()) >= this->Options.MaximumNewPoints;
   }
   ExecutionContext GetNextPart();
+  Status GetStatus() const
+  {
+    return this->IsAborted ? Status::Aborted() : this->HasBest ? Status() : *this->First;
+  }
 
   const DelaunaySurfaceRefinerInput& Input;
   /** The options, whose IsExact is extended from attempt to attempt, and the flatness they came with. */
@@ -515,6 +520,10 @@ void SurfaceAttempts::RunThinWay(const SurfaceRefinementPlan& first, const ThinW
   plan.Rules = rules;
   plan.AreEdgesLast = !areEdgesFirst;
   plan.CutsArcs = cutsArcs;
+  if (this->Options.IsTrial)
+  {
+    plan.MostPerTriangle = MostPerTriangleInFirstPlans;
+  }
   if (first.GivesUp && !first.RelaxesSome())
   {
     plan.MostPoints = rules == MatchingRules::Stacks ? MostInStacks : MostInThinLayers;
@@ -595,7 +604,7 @@ Status SurfaceAttempts::Run()
 {
   SurfaceRefinementPlan plan;
   // Where sizes are asked for, they are what most of the points are for.
-  plan.GivesUp = !this->HasSizes();
+  plan.GivesUp = !this->HasSizes() || this->Options.IsTrial;
   this->RunUsual(plan);
   const SurfaceCriterion criterion = this->Options.Criterion;
   const bool isStrong = criterion != SurfaceCriterion::Delaunay;
@@ -608,6 +617,10 @@ Status SurfaceAttempts::Run()
     this->Options.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
     this->RunUsual(other);
     this->Options.Criterion = criterion;
+  }
+  if (this->Options.IsTrial)
+  {
+    return this->GetStatus();
   }
   if (isStrong && plan.GivesUp && this->IsOpen())
   {
@@ -630,7 +643,7 @@ Status SurfaceAttempts::Run()
     this->RunUsual(plan);
     this->RunThin(plan);
   }
-  return this->IsAborted ? Status::Aborted() : this->HasBest ? Status() : *this->First;
+  return this->GetStatus();
 }
 
 /** Far from the origin coordinates are rounded to more than matching points differ by. */

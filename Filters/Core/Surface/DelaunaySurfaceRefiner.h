@@ -98,6 +98,12 @@ struct DelaunaySurfaceRefinerOptions
    * hair apart that run into each other. Rules that are tried first may take less.
    */
   Id MaximumNewPoints = 0;
+  /**
+   * Whether the caller drops a surface that misses the criterion anywhere: rules by which parts of it
+   * would miss it are not tried then, nor any after one that takes MaximumNewPoints for sizes or angles.
+   * Triangles may be left that cannot be meshed.
+   */
+  bool IsTrial = false;
 };
 
 struct DelaunaySurfaceRefinerInput
