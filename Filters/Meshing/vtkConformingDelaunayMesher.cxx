@@ -398,6 +398,7 @@ cdm::Status vtkConformingDelaunayMesher::MakeOptions(
   options.LayerAspectRatio = this->LayerAspectRatio;
   options.TetrahedraAcrossLayers = this->TetrahedraAcrossLayers;
   options.SmoothingRounds = this->SmoothingRounds;
+  options.Surface.MaximumTime = this->MaximumTime;
   return this->MakeChoices(options.Choices)
     .Then(
       [&]
@@ -534,4 +535,5 @@ void vtkConformingDelaunayMesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LayerAspectRatio: " << this->LayerAspectRatio << "\n";
   os << indent << "TetrahedraAcrossLayers: " << this->TetrahedraAcrossLayers << "\n";
   os << indent << "SmoothingRounds: " << this->SmoothingRounds << "\n";
+  os << indent << "MaximumTime: " << this->MaximumTime << "\n";
 }

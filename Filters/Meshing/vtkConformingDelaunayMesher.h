@@ -404,6 +404,17 @@ public:
   vtkGetMacro(SmoothingRounds, int);
   ///@}
 
+  ///@{
+  /**
+   * The refinement of the surface and of the tetrahedra stop so much time after the start, unless there is
+   * no mesh without more. Warnings say what the mesh misses, and its certificate which criterion holds; all of
+   * it is valid. What is begun is brought to its end, and the check comes on top. Where the time is over, the
+   * result depends on the machine. Seconds; default 0: no limit; range >= 0.
+   */
+  vtkSetInRangeMacro(MaximumTime, double, 0.0, VTK_DOUBLE_MAX, "s");
+  vtkGetMacro(MaximumTime, double);
+  ///@}
+
   vtkTypeBool ProcessRequest(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
@@ -443,6 +454,7 @@ protected:
   double LayerAspectRatio = 0.0;
   int TetrahedraAcrossLayers = 1;
   int SmoothingRounds = 0;
+  double MaximumTime = 0.0;
 
 private:
   int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);

@@ -39,6 +39,7 @@ cdm::DelaunaySurfaceRefinerOptions MakeOptions(vtkDelaunaySurfaceRefiner* filter
   options.MeshPointClearanceRatio = filter->GetMeshPointClearanceRatio();
   options.MinimumEdgeRatio = filter->GetMinimumEdgeRatio();
   options.MaximumNewPoints = filter->GetMaximumNewPoints();
+  options.MaximumTime = filter->GetMaximumTime();
   return options;
 }
 } // namespace
@@ -157,6 +158,7 @@ void vtkDelaunaySurfaceRefiner::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MeshPointClearanceRatio: " << this->MeshPointClearanceRatio << "\n";
   os << indent << "MinimumEdgeRatio: " << this->MinimumEdgeRatio << "\n";
   os << indent << "MaximumNewPoints: " << this->MaximumNewPoints << "\n";
+  os << indent << "MaximumTime: " << this->MaximumTime << "\n";
   os << indent << "NumberOfEdgePoints: " << this->NumberOfEdgePoints << "\n";
   os << indent << "NumberOfFacetPoints: " << this->NumberOfFacetPoints << "\n";
   os << indent << "NumberOfFlips: " << this->NumberOfFlips << "\n";

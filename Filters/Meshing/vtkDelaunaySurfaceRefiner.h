@@ -34,8 +34,8 @@
  * Failure: an error that names the cells or points, and empty outputs, for an empty input, cells
  * that are not triangles, coordinates that are not finite, or a surface that intersects itself.
  * Triangles that a limit leaves unresolved give a warning and the array Unresolved. They can be meshed
- * whatever the limits are: points that this needs beyond MaximumNewPoints and MinimumEdgeRatio are
- * counted in a warning.
+ * whatever the limits are: points that this needs beyond MaximumNewPoints, MinimumEdgeRatio and
+ * MaximumTime are counted in a warning.
  *
  * Cost: about proportional to the points made, each with a search in an octree.
  *
@@ -150,6 +150,15 @@ public:
   ///@}
 
   ///@{
+  /**
+   * The refinement stops after so much time, unless there is no mesh without more. Where it does, the
+   * result depends on the machine. Seconds; default 0: no limit; range >= 0.
+   */
+  vtkSetInRangeMacro(MaximumTime, double, 0.0, VTK_DOUBLE_MAX, "s");
+  vtkGetMacro(MaximumTime, double);
+  ///@}
+
+  ///@{
   /** Counts of the last run. */
   vtkGetMacro(NumberOfEdgePoints, vtkIdType);
   vtkGetMacro(NumberOfFacetPoints, vtkIdType);
@@ -174,6 +183,7 @@ protected:
   double MeshPointClearanceRatio = 1e-3;
   double MinimumEdgeRatio = 1e-12;
   int MaximumNewPoints = 0;
+  double MaximumTime = 0.0;
 
   vtkIdType NumberOfEdgePoints = 0;
   vtkIdType NumberOfFacetPoints = 0;

@@ -113,6 +113,7 @@ int vtkMovingBoundaryRemesher::RequestData(
   options.Refinement.MinimumAngle = this->MinimumAngle;
   options.Refinement.MaximumEdgeLength = this->MaximumEdgeLength;
   options.Refinement.MaximumNewPoints = this->MaximumNewPoints;
+  options.Refinement.MaximumTime = this->MaximumTime;
   cdm::MovingBoundaryOutput result;
   const cdm::Status status = cdm::RunGuarded(
     [&]
@@ -155,7 +156,14 @@ int vtkMovingBoundaryRemesher::RequestData(
   if (result.Report.PointsBeyondLimits > 0)
   {
     vtkWarningMacro(<< result.Report.PointsBeyondLimits
-                    << " new points are beyond the limits: there is no mesh without them.");
+                    << " new points are beyond the limits (MaximumNewPoints, MaximumTime): there "
+                       "is no mesh without them.");
+  }
+  if (result.Report.TooCoarse > 0)
+  {
+    vtkWarningMacro(<< result.Report.TooCoarse
+                    << " triangles of the boundary are larger than asked for: a limit is reached "
+                       "(MaximumNewPoints, MaximumTime).");
   }
   return 1;
 }
@@ -172,6 +180,7 @@ void vtkMovingBoundaryRemesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MinimumAngle: " << this->MinimumAngle << "\n";
   os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
   os << indent << "MaximumNewPoints: " << this->MaximumNewPoints << "\n";
+  os << indent << "MaximumTime: " << this->MaximumTime << "\n";
   os << indent << "NumberOfStepsTaken: " << this->NumberOfStepsTaken << "\n";
   os << indent << "NumberOfTopologyChanges: " << this->NumberOfTopologyChanges << "\n";
   os << indent << "NumberOfRemovedPoints: " << this->NumberOfRemovedPoints << "\n";

@@ -139,6 +139,15 @@ public:
 
   ///@{
   /**
+   * The refinement of a step stops after so much time, unless there is no mesh without more. Where it
+   * does, the result depends on the machine. Seconds; default 0: no limit; range >= 0.
+   */
+  vtkSetInRangeMacro(MaximumTime, double, 0.0, VTK_DOUBLE_MAX, "s");
+  vtkGetMacro(MaximumTime, double);
+  ///@}
+
+  ///@{
+  /**
    * Of the last run: meshes made, half steps included; steps in which the topology changed; points
    * of the input that are gone; points of the output that are new.
    */
@@ -165,6 +174,7 @@ protected:
   double MinimumAngle = 0.0;
   double MaximumEdgeLength = 0.0;
   int MaximumNewPoints = 0;
+  double MaximumTime = 0.0;
 
   vtkIdType NumberOfStepsTaken = 0;
   vtkIdType NumberOfTopologyChanges = 0;

@@ -126,6 +126,7 @@ int vtkSteinerPointRefiner::RequestData(
   options.StructuralEdges.AccuracyAngle = this->AccuracyAngle;
   options.StructuralEdges.FlatnessRatio = this->FlatnessRatio;
   options.MaximumNewPoints = this->MaximumNewPoints;
+  options.MaximumTime = this->MaximumTime;
   engineInput.AreInteriorPointsFree = this->FreeInteriorPoints;
   cdm::SteinerPointRefinerOutput result;
   const cdm::Status status = cdm::RunGuarded(
@@ -198,6 +199,7 @@ void vtkSteinerPointRefiner::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "AccuracyAngle: " << this->AccuracyAngle << "\n";
   os << indent << "FlatnessRatio: " << this->FlatnessRatio << "\n";
   os << indent << "MaximumNewPoints: " << this->MaximumNewPoints << "\n";
+  os << indent << "MaximumTime: " << this->MaximumTime << "\n";
   os << indent << "NumberOfBoundaryPoints: " << this->NumberOfBoundaryPoints << "\n";
   os << indent << "NumberOfInteriorPoints: " << this->NumberOfInteriorPoints << "\n";
   os << indent << "NumberOfMovedPoints: " << this->NumberOfMovedPoints << "\n";

@@ -178,6 +178,16 @@ public:
   ///@}
 
   ///@{
+  /**
+   * The refinement stops after so much time: the mesh is valid, and RefinementFault tells what it misses.
+   * What is begun is brought to its end. Where the time is over, the result depends on the machine.
+   * Seconds; default 0: no limit; range >= 0.
+   */
+  vtkSetInRangeMacro(MaximumTime, double, 0.0, VTK_DOUBLE_MAX, "s");
+  vtkGetMacro(MaximumTime, double);
+  ///@}
+
+  ///@{
   /** Counts of the last run. */
   vtkGetMacro(NumberOfBoundaryPoints, vtkIdType);
   vtkGetMacro(NumberOfInteriorPoints, vtkIdType);
@@ -212,6 +222,7 @@ protected:
   double AccuracyAngle = 0.0;
   double FlatnessRatio = 5e-7;
   int MaximumNewPoints = 0;
+  double MaximumTime = 0.0;
 
   vtkIdType NumberOfBoundaryPoints = 0;
   vtkIdType NumberOfInteriorPoints = 0;

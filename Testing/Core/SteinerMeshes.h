@@ -61,8 +61,13 @@ inline void ExpectRight(const SteinerPointRefinerInput& input,
   ASSERT_TRUE(CertifyMesh(output.Mesh, &output.Boundary, {}, check).IsOk());
   EXPECT_TRUE(check.IsDelaunay()) << check.GetText();
   EXPECT_EQ(check.UnusedPoints, 0);
-  EXPECT_EQ(check.GetCount(MeshFault::FacetSphere), 0);
-  EXPECT_EQ(output.Report.UnresolvedTriangles, 0);
+  // Without time for the boundary it is that of the input.
+  const bool isRefined = !output.Report.IsLate || output.Report.WeakTriangles == 0;
+  if (isRefined)
+  {
+    EXPECT_EQ(check.GetCount(MeshFault::FacetSphere), 0);
+    EXPECT_EQ(output.Report.UnresolvedTriangles, 0);
+  }
   // The same regions as before.
   MeshCertificate before;
   ASSERT_TRUE(CertifyMesh(*input.Mesh, nullptr, {}, before).IsOk());
@@ -75,8 +80,11 @@ inline void ExpectRight(const SteinerPointRefinerInput& input,
 
   MeshCertificate criteria;
   ASSERT_TRUE(CertifyMesh(output.Mesh, &output.Boundary, {}, criteria, FullCertificate).IsOk());
-  EXPECT_EQ(
-    criteria.GetCount(MeshFault::NegativeCoupling) > 0, output.Report.NegativeCouplings > 0);
+  if (isRefined)
+  {
+    EXPECT_EQ(
+      criteria.GetCount(MeshFault::NegativeCoupling) > 0, output.Report.NegativeCouplings > 0);
+  }
 
   Id counts[5] = { 0, 0, 0, 0, 0 };
   ASSERT_EQ(output.Faults.size(), output.Mesh.Tetrahedra.size());

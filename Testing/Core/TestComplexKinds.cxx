@@ -70,6 +70,7 @@ struct RefinedComplex
   /** Which part of the surface's area misses the criterion. */
   double MissedPart = 0.0;
   Id PointsBeyondLimits = 0;
+  bool IsLate = false;
 };
 
 double GetMissedPart(const DelaunaySurfaceRefinerOutput& refined)
@@ -120,7 +121,7 @@ RefinedComplex MeshComplex(
       report.GetCount(MeshFault::FacetSphere), static_cast<Id>(refined.WeakTriangles.size()));
   }
   return { refined.Surface.Points.size(), isFulfilled, GetMissedPart(refined),
-    refined.Report.PointsBeyondLimits };
+    refined.Report.PointsBeyondLimits, refined.Report.IsLate };
 }
 
 RefinedComplex MeshComplex(const TriangleMesh& surface, SurfaceCriterion criterion)
@@ -634,6 +635,68 @@ TEST(ComplexKinds, LimitsLeaveAMesh)
         options.MinimumEdgeRatio = 0.01;
         MeshComplex(triangulated.Surface, options);
         options.MinimumEdgeRatio = DelaunaySurfaceRefinerOptions().MinimumEdgeRatio;
+      }
+    }
+  }
+}
+
+/**
+ * When the time is over at once, each complex has a mesh all the same. Two sheets of the slab 32 come together
+ * with the first rules, which had been all that was tried then.
+ */
+TEST(ComplexKinds, WithoutTimeThereAreMeshes)
+{
+  for (int kind = 0; kind <= static_cast<int>(ComplexKind::TiltedPlates); ++kind)
+  {
+    for (const std::uint64_t seed : { 1, 2, 3, 4, 5, 6, 32 })
+    {
+      BoundaryTriangulatorOutput triangulated;
+      if (!MakeUnplaced(static_cast<ComplexKind>(kind), seed, triangulated))
+      {
+        continue;
+      }
+      for (int criterion = 0; criterion < 3; ++criterion)
+      {
+        SCOPED_TRACE(GetComplexKindName(static_cast<ComplexKind>(kind)) +
+          (" " + std::to_string(seed)) + ", criterion " + std::to_string(criterion));
+        DelaunaySurfaceRefinerOptions options;
+        options.Criterion = static_cast<SurfaceCriterion>(criterion);
+        options.MaximumTime = 1e-9;
+        MeshComplex(triangulated.Surface, options);
+        options.MaximumEdgeLength = 0.02 * GetBoundingBoxDiagonal(triangulated.Surface.Points);
+        MeshComplex(triangulated.Surface, options);
+      }
+    }
+  }
+}
+
+/** Wherever the time is over: the seconds are what these fans take, and parts of it. */
+TEST(ComplexKinds, TheTimeLimitLeavesAMesh)
+{
+  for (const std::uint64_t seed : { 1, 2, 5 })
+  {
+    BoundaryTriangulatorOutput triangulated;
+    ASSERT_TRUE(MakeUnplaced(ComplexKind::Fan, seed, triangulated));
+    for (int criterion = 0; criterion < 3; ++criterion)
+    {
+      for (const double seconds : { 1e-9, 1e-4, 3e-4, 1e-3, 3e-3, 0.01 })
+      {
+        SCOPED_TRACE("seed " + std::to_string(seed) + ", criterion " + std::to_string(criterion) +
+          ", seconds " + std::to_string(seconds));
+        DelaunaySurfaceRefinerOptions options;
+        options.Criterion = static_cast<SurfaceCriterion>(criterion);
+        options.MaximumTime = seconds;
+        const RefinedComplex without = MeshComplex(triangulated.Surface, options);
+        options.MaximumEdgeLength = 0.05;
+        const RefinedComplex with = MeshComplex(triangulated.Surface, options);
+        // What the criterion Delaunay needs is made in any case, and counted.
+        if (seconds == 1e-9)
+        {
+          EXPECT_EQ(without.IsLate, criterion > 0);
+          EXPECT_GT(without.PointsBeyondLimits, 0);
+          EXPECT_TRUE(with.IsLate);
+          EXPECT_LT(with.Points, 2 * without.Points);
+        }
       }
     }
   }

@@ -321,6 +321,26 @@ TEST(ConformingMesher, LimitsAreSaid)
   EXPECT_TRUE(output.Certificate.IsDelaunay());
 }
 
+/**
+ * Whatever is done when the time is over, the mesh is valid, and what it misses is said. The whole run takes
+ * three seconds, and is stopped at parts of that.
+ */
+TEST(ConformingMesher, TheTimeLimitLeavesAMesh)
+{
+  const PolygonSoup cube = MakeCube();
+  ConformingMesherOptions options;
+  options.Choices.MaximumEdgeLength = 0.04;
+  for (double seconds = 1e-9; seconds < 3.0; seconds = std::max(0.01, 2.0 * seconds))
+  {
+    SCOPED_TRACE("seconds " + std::to_string(seconds));
+    options.Surface.MaximumTime = seconds;
+    const ConformingMesherOutput output = Mesh(cube, options);
+    EXPECT_TRUE(output.Certificate.IsDelaunay());
+    EXPECT_FALSE(output.Mesh.Tetrahedra.empty());
+    EXPECT_TRUE(seconds > 1e-9 || Warns(output, "MaximumTime"));
+  }
+}
+
 TEST(ConformingMesher, AbortsAtAnyTimeAndNamesItsStages)
 {
   const PolygonSoup cube = MakeCube();

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <random>
+#include <thread>
 #include <vector>
 
 using namespace cdm;
@@ -326,6 +328,94 @@ TEST(SteinerPointRefiner, DoesNotDependOnThreads)
         EXPECT_EQ(one.Faults, several.Faults);
       }
     }
+  }
+}
+
+/** Refines with a time limit that is over when the stage has reported its progress so many times. */
+SteinerPointRefinerOutput RefineUntil(int call, double seconds,
+  const SteinerPointRefinerInput& input, SteinerPointRefinerOptions options)
+{
+  options.MaximumTime = seconds;
+  const auto end = std::chrono::steady_clock::now() +
+    std::chrono::milliseconds(static_cast<int>(1000.0 * seconds) + 10);
+  int calls = 0;
+  const auto wait = [&](double, const char*)
+  {
+    if (++calls == call)
+    {
+      std::this_thread::sleep_until(end);
+    }
+  };
+  return Refine(input, options, ExecutionContext(wait, {}, 2));
+}
+
+/** Which of its reports of progress a stage makes before it splits its boundary, and how many there are. */
+std::vector<int> FindSplits(
+  const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options, int& calls)
+{
+  calls = 0;
+  std::vector<int> splits;
+  const auto note = [&](double, const char* activity)
+  {
+    ++calls;
+    if (std::string(activity).find("Refining the surface") == 0)
+    {
+      splits.push_back(calls);
+    }
+  };
+  Refine(input, options, ExecutionContext(note, {}, 2));
+  return splits;
+}
+
+TEST(SteinerPointRefiner, TheTimeLimitLeavesAMesh)
+{
+  for (unsigned int seed = 1; seed <= 2; ++seed)
+  {
+    std::mt19937_64 generator(seed);
+    const Stage3 mesh = MakeMesh(MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, 2, 0.5 * seed));
+    SteinerPointRefinerInput input;
+    input.Mesh = &mesh.Output.Mesh;
+    SteinerPointRefinerOptions options;
+    options.DihedralAngleTarget = 20.0;
+    options.MaximumEdgeLength = seed == 1 ? 0.1 : 0.0;
+    options.SmoothingRounds = 3;
+    int calls = 0;
+    std::vector<int> chosen = FindSplits(input, options, calls);
+    ASSERT_GT(chosen.size(), 4u);
+    chosen.erase(chosen.begin(), chosen.end() - 4);
+    for (int part = 1; part < 8; ++part)
+    {
+      chosen.push_back(part * calls / 8);
+    }
+    for (const int call : chosen)
+    {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", call " + std::to_string(call));
+      EXPECT_TRUE(RefineUntil(call, 0.5, input, options).Report.IsLate);
+    }
+  }
+}
+
+/**
+ * Splits of the boundary that are not brought to their end are taken back, to a state that is some rounds
+ * older. Points that were gone then kept their sizes: with 64 of them memory of others was written, or the
+ * search for sizes did not end.
+ */
+TEST(SteinerPointRefiner, SizesOfPointsGoWithThem)
+{
+  std::mt19937_64 generator(1);
+  const Stage3 mesh = MakeMesh(MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, 2, 0.5));
+  SteinerPointRefinerInput input;
+  input.Mesh = &mesh.Output.Mesh;
+  SteinerPointRefinerOptions options;
+  options.DihedralAngleTarget = 20.0;
+  options.MaximumEdgeLength = 0.06;
+  int calls = 0;
+  const std::vector<int> splits = FindSplits(input, options, calls);
+  ASSERT_GT(splits.size(), 12u);
+  for (const std::size_t last : { 4, 8, 12 })
+  {
+    SCOPED_TRACE("the split before the last " + std::to_string(last - 1));
+    EXPECT_TRUE(RefineUntil(splits[splits.size() - last], 2.0, input, options).Report.IsLate);
   }
 }
 

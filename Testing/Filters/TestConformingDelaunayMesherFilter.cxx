@@ -131,6 +131,24 @@ TEST(ConformingDelaunayMesherFilter, MeshesTwoMaterials)
   FindArray(GetSurface(filter, 2)->GetCellData(), "ProblemKind", 1, VTK_INT);
 }
 
+/** The mesh is right but for the size that was asked for, and its certificate says what holds. */
+TEST(ConformingDelaunayMesherFilter, TheTimeLimitLeavesAMesh)
+{
+  vtkNew<vtkConformingDelaunayMesher> filter;
+  filter->SetInputData(MakeTurnedBoxes());
+  filter->SetMaximumEdgeLength(0.05);
+  filter->SetMaximumTime(1e-9);
+  vtkNew<EventRecorder> recorder;
+  recorder->Watch(filter);
+  filter->Update();
+  EXPECT_EQ(recorder->Errors, "");
+  EXPECT_TRUE(Contains(recorder->Warnings, "MaximumTime")) << recorder->Warnings;
+  EXPECT_EQ(GetCertificate(filter->GetOutput()).find("CLEAN FOR FINITE VOLUMES\n"), 0u)
+    << GetCertificate(filter->GetOutput());
+  EXPECT_NEAR(GetVolume(filter->GetOutput(), 3), 1.0, 1e-12);
+  EXPECT_NEAR(GetVolume(filter->GetOutput(), 7), 2.0, 1e-12);
+}
+
 /** As it is: what finite volumes ask for; with each value set, as before there were purposes. */
 TEST(ConformingDelaunayMesherFilter, IsForFiniteVolumesUnlessTold)
 {

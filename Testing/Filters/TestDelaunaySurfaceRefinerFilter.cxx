@@ -339,6 +339,14 @@ TEST(DelaunaySurfaceRefinerFilter, ReportsUnresolvedTriangles)
   EXPECT_EQ(sum, unresolved);
 
   run.Refiner->SetMaximumNewPoints(0);
+  run.Refiner->SetMaximumTime(1e-9);
+  run.Recorder->Warnings.clear();
+  run.Refiner->Update();
+  EXPECT_EQ(run.Recorder->Errors, "");
+  EXPECT_GT(run.Refiner->GetNumberOfUnresolvedTriangles(), 0);
+  EXPECT_TRUE(Contains(run.Recorder->Warnings, "MaximumTime")) << run.Recorder->Warnings;
+
+  run.Refiner->SetMaximumTime(0.0);
   run.Refiner->Update();
   EXPECT_EQ(run.Refiner->GetNumberOfUnresolvedTriangles(), 0);
   EXPECT_FALSE(run.GetOutput(0)->GetCellData()->HasArray("Unresolved"));

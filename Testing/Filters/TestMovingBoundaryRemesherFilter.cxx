@@ -216,6 +216,16 @@ TEST(MovingBoundaryRemesherFilter, LimitsLeaveAMesh)
   EXPECT_EQ(recorder->Errors, "");
   EXPECT_TRUE(Contains(recorder->Warnings, "beyond the limits")) << recorder->Warnings;
   EXPECT_GT(filter->GetOutput()->GetNumberOfCells(), 0);
+
+  filter->SetMaximumNewPoints(0);
+  filter->SetMaximumTime(1e-9);
+  filter->SetMaximumEdgeLength(0.1);
+  recorder->Warnings.clear();
+  filter->Update();
+  EXPECT_EQ(recorder->Errors, "");
+  EXPECT_TRUE(Contains(recorder->Warnings, "larger than asked for")) << recorder->Warnings;
+  EXPECT_TRUE(Contains(recorder->Warnings, "MaximumTime")) << recorder->Warnings;
+  EXPECT_GT(filter->GetOutput()->GetNumberOfCells(), 0);
 }
 
 TEST(MovingBoundaryRemesherFilter, Aborts)

@@ -197,6 +197,14 @@ TEST(SteinerPointRefinerFilter, SaysWhatItCouldNotReach)
     large += faults->GetComponent(i, 0) == 1.0;
   }
   EXPECT_EQ(large, filter->GetNumberOfTooLargeTetrahedra());
+
+  filter->SetMaximumNewPoints(0);
+  filter->SetMaximumTime(1e-9);
+  recorder->Warnings.clear();
+  filter->Update();
+  EXPECT_EQ(recorder->Errors, "");
+  EXPECT_TRUE(Contains(recorder->Warnings, "MaximumTime")) << recorder->Warnings;
+  EXPECT_GT(filter->GetNumberOfTooLargeTetrahedra(), 0);
 }
 
 TEST(SteinerPointRefinerFilter, RefusesBadInput)

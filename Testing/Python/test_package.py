@@ -238,6 +238,17 @@ class NumPyAlone(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt):
             cd.mesh((CUBE_POINTS, CUBE_QUADS), progress=interrupt)
 
+    def test_a_time_limit_leaves_a_mesh(self):
+        with self.assertWarnsRegex(cd.MeshingWarning, "maximum_time"):
+            mesh = cd.mesh((CUBE_POINTS, CUBE_QUADS), edge_length=0.05, maximum_time=1e-9)
+        self.assertAlmostEqual(volumes(mesh).sum(), 1.0)
+        self.assertTrue(mesh.certificate.is_delaunay)
+        with self.assertWarnsRegex(cd.MeshingWarning, "maximum_time"):
+            refined = cd.refine_mesh(mesh, edge_length=0.05, maximum_time=1e-9)
+        self.assertAlmostEqual(volumes(refined).sum(), 1.0)
+        with self.assertRaisesRegex(cd.OptionError, "maximum_time"):
+            cd.mesh((CUBE_POINTS, CUBE_QUADS), maximum_time=-1.0)
+
     def test_arrays_keep_their_memory(self):
         points = cd.mesh((CUBE_POINTS, CUBE_QUADS), edge_length=0.1).points
         copy = points.copy()

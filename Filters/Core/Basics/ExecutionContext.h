@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ExecutionContext.h
- * @brief What a running stage has from its caller: progress, abort, and how many threads it may use.
+ * @brief What a running stage has from its caller: progress, abort, time and threads.
  */
 #ifndef cdmExecutionContext_h
 #define cdmExecutionContext_h
 
 #include "Core/Basics/ThreadTeam.h"
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -19,10 +20,38 @@ namespace cdm
 /** Loops of steps of some microseconds, or less, call Continue() once in so many. */
 constexpr std::size_t StepsBetweenChecks = 1024;
 
+/** A time that may be set: the earliest one counts. */
+class Deadline
+{
+public:
+  /** @param seconds from now on; 0: none */
+  void SetAfter(double seconds)
+  {
+    if (seconds > 0.0)
+    {
+      // Longer than a century is for ever, and would not fit.
+      constexpr double longest = 3e9;
+      const std::chrono::duration<double> span(seconds < longest ? seconds : longest);
+      const Clock::time_point time =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(span);
+      this->Time = this->Time < time ? this->Time : time;
+    }
+  }
+  bool IsOver() const { return this->Time != Never && Clock::now() >= this->Time; }
+
+private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr Clock::time_point Never = Clock::time_point::max();
+  Clock::time_point Time = Never;
+};
+
 /**
  * Stages call Continue() in every loop that can last longer than 50 ms. A default constructed
  * context neither reports nor aborts, and has one thread. Continue() belongs on the thread that
  * called the stage. No result depends on the number of threads.
+ *
+ * A context may have a time limit. Refinements that find it over end with what they have; all else
+ * goes on, so that there is a result.
  */
 class ExecutionContext
 {
@@ -49,6 +78,27 @@ public:
    * is the only one.
    */
   const std::shared_ptr<ThreadTeam>& GetThreads() const { return this->Threads; }
+
+  const Deadline& GetDeadline() const { return this->TimeLimit; }
+  /** Whether the time limit is over, if there is one. */
+  bool IsLate() const { return this->TimeLimit.IsOver(); }
+  /** The same context, with a time limit from now on unless there is an earlier one. 0: none. */
+  ExecutionContext WithTimeLimit(double seconds) const
+  {
+    ExecutionContext limited(*this);
+    limited.TimeLimit.SetAfter(seconds);
+    return limited;
+  }
+  /** The same threads and time limit, with other functions; a whole, not a part. */
+  ExecutionContext WithFunctions(ProgressFunction progress, AbortFunction abort) const
+  {
+    ExecutionContext other(*this);
+    other.Progress = std::move(progress);
+    other.Abort = std::move(abort);
+    other.Begin = 0.0;
+    other.End = 1.0;
+    return other;
+  }
 
   /** Report progress within this context's share; false if the stage has to return Aborted. */
   bool Continue(double fraction, const char* activity) const
@@ -87,6 +137,7 @@ private:
   AbortFunction Abort;
   double Begin = 0.0;
   double End = 1.0;
+  Deadline TimeLimit;
   std::shared_ptr<ThreadTeam> Threads;
 };
 } // namespace cdm

@@ -46,6 +46,7 @@ void ReadLimits(InputReader& reader, DelaunaySurfaceRefinerOptions& options)
   reader.Read("mesh_point_clearance_ratio", options.MeshPointClearanceRatio, 0.0, 1.0);
   reader.Read("minimum_edge_ratio", options.MinimumEdgeRatio, 0.0, 1.0);
   reader.Read("maximum_new_points", options.MaximumNewPoints, 0, LargestId);
+  reader.Read("maximum_time", options.MaximumTime, 0.0, Infinity);
   ReadOptions(reader, options.StructuralEdges);
 }
 
@@ -94,6 +95,7 @@ void ReadOptions(InputReader& reader, SteinerPointRefinerOptions& options)
   reader.Read("criterion", options.Criterion, SurfaceCriterion::SmallestSphere,
     SurfaceCriterion::SmallestSphereAndEdges);
   reader.Read("maximum_new_points", options.MaximumNewPoints, 0, LargestId);
+  reader.Read("maximum_time", options.MaximumTime, 0.0, Infinity);
   ReadOptions(reader, options.StructuralEdges);
 }
 

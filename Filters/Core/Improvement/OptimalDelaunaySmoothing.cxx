@@ -301,6 +301,10 @@ Status SmoothOptimalDelaunay(
       {
         return Status::Aborted();
       }
+      if (point % MovesBetweenChecks == 0 && context.IsLate())
+      {
+        return Status();
+      }
       isMoved = (mesh.IsFree(point) && smoothing.Move(point)) || isMoved;
     }
   }

@@ -46,7 +46,7 @@ RefinedMesh::RefinedMesh(TetMesh mesh, const RefinedBoundary& boundary,
   const RefinedMeshOptions& options)
   : Mesh(std::move(mesh)), Boundary(boundary), Limits(options.Limits),
     FirstInside(static_cast<Id>(boundary.Surface.Points.size())),
-    MaximumNewPoints(options.MaximumNewPoints),
+    MaximumNewPoints(options.MaximumNewPoints), TimeLimit(options.TimeLimit),
     Threads(options.Threads ? options.Threads : std::make_shared<ThreadTeam>(1)), Memory(memory),
     Shape(std::make_unique<BoundaryShape>(boundary.Surface, boundary.Edges, boundary.KeptEdges,
       options.SharpPlaneAngle, options.LayerAspectRatio)),

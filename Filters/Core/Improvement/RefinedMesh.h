@@ -71,6 +71,8 @@ struct RefinedMeshOptions
 {
   TetrahedronLimits Limits;
   Id MaximumNewPoints = 0;
+  /** When it is over, no more points are inserted, as if there were as many as allowed. */
+  Deadline TimeLimit;
   /** Plane angles between structural edges below this are sharp. Degrees; see SharpAngles. */
   double SharpPlaneAngle = UsualSharpPlaneAngle;
   /** How many times as wide as thick thin layers are at least; 0: see ThinLayers. */
@@ -116,8 +118,11 @@ public:
    */
   TetMesh TakeMesh();
   const RefinedMeshReport& GetReport() const { return this->Report; }
-  /** Whether as many points have been inserted as allowed. */
-  bool IsFull() const { return this->Report.InsertedPoints >= this->MaximumNewPoints; }
+  /** Whether as many points have been inserted as allowed, or the time is over. */
+  bool IsFull() const
+  {
+    return this->Report.InsertedPoints >= this->MaximumNewPoints || this->TimeLimit.IsOver();
+  }
   const TetrahedronLimits& GetLimits() const { return this->Limits; }
   const RefinedBoundary& GetBoundary() const { return this->Boundary; }
   ThreadTeam& GetThreads() const { return *this->Threads; }
@@ -268,6 +273,7 @@ private:
    */
   Id FirstInside;
   Id MaximumNewPoints;
+  Deadline TimeLimit;
   const std::shared_ptr<ThreadTeam> Threads;
   std::vector<CavitySearch> Searches;
   SliverMemory& Memory;

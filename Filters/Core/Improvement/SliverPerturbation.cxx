@@ -148,6 +148,10 @@ bool Perturbation::Run(const ExecutionContext& context, const char* activity, Vi
     {
       return false;
     }
+    if (i % SliversBetweenChecks == 0 && context.IsLate())
+    {
+      return true;
+    }
     if (!IsGone(this->Slivers[i], this->Mesh))
     {
       visit(this->Slivers[i], this->Mend(i));

@@ -49,7 +49,10 @@ private:
   bool HasFewRequests() const;
   Status RefineInside(bool isShapeTested);
   Status Smooth();
-  bool IsOutOfRounds() const { return this->Output.Report.Rounds >= MaximumRounds; }
+  bool IsOutOfRounds() const
+  {
+    return this->Output.Report.Rounds >= MaximumRounds || this->Context.IsLate();
+  }
   void FindFaults();
   SteinerFault FindFault(const TetrahedronIds& ids, Id region) const;
   bool IsInevitable(const TetrahedronIds& ids, Id region) const;
@@ -73,6 +76,7 @@ Status SteinerPointRefinement::Run()
                .Then([this] { return this->RefineShapes(); })
                .Then([this] { return this->Smooth(); });
   }
+  this->Output.Report.IsLate = this->Context.IsLate();
   if (status.IsOk())
   {
     this->Output.Mesh = this->Rounds.Finish();
@@ -229,19 +233,27 @@ std::vector<Warning> MakeWarnings(const SteinerPointRefinerOutput& output)
 {
   std::vector<Warning> warnings;
   const SteinerPointRefinerReport& report = output.Report;
+  if (report.IsLate)
+  {
+    warnings.push_back(
+      { "The time limit (MaximumTime) was reached in round " + std::to_string(report.Rounds) +
+        " of the refinement: the mesh is valid, but what was not done by then is left out." });
+  }
   const std::string faults = ListFaults(report);
   if (!faults.empty())
   {
-    warnings.push_back(
-      { "Of " + std::to_string(output.Mesh.Tetrahedra.size()) + " tetrahedra " + faults +
-        " than asked for: see the array RefinementFault. Ask for less, or allow more points." });
+    warnings.push_back({ "Of " + std::to_string(output.Mesh.Tetrahedra.size()) + " tetrahedra " +
+      faults + " than asked for: see the array RefinementFault. Ask for less, or allow more " +
+      (report.IsLate ? "time." : "points.") });
   }
   if (report.WeakTriangles > 0)
   {
     warnings.push_back({ std::to_string(report.WeakTriangles) +
-      " triangles of the boundary cannot have empty smallest spheres: sheets lie too close to each "
-      "other there. The mesh is Delaunay, but no Steiner points are made. Unite the sheets with a "
-      "MergeTolerance of the boundary triangulator." });
+      " triangles of the boundary have no empty smallest spheres" +
+      (report.IsLate ? std::string(" yet") : ": sheets lie too close to each other there") +
+      ". The mesh is Delaunay, but no Steiner points are made. " +
+      (report.IsLate ? "Allow more time."
+                     : "Unite the sheets with a MergeTolerance of the boundary triangulator.") });
   }
   else if (report.UnresolvedTriangles > 0)
   {
@@ -251,8 +263,8 @@ std::vector<Warning> MakeWarnings(const SteinerPointRefinerOutput& output)
   if (report.NegativeCouplings > 0)
   {
     warnings.push_back({ std::to_string(report.NegativeCouplings) +
-      " edges of the boundary have a negative coupling: allow more points, or use the criterion "
-      "SmallestSphereAndEdges." });
+      " edges of the boundary have a negative coupling: allow more " +
+      (report.IsLate ? "time" : "points") + ", or use the criterion SmallestSphereAndEdges." });
   }
   return warnings;
 }
@@ -265,15 +277,16 @@ Status RunRefineBySteinerPoints(const SteinerPointRefinerInput& input,
   // The number of rounds is not known: progress is the largest fraction reported so far.
   double largest = 0.0;
   bool isGoingOn = true;
-  const ExecutionContext ascending(
-    [&](double fraction, const char* activity)
-    {
-      largest = std::max(largest, fraction);
-      const std::string text =
-        std::string(activity) + ", round " + std::to_string(output.Report.Rounds + 1);
-      isGoingOn = context.Continue(largest, text.c_str());
-    },
-    [&] { return !isGoingOn; }, context.GetNumberOfThreads());
+  const ExecutionContext ascending = context.WithTimeLimit(options.MaximumTime)
+                                       .WithFunctions(
+                                         [&](double fraction, const char* activity)
+                                         {
+                                           largest = std::max(largest, fraction);
+                                           const std::string text = std::string(activity) +
+                                             ", round " + std::to_string(output.Report.Rounds + 1);
+                                           isGoingOn = context.Continue(largest, text.c_str());
+                                         },
+                                         [&] { return !isGoingOn; });
   const Status status = SteinerPointRefinement(input, options, ascending, output).Run();
   if (!status.IsOk())
   {

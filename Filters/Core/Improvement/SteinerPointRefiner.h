@@ -36,22 +36,22 @@
  * |          | boundary is final             |                                                  |
  * | finish   | SliverSchedule::Finish()      | end                                              |
  *
- * Sizes are also left when as many points have been made as allowed, or when a round has split
- * nothing; shapes then go to slivers. No round is started after a thousand, which no input came
- * near.
+ * Sizes are also left when as many points have been made as allowed, when MaximumTime is over, or
+ * when a round has split nothing; shapes then go to slivers. No round is started after that time,
+ * nor after a thousand, which no input came near.
  *
  * Guarantees: the mesh is Delaunay by the pulling rule and conforms to the same surface; facets on
  * it fulfil criterion 3.1 at least. (Where the surface refiner does not end with that criterion, no
  * points are inserted: the mesh is that of stage 3, and the report counts the WeakTriangles.) The
  * report counts the couplings of the box method that are still negative. Points of the mesh that
  * are not free keep their coordinates; those of the surface that are stay in their facets and on
- * their edges. Deterministic, whatever the number of threads. Tetrahedra across thin layers
- * (ThinLayers.h) and across sharp angles (SharpAngles.h), which would be refined for ever, are not
- * refined for their shape: Faults tells which tetrahedra miss what was asked for, the report counts
- * them. Failure: InvalidInput names tetrahedra without a region, inverted or flat ones, triangles
- * that are no facets or facets that are missing among them, points that are not finite. Cells are
- * tetrahedra if no boundary is given, otherwise its triangles. The output is then empty, as after
- * an abort.
+ * their edges. Deterministic, whatever the number of threads, unless MaximumTime is reached.
+ * Tetrahedra across thin layers (ThinLayers.h) and across sharp angles (SharpAngles.h), which would
+ * be refined for ever, are not refined for their shape: Faults tells which tetrahedra miss what was
+ * asked for, the report counts them. Failure: InvalidInput names tetrahedra without a region,
+ * inverted or flat ones, triangles that are no facets or facets that are missing among them, points
+ * that are not finite. Cells are tetrahedra if no boundary is given, otherwise its triangles. The
+ * output is then empty, as after an abort.
  * Cost: about 15 microseconds for a tetrahedron of the result; 250 bytes at the peak.
  */
 #ifndef cdmSteinerPointRefiner_h
@@ -102,6 +102,12 @@ struct SteinerPointRefinerOptions
    * reached.
    */
   Id MaximumNewPoints = 0;
+  /**
+   * The refinement stops after so many seconds: the mesh is valid, and misses what was not done by
+   * then. Checks and the last mesh come on top of it. 0: off. A result that took as long depends on
+   * the machine.
+   */
+  double MaximumTime = 0.0;
   /** Rounds of OptimalDelaunaySmoothing.h. 0: none. */
   int SmoothingRounds = 0;
 };
@@ -167,6 +173,8 @@ struct SteinerPointRefinerReport
    * refined.
    */
   Id WeakTriangles = 0;
+  /** Whether MaximumTime was over before all was done. */
+  bool IsLate = false;
   /** Edges of the boundary with a negative coupling. */
   Id NegativeCouplings = 0;
 };

@@ -226,6 +226,7 @@ RefinedMeshOptions SteinerPointRounds::GetMeshOptions() const
   options.LayerAspectRatio = this->Options.LayerAspectRatio;
   options.SurfaceSizes = this->SurfaceSizes;
   options.Threads = this->Context.GetThreads();
+  options.TimeLimit = this->Context.GetDeadline();
   return options;
 }
 
@@ -480,6 +481,7 @@ void SteinerPointRounds::NoteState()
   // Assigned one by one, they keep their memory.
   this->Noted.Surface = this->Surface;
   this->Noted.Edges = this->Edges;
+  this->Noted.SurfaceSources = this->SurfaceSources;
   this->Mesh->GetInterior(this->Noted.Interior);
 }
 
@@ -496,8 +498,11 @@ Status SteinerPointRounds::RestoreState(const ExecutionContext& context)
   }
   this->HasSplitNothing = true;
   this->HasFinalBoundary = true;
-  this->Report.BoundaryPoints -=
-    static_cast<Id>(this->Surface.Points.size() - this->Noted.Surface.Points.size());
+  const std::size_t noted = this->Noted.Surface.Points.size();
+  this->Report.BoundaryPoints -= static_cast<Id>(this->Surface.Points.size() - noted);
+  // Points that were made since then may have sizes by now.
+  this->SurfaceSizes.resize(std::min(this->SurfaceSizes.size(), noted));
+  this->SurfaceSources = this->Noted.SurfaceSources;
   this->Surface.SourceCells = this->Noted.Surface.SourceCells;
   this->Edges = std::move(this->Noted.Edges);
   return this->MakeMesh(this->Noted.Surface, this->Noted.Interior,

@@ -91,6 +91,7 @@ private:
   {
     TriangleMesh Surface;
     std::vector<StructuralEdge> Edges;
+    std::vector<Id> SurfaceSources;
     std::vector<InteriorPoint> Interior;
     /** How many points had come, gone or moved by then. */
     Id NumberOfChanges = 0;

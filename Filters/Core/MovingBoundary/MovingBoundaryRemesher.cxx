@@ -660,6 +660,7 @@ Status Remeshing::Remesh(
     return this->Describe(status, surface);
   }
   this->Output.Report.UnresolvedTriangles = static_cast<Id>(refined.UnresolvedTriangles.size());
+  this->Output.Report.TooCoarse = refined.Report.TooCoarse;
   this->Output.Report.PointsBeyondLimits += refined.Report.PointsBeyondLimits;
   std::vector<Id> origins = surface.Origins;
   this->AddNewPoints(refined.NewPoints, origins);

@@ -81,6 +81,8 @@ struct MovingBoundaryReport
   Id PointsBeyondLimits = 0;
   /** Triangles of the boundary that do not fulfil the criterion, after the last step. */
   Id UnresolvedTriangles = 0;
+  /** Triangles of the boundary that a limit has left larger than asked for, after the last step. */
+  Id TooCoarse = 0;
 };
 
 struct MovingBoundaryOutput

@@ -66,7 +66,8 @@ class ConformingMesher
 public:
   ConformingMesher(const ConformingMesherInput& input, const ConformingMesherOptions& options,
     const ExecutionContext& context, ConformingMesherOutput& output)
-    : Input(input), Options(options), Context(context), Output(output)
+    : Input(input), Options(options), Context(context.WithTimeLimit(options.Surface.MaximumTime)),
+      Output(output)
   {
   }
 
@@ -120,7 +121,7 @@ private:
 
   const ConformingMesherInput& Input;
   const ConformingMesherOptions& Options;
-  const ExecutionContext& Context;
+  const ExecutionContext Context;
   ConformingMesherOutput& Output;
   /** What the choices became. */
   MeshSettings Settings;

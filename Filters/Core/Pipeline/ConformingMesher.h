@@ -51,7 +51,10 @@ struct ConformingMesherOptions
   MeshOptionChoices Choices;
   /** What counts as one point, and what is repaired. */
   BoundaryTriangulatorOptions Boundary;
-  /** Limits of the surface; Criterion and MaximumEdgeLength are those of Choices. */
+  /**
+   * Limits of the surface; Criterion and MaximumEdgeLength are those of Choices. MaximumTime counts from
+   * the first stage on, for Steiner points as well.
+   */
   DelaunaySurfaceRefinerOptions Surface;
   /**
    * How far the surface may be from that of the input where it is finer than edges are to be. Model

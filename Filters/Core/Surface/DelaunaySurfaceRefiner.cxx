@@ -342,7 +342,7 @@ public:
     const DelaunaySurfaceRefinerOptions& options, const ExecutionContext& context,
     DelaunaySurfaceRefinerOutput& output)
     : Input(input), Options(options), GivenFlatness(options.StructuralEdges.FlatnessRatio),
-      Context(context), Best(output)
+      Context(context.WithTimeLimit(options.MaximumTime)), Best(output)
   {
   }
 
@@ -360,6 +360,7 @@ private:
   void RunThinWay(const SurfaceRefinementPlan& first, const ThinWay& way);
   void RunThin(const SurfaceRefinementPlan& first);
   void RunRelaxed(SurfaceRefinementPlan plan);
+  void RunLastResort(SurfaceRefinementPlan plan);
   bool HasSizes() const
   {
     return this->Options.MaximumEdgeLength > 0.0 || this->Options.MaximumArea > 0.0 ||
@@ -367,22 +368,35 @@ private:
   }
   bool HasUserLimits() const
   {
-    return this->Options.MaximumNewPoints > 0 ||
+    return this->Options.MaximumNewPoints > 0 || this->IsLate() ||
       this->Options.MinimumEdgeRatio > DelaunaySurfaceRefinerOptions().MinimumEdgeRatio;
   }
-  /** Whether to try again. What was too fine for the user's limit would be so again. */
+  /** Whether no attempt has come to its end, and the user has not stopped them. */
+  bool IsUnfinished() const { return !this->IsAborted && !this->IsSettled; }
+  /**
+   * Whether to try again. What was too fine for the user's limit would be so again, and late is only
+   * tried what there is no mesh without.
+   */
   bool IsOpen() const
   {
+    if (this->IsLate())
+    {
+      return this->IsLastResort && this->IsUnfinished() && !this->HasMesh();
+    }
     const bool isTooFine = this->HasSizes() && this->HasBest &&
       (this->Best.NonDelaunayTriangles.empty() || this->Options.IsTrial) &&
       this->IsStoppedByUser(this->Best);
-    return !this->IsAborted && !this->IsSettled && !isTooFine;
+    return this->IsUnfinished() && !isTooFine;
   }
+  bool IsLate() const { return this->Context.IsLate(); }
+  /** Whether the best so far can be meshed. */
+  bool HasMesh() const { return this->HasBest && this->Best.NonDelaunayTriangles.empty(); }
   void Keep(DelaunaySurfaceRefinerOutput&& output);
   bool IsStoppedByUser(const DelaunaySurfaceRefinerOutput& output) const
   {
-    return this->Options.MaximumNewPoints > 0 &&
-      static_cast<Id>(output.NewPoints.size()) >= this->Options.MaximumNewPoints;
+    const auto count = static_cast<Id>(output.NewPoints.size());
+    return (this->IsLate() && !this->IsLastResort) ||
+      (this->Options.MaximumNewPoints > 0 && count >= this->Options.MaximumNewPoints);
   }
   ExecutionContext GetNextPart();
   Status GetStatus() const
@@ -394,7 +408,7 @@ private:
   /** The options, whose IsExact is extended from attempt to attempt, and the flatness they came with. */
   DelaunaySurfaceRefinerOptions Options;
   const double GivenFlatness;
-  const ExecutionContext& Context;
+  const ExecutionContext Context;
   DelaunaySurfaceRefinerOutput& Best;
   bool HasBest = false;
   /** Status of the first attempt. */
@@ -402,6 +416,8 @@ private:
   bool IsAborted = false;
   /** Whether an attempt came to its end, see SurfaceRefiner. */
   bool IsSettled = false;
+  /** Whether what there is no mesh without is made, whatever the limits are. */
+  bool IsLastResort = false;
   /** Whether the facets of the last attempt were plane but for rounding. */
   bool HasRoundedFacets = false;
   /** Ways that gave up at needles, with few points. */
@@ -506,7 +522,7 @@ void SurfaceAttempts::RunUsual(SurfaceRefinementPlan plan)
 /** Refines with rules for thin layers, if nothing has ended yet or if fewer points are wanted. */
 void SurfaceAttempts::RunThinWay(const SurfaceRefinementPlan& first, const ThinWay& way)
 {
-  const bool isBetterWanted = first.GivesUp && this->IsSettled;
+  const bool isBetterWanted = first.GivesUp && this->IsSettled && !this->IsLate();
   if (this->IsAborted || !(this->IsOpen() || isBetterWanted))
   {
     return;
@@ -600,6 +616,27 @@ void SurfaceAttempts::RunRelaxed(SurfaceRefinementPlan plan)
   this->IsSettled = hasEnded;
 }
 
+/**
+ * Limits are for what the user asks for beyond a mesh, not for the mesh itself. Late this begins as if
+ * the criterion Delaunay were all that is asked for.
+ */
+void SurfaceAttempts::RunLastResort(SurfaceRefinementPlan plan)
+{
+  this->IsLastResort = true;
+  plan.RelaxedLength = Infinity;
+  plan.MakesShorterEdges = true;
+  plan.IsRescue = this->IsLate();
+  plan.GivesUp = plan.IsRescue;
+  this->RunUsual(plan);
+  this->RunThin(plan);
+  if (plan.GivesUp && !this->HasMesh())
+  {
+    plan.GivesUp = false;
+    this->RunUsual(plan);
+    this->RunThin(plan);
+  }
+}
+
 Status SurfaceAttempts::Run()
 {
   SurfaceRefinementPlan plan;
@@ -633,16 +670,13 @@ Status SurfaceAttempts::Run()
   {
     this->RunRelaxed(plan);
   }
-  if (this->IsOpen() && this->HasBest && !this->Best.NonDelaunayTriangles.empty() &&
-    this->HasUserLimits())
+  if (this->IsUnfinished() && !this->HasMesh() && this->HasUserLimits())
   {
-    // Limits are for what the user asks for beyond a mesh, not for the mesh itself.
-    plan.RelaxedLength = Infinity;
-    plan.GivesUp = false;
-    plan.MakesShorterEdges = true;
-    this->RunUsual(plan);
-    this->RunThin(plan);
+    this->RunLastResort(plan);
   }
+  DelaunaySurfaceRefinerReport& report = this->Best.Report;
+  report.IsLate = this->IsLate() &&
+    (this->IsUnfinished() || !this->Best.UnresolvedTriangles.empty() || report.TooCoarse > 0);
   return this->GetStatus();
 }
 
@@ -657,10 +691,26 @@ std::string GetAdviceOnOrigin(const std::vector<Vec3>& points)
   char text[200];
   std::snprintf(text, sizeof(text),
     "The coordinates are %.0f times as large as the surface, and rounded accordingly: move it to "
-    "the "
-    "origin first. ",
+    "the origin first. ",
     ratio);
   return text;
+}
+
+/** Why triangles are larger than asked for, and what to do. */
+std::string ExplainCoarse(
+  const DelaunaySurfaceRefinerOptions& options, const DelaunaySurfaceRefinerOutput& output)
+{
+  const std::size_t most =
+    options.MaximumNewPoints > 0 ? static_cast<std::size_t>(options.MaximumNewPoints) : 1000000;
+  const bool isFull = output.NewPoints.size() >= most;
+  if (!isFull && !output.Report.IsLate)
+  {
+    return "no edge is made shorter than MinimumEdgeRatio allows. Ask for less, or lower "
+           "MinimumEdgeRatio.";
+  }
+  return "the refinement ended after " + std::to_string(output.NewPoints.size()) +
+    " new points. Ask for less, or raise " +
+    (output.Report.IsLate ? "MaximumTime." : "MaximumNewPoints.");
 }
 
 /** What the result does not fulfil, with the triangles of the input that it comes from. */
@@ -672,15 +722,17 @@ std::vector<Warning> MakeWarnings(
   {
     Warning warning;
     warning.Message = std::to_string(output.UnresolvedTriangles.size()) +
-      " triangles do not fulfil the criterion within the limits (MinimumEdgeRatio, "
-      "MaximumNewPoints): see the array Unresolved. " +
+      " triangles do not fulfil the criterion within the limits (" +
+      (output.Report.IsLate ? "MaximumTime" : "MinimumEdgeRatio, MaximumNewPoints") +
+      "): see the array Unresolved. " +
       (output.NonDelaunayTriangles.empty()
           ? "They are strongly Delaunay all the same, and can be meshed. "
           : std::to_string(output.NonDelaunayTriangles.size()) +
             " of them are not even Delaunay: no mesh can be made with them. ") +
-      "Sheets that lie a hair apart can be united with a MergeTolerance of the boundary "
-      "triangulator. " +
-      GetAdviceOnOrigin(output.Surface.Points) +
+      (output.Report.IsLate ? "Allow more time. "
+                            : "Sheets that lie a hair apart can be united with a MergeTolerance of "
+                              "the boundary triangulator. " +
+            GetAdviceOnOrigin(output.Surface.Points)) +
       "The triangles come from these cells of the input.";
     for (const Id triangle : output.UnresolvedTriangles)
     {
@@ -691,20 +743,13 @@ std::vector<Warning> MakeWarnings(
   if (output.Report.PointsBeyondLimits > 0)
   {
     warnings.push_back({ std::to_string(output.Report.PointsBeyondLimits) +
-      " new points of the surface are beyond the limits (MinimumEdgeRatio, MaximumNewPoints): the "
-      "mesh would not conform to the surface without them." });
+      " new points of the surface are beyond the limits (MinimumEdgeRatio, MaximumNewPoints, "
+      "MaximumTime): the mesh would not conform to the surface without them." });
   }
   if (output.Report.TooCoarse > 0)
   {
-    const bool isFull = options.MaximumNewPoints > 0
-      ? static_cast<Id>(output.NewPoints.size()) >= options.MaximumNewPoints
-      : output.NewPoints.size() >= 1000000;
     warnings.push_back({ std::to_string(output.Report.TooCoarse) +
-      " triangles of the surface are larger than asked for: " +
-      (isFull ? "the refinement ended after " + std::to_string(output.NewPoints.size()) +
-            " new points. Ask for less, or raise MaximumNewPoints."
-              : "no edge is made shorter than MinimumEdgeRatio allows. Ask for less, or lower "
-                "MinimumEdgeRatio.") });
+      " triangles of the surface are larger than asked for: " + ExplainCoarse(options, output) });
   }
   if (output.Report.DroppedMeshPoints > 0)
   {

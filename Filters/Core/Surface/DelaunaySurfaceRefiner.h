@@ -36,12 +36,13 @@
  *     starts again. The same is done where flips have made two sheets within FlatnessRatio equal.
  *
  * Guarantees: exact decisions; input points keep their coordinates and ids; new points follow them.
- * Deterministic.
+ * Deterministic, unless MaximumTime is reached.
  * Failure: InvalidInput for a surface that breaks the invariants of TriangleMesh.h, or that has two
  * sheets within FlatnessRatio which become the same triangles whatever edges are structural;
  * LimitReached for a MaximumEdgeLength that needs more points than ids can count.
  * Triangles that miss the criterion are listed in UnresolvedTriangles; those that cannot even be
- * meshed also in NonDelaunayTriangles: MaximumNewPoints and MinimumEdgeRatio leave none of these.
+ * meshed also in NonDelaunayTriangles: MaximumNewPoints, MinimumEdgeRatio and MaximumTime leave
+ * none of these.
  * Cost: a triangle that is Delaunay takes one search of the octree, O(log n); a new point takes a
  * few searches and one query of the spheres that prove the other triangles. About 350 bytes per
  * triangle. Measured in Testing/Benchmarks/Surface.md.
@@ -99,6 +100,11 @@ struct DelaunaySurfaceRefinerOptions
    */
   Id MaximumNewPoints = 0;
   /**
+   * The refinement stops after so many seconds, except for what the criterion Delaunay needs. 0: off.
+   * A result that took as long depends on the machine.
+   */
+  double MaximumTime = 0.0;
+  /**
    * Whether the caller drops a surface that misses the criterion anywhere: rules by which parts of it
    * would miss it are not tried then, nor any after one that takes MaximumNewPoints for sizes or angles.
    * Triangles may be left that cannot be meshed.
@@ -136,6 +142,8 @@ struct DelaunaySurfaceRefinerReport
   Id PointsBeyondLimits = 0;
   /** Triangles that are larger than asked for, as a limit has ended the refinement. */
   Id TooCoarse = 0;
+  /** Whether MaximumTime was over before all was done. */
+  bool IsLate = false;
   /** Whether facets count as plane that are so but for the digits of their points (FlatFacets.h). */
   bool HasRoundedFacets = false;
 };

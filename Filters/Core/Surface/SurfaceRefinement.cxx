@@ -21,6 +21,12 @@ constexpr std::size_t ReportInterval = 256;
 
 /** The largest number of new points where sizes or angles are asked for. */
 constexpr std::size_t MostForSizes = 1000000;
+/**
+ * Once the time is over, this is the largest number of points that make a surface with sizes Delaunay: so
+ * many, or so many for each triangle, if that is more. One that takes more is refined without sizes.
+ */
+constexpr std::size_t MostWhenLate = 4000;
+constexpr std::size_t MostPerTriangleWhenLate = 10;
 /** See SurfaceRefinementPlan::MostNeedles. */
 constexpr std::size_t NeedlePart = 4;
 /**
@@ -58,7 +64,7 @@ SurfaceRefinement::SurfaceRefinement(const TriangleMesh& surface,
   const std::size_t forTriangles = plan.MostPerTriangle * surface.Triangles.size();
   const auto makeId = [](std::size_t most)
   { return static_cast<Id>(std::min<std::size_t>(most, LargestId / 8)); };
-  const bool hasManyForSizes = this->Limits.HasAny() && !plan.RelaxesSome();
+  const bool hasManyForSizes = this->Limits.HasAny() && !plan.RelaxesSome() && !plan.IsRescue;
   this->UsualMaximum = makeId(
     std::max(hasManyForSizes ? MostForSizes : plan.MostPoints, forTriangles) + meshPoints.size());
   this->MaximumNeedles = makeId(std::max(plan.MostNeedles, forTriangles / NeedlePart));
@@ -391,10 +397,20 @@ bool SurfaceRefinement::IsGood(Id t, SurfaceDelaunayTest::Result& found, bool is
   return !isStrong || found.InsideSmallestSphere.empty();
 }
 
-/** A limit is reached: as many points again as usual for what the criterion Delaunay needs. */
-void SurfaceRefinement::StartRescue()
+/** How many points are made beyond a limit: as many as usual, or fewer if it is the time. */
+Id SurfaceRefinement::GetMostForRescue(bool isLate) const
 {
-  this->MaximumRescuePoints = static_cast<Id>(this->NewPoints.size()) + this->UsualMaximum;
+  const std::size_t usual = static_cast<std::size_t>(this->UsualMaximum);
+  const std::size_t triangles = static_cast<std::size_t>(this->Surface->GetNumberOfTriangles());
+  const std::size_t most = std::max(MostWhenLate, MostPerTriangleWhenLate * triangles);
+  return static_cast<Id>(isLate ? std::min(usual, most) : usual);
+}
+
+/** From now on at most so many points are made, for what the criterion Delaunay needs. */
+void SurfaceRefinement::StartRescue(Id most)
+{
+  this->PointsBeforeRescue = static_cast<Id>(this->NewPoints.size());
+  this->MaximumRescuePoints = this->PointsBeforeRescue + most;
   this->EdgeQueue.clear();
   if (this->Plan.MakesShorterEdges)
   {
@@ -728,12 +744,16 @@ Status SurfaceRefinement::Refine(const ExecutionContext& context)
   {
     return this->RefineQueued(context);
   }
+  if (this->Plan.IsRescue)
+  {
+    this->StartRescue(this->UsualMaximum);
+  }
   Status status = this->RefineQueued(context.Part(0.0, 0.5));
-  if (status.IsOk() && this->EnqueueNonDelaunay())
+  if (status.IsOk() && !this->Plan.GivesUp && this->EnqueueNonDelaunay())
   {
     if (!this->IsRescuing())
     {
-      this->StartRescue();
+      this->StartRescue(this->UsualMaximum);
     }
     status = this->RefineQueued(context.Part(0.5, 1.0));
   }
@@ -758,10 +778,12 @@ Status SurfaceRefinement::RefineQueued(const ExecutionContext& context)
     {
       return range;
     }
-    this->HasGivenUp = this->HasGivenUp || this->HasTooManyNeedles() || this->HasTooManyInFacets();
-    if (this->IsFull() && !this->IsRescuing())
+    const bool isLate = steps % ReportInterval == 0 && context.IsLate();
+    const bool isHopeless = this->HasTooManyNeedles() || this->HasTooManyInFacets();
+    this->HasGivenUp = this->HasGivenUp || isLate || isHopeless;
+    if (this->IsRescuing() ? isHopeless : this->IsFull())
     {
-      this->Plan.GivesUp ? this->GiveUp() : this->StartRescue();
+      this->Plan.GivesUp ? this->GiveUp() : this->StartRescue(this->GetMostForRescue(isLate));
     }
     if (!this->EdgeQueue.empty() && (this->AreEdgesFirst() || this->Queue.empty()))
     {

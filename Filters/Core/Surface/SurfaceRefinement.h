@@ -64,6 +64,8 @@ struct SurfaceRefinementPlan
   bool GivesUp = false;
   /** Whether edges shorter than MinimumEdgeRatio are made where there is no mesh without them. */
   bool MakesShorterEdges = false;
+  /** Whether sizes and limits of the user do not count: only what the criterion Delaunay needs does. */
+  bool IsRescue = false;
   /**
    * The largest number of new points if the user gives none and no sizes, or if some triangles are
    * relaxed: so many, or so many for each triangle, if that is more.
@@ -142,9 +144,8 @@ public:
   /** How many points have been made since then. */
   Id GetNumberOfRescuePoints() const
   {
-    return this->IsRescuing()
-      ? static_cast<Id>(this->NewPoints.size()) + this->UsualMaximum - this->MaximumRescuePoints
-      : 0;
+    return this->IsRescuing() ? static_cast<Id>(this->NewPoints.size()) - this->PointsBeforeRescue
+                              : 0;
   }
 
   /**
@@ -268,7 +269,8 @@ private:
   }
   /** Whether the smallest sphere of a triangle has to be empty. */
   bool IsStrong(Id t) const;
-  void StartRescue();
+  Id GetMostForRescue(bool isLate) const;
+  void StartRescue(Id most);
   bool EnqueueNonDelaunay();
   Status RefineQueued(const ExecutionContext& context);
   void GiveUp();
@@ -329,9 +331,13 @@ private:
   double MinimumEdge;
   Id MaximumNewPoints = 0;
   bool HasLeftTooCoarse = false;
-  /** The limit if the user gives none; and the limit in all once the first one is reached. */
+  /**
+   * The limit if the user gives none; the limit in all once the first one is reached, and how many
+   * points there were then.
+   */
   Id UsualMaximum = 0;
   Id MaximumRescuePoints = 0;
+  Id PointsBeforeRescue = 0;
   PointOctree Octree;
   SurfaceDelaunayTest Test;
   SurfaceDelaunayTest::Result Found;

@@ -198,6 +198,7 @@ class vtkConformingDelaunayMesher(_Stage):
         "LayerAspectRatio": 0.0,
         "TetrahedraAcrossLayers": 1,
         "SmoothingRounds": 0,
+        "MaximumTime": 0.0,
         "Growth": 0.3,
         **dict.fromkeys(automatic, -1),
     }
@@ -290,6 +291,7 @@ class vtkDelaunaySurfaceRefiner(_Stage):
         "MeshPointClearanceRatio": 1e-3,
         "MinimumEdgeRatio": 1e-12,
         "MaximumNewPoints": 0,
+        "MaximumTime": 0.0,
     }
 
     def execute(self, data: List[Any], options: Dict[str, Any]) -> List[Any]:
@@ -369,6 +371,7 @@ class vtkSteinerPointRefiner(_Stage):
         "FreeInteriorPoints": False,
         "AccuracyAngle": 0.0,
         "MaximumNewPoints": 0,
+        "MaximumTime": 0.0,
     }
 
     def execute(self, data: List[Any], options: Dict[str, Any]) -> List[Any]:

@@ -245,6 +245,7 @@ def mesh(
     resolve_self_intersections: bool = False,
     keep_internal_pieces: bool = False,
     close_open_boundary: bool = False,
+    maximum_time: float = 0.0,
     progress: Optional[Progress] = None,
     threads: int = 0,
 ) -> Mesh:
@@ -339,6 +340,9 @@ def mesh(
         What stays of a resolved surface: all, or what is outside.
     close_open_boundary : bool, default: False
         An open surface is closed by the convex hull.
+    maximum_time : float, default: 0
+        After which the refinement stops, unless there is no mesh without more: warnings say what the mesh
+        misses, and it depends on the machine then. Seconds; 0: no limit.
     progress : callable, optional
         Gets the finished fraction and what is being done; False aborts.
     threads : int, default: 0
@@ -398,6 +402,7 @@ def mesh(
                 resolve_self_intersections=resolve_self_intersections,
                 keep_internal_pieces=keep_internal_pieces,
                 close_open_boundary=close_open_boundary,
+                maximum_time=maximum_time,
             ),
             **_region_sizes(polygons, region_sizes),
             "mesh_points": _points("mesh_points", mesh_points),
@@ -550,6 +555,7 @@ def refine_surface(
     mesh_point_clearance_ratio: float = 1e-3,
     minimum_edge_ratio: float = 1e-12,
     maximum_new_points: int = 0,
+    maximum_time: float = 0.0,
     progress: Optional[Progress] = None,
     threads: int = 0,
 ) -> Tuple[Surface, StructuralEdges, np.ndarray]:
@@ -568,6 +574,9 @@ def refine_surface(
     maximum_new_points : int, default: 0
         Where the refinement stops, unless there is no mesh without more; 0: by the size of the
         surface.
+    maximum_time : float, default: 0
+        After which the refinement stops, unless there is no mesh without more: the result then depends
+        on the machine. Seconds; 0: no limit.
 
     Returns
     -------
@@ -595,6 +604,7 @@ def refine_surface(
                 mesh_point_clearance_ratio=mesh_point_clearance_ratio,
                 minimum_edge_ratio=minimum_edge_ratio,
                 maximum_new_points=maximum_new_points,
+                maximum_time=maximum_time,
             ),
         },
         sizing=function,
@@ -772,6 +782,7 @@ def refine_mesh(
     free_interior_points: bool = False,
     accuracy_angle: float = 0.0,
     maximum_new_points: int = 0,
+    maximum_time: float = 0.0,
     progress: Optional[Progress] = None,
     threads: int = 0,
 ) -> Mesh:
@@ -794,6 +805,8 @@ def refine_mesh(
         Whether all points inside may be moved and removed.
     maximum_new_points : int, default: 0
         About where it stops; 0: by the size of the mesh.
+    maximum_time : float, default: 0
+        After which it stops: the mesh is valid, and depends on the machine then. Seconds; 0: no limit.
     """
     arrays, function = sizing_inputs(sizing)
     boundary = mesh.boundary
@@ -820,6 +833,7 @@ def refine_mesh(
                 free_interior_points=free_interior_points,
                 accuracy_angle=accuracy_angle,
                 maximum_new_points=maximum_new_points,
+                maximum_time=maximum_time,
             ),
         },
         sizing=function,
