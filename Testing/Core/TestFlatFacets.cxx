@@ -81,6 +81,17 @@ void RoundPoints(TriangleMesh& surface)
   }
 }
 
+void RoundPointsToDigits(TriangleMesh& surface, double unit)
+{
+  for (Vec3& point : surface.Points)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      point[axis] = unit * std::round(point[axis] / unit);
+    }
+  }
+}
+
 std::vector<StructuralEdge> Extract(
   const TriangleMesh& surface, const StructuralEdgeOptions& options = {})
 {
@@ -182,6 +193,32 @@ TEST(FlatFacets, RoundedBoxesHaveSixFacets)
     StructuralEdgeOptions strict;
     strict.FlatnessRatio = RoundedFlatnessRatio;
     EXPECT_GT(Extract(box, strict).size(), 4 * Extract(box).size());
+  }
+}
+
+/**
+ * A strip between two rows of points that are off by a third of the tolerance, as six digits leave them. The
+ * plane of a narrow triangle leaves the next one's points by more than the tolerance.
+ */
+TEST(FlatFacets, ARoundedStripIsOneFacet)
+{
+  for (unsigned seed = 1; seed <= 20; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 generator(seed);
+    std::uniform_real_distribution<double> place(0.1, 0.9);
+    TriangleMesh strip;
+    for (Id i = 0; i < 100; ++i)
+    {
+      strip.Points.push_back({ 0.03 * (i + place(generator)), i % 2 == 0 ? 0.0 : 0.02, 0.0 });
+      if (i >= 2)
+      {
+        strip.Triangles.push_back({ i - 2, i - 1, i });
+      }
+    }
+    Rotate(strip.Points, MakeRandomDirection(generator), 0.1 * seed);
+    RoundPointsToDigits(strip, 1e-6);
+    EXPECT_EQ(CountFacets(strip), 1);
   }
 }
 
@@ -322,13 +359,17 @@ TEST(FlatFacets, RoundedBoxesAreMeshedLikeThePlaneOnes)
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 generator(seed);
     TriangleMesh box = MakeBox(6, generator);
-    std::array<std::size_t, 2> counts{};
-    for (std::size_t i = 0; i < 2; ++i)
+    std::array<std::size_t, 3> counts{};
+    for (std::size_t i = 0; i < counts.size(); ++i)
     {
       if (i == 1)
       {
         Rotate(box.Points, MakeRandomDirection(generator), 0.3 * seed);
         RoundPoints(box);
+      }
+      if (i == 2)
+      {
+        RoundPointsToDigits(box, 2e-6);
       }
       ConformingMesherOptions options;
       options.Choices.Criterion = SurfaceCriterion::SmallestSphere;
@@ -338,6 +379,7 @@ TEST(FlatFacets, RoundedBoxesAreMeshedLikeThePlaneOnes)
       EXPECT_TRUE(output.Warnings.empty()) << output.Warnings.front().Message;
     }
     EXPECT_LT(counts[1], 1.3 * counts[0]);
+    EXPECT_LT(counts[2], 1.3 * counts[0]);
   }
 }
 

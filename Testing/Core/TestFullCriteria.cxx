@@ -3,6 +3,7 @@
 
 #include "Core/Certificate/MeshCertificate.h"
 #include "Core/Certificate/SphereCriteria.h"
+#include "Core/Geometry/Measures.h"
 #include "Core/Geometry/Predicates.h"
 
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 using namespace cdm;
 using namespace testing_core;
@@ -237,6 +239,77 @@ TEST(FullCriteria, EachFaultIsFound)
     Evaluate(MakeMesh({ A, B, C, D, A, B, C, { -1, -1, 1 } }, { { 0, 1, 2, 3 }, { 4, 5, 6, 7 } }));
   EXPECT_EQ(3, copies.CoincidentPoints);
   EXPECT_FALSE(copies.IsClean());
+}
+
+/**
+ * A wedge of 41 degrees with random points inside and on its sides: a flat tetrahedron from side to side is at a
+ * sharp angle, wherever it is. In a box of as many points none is.
+ */
+TEST(FullCriteria, FlatTetrahedraBetweenSidesOfAWedgeAreAtASharpAngle)
+{
+  constexpr double slope = 0.375;
+  std::mt19937_64 generator(11);
+  std::uniform_int_distribution<int> coordinate(1, 255);
+  std::uniform_int_distribution<int> part(-63, 63);
+  for (const bool isWedge : { true, false })
+  {
+    std::vector<Vec3> points;
+    // Coordinates are short binary fractions: the points of a side lie exactly in its plane.
+    const auto add = [&](double x, double sideways, double z) {
+      points.push_back({ x, slope * (isWedge ? x : 2.0) * sideways, z });
+    };
+    for (const double z : { 0.0, 2.0 })
+    {
+      for (const double side : { -1.0, 1.0 })
+      {
+        add(4.0, side, z);
+        if (!isWedge)
+        {
+          add(0.0, side, z);
+        }
+      }
+      if (isWedge)
+      {
+        add(0.0, 0.0, z);
+      }
+    }
+    for (int i = 0; i < 300; ++i)
+    {
+      const double sideways = i % 3 == 0 ? -1.0 : i % 3 == 1 ? 1.0 : part(generator) / 64.0;
+      add(coordinate(generator) / 64.0, sideways, coordinate(generator) / 128.0);
+    }
+    const TetMesh mesh = MakeHullMesh(points);
+    const auto isOnSide = [&](Id point, double side)
+    {
+      const Vec3& p = mesh.Points[point];
+      return p[1] == slope * (isWedge ? p[0] : 2.0) * side;
+    };
+    Id flat = 0;
+    Id between = 0;
+    for (const TetrahedronIds& ids : mesh.Tetrahedra)
+    {
+      const auto [a, b, c, d] = GetCorners(mesh.Points, ids);
+      double smallest = 180.0;
+      for (int edge = 0; edge < 6; ++edge)
+      {
+        smallest = std::min(smallest, GetDihedralAngle(a, b, c, d, edge));
+      }
+      const bool isFlat = smallest < 15.0;
+      const bool isBetween =
+        std::any_of(ids.begin(), ids.end(), [&](Id p) { return isOnSide(p, -1.0); }) &&
+        std::any_of(ids.begin(), ids.end(), [&](Id p) { return isOnSide(p, 1.0); });
+      const bool isAtEdge = isWedge &&
+        std::any_of(ids.begin(), ids.end(), [&](Id p) { return mesh.Points[p][0] == 0.0; });
+      flat += isFlat ? 1 : 0;
+      between += isFlat && (isBetween || isAtEdge) ? 1 : 0;
+    }
+    MeshCertificate certificate;
+    ASSERT_TRUE(CertifyMesh(mesh, nullptr, {}, certificate).IsOk());
+    EXPECT_EQ(certificate.Under15Degrees.Count, flat);
+    EXPECT_EQ(certificate.Under15Degrees.AtSharpAngles, isWedge ? between : 0);
+    EXPECT_GT(between, 20);
+    EXPECT_GT(flat - between, 20);
+  }
 }
 
 TEST(FullCriteria, SmallestSpheresOfTheBorder)

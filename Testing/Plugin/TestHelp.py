@@ -20,7 +20,7 @@ import conforming_delaunay
 import paraview
 
 UNITS = re.compile(r"\bunits?\b|degrees|micrometres|\bratio\b|part of|spacings|at these [xyz]|"
-                   r"direction|sizes may grow", re.IGNORECASE)
+                   r"direction|sizes may grow|in seconds", re.IGNORECASE)
 ANGLES = re.compile(r"in degrees|more degrees", re.IGNORECASE)
 MODEL_UNITS = re.compile(r"in (square |cubic )?model units", re.IGNORECASE)
 MICROMETRES = re.compile(r"in micrometres", re.IGNORECASE)

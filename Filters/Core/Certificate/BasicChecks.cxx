@@ -719,7 +719,15 @@ void Checker::CollectBorderEdges()
     if (end - begin != 2 ||
       !AreSmooth(facets[begin[0].second], facets[begin[1].second], points, this->Mesh.Points))
     {
+      const Id edge = static_cast<Id>(this->Findings.StructuralEdges.size());
       this->Findings.StructuralEdges.push_back(points);
+      std::for_each(begin, end,
+        [&](const auto& use)
+        { this->Findings.StructuralEdgeFacets.emplace_back(edge, use.second); });
+    }
+    else
+    {
+      this->Findings.SmoothFacets.emplace_back(begin[0].second, begin[1].second);
     }
   }
   this->Report.BorderFacets = static_cast<Id>(facets.size());

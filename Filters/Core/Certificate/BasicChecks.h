@@ -10,6 +10,7 @@
 #include "Core/Certificate/SphereCriteria.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace cdm
@@ -98,6 +99,10 @@ struct BasicFindings
    */
   std::vector<EdgeIds> StructuralEdges;
   std::vector<char> HasEmptySphere;
+  /** Numbers of a structural edge and of a border facet that has it, ascending. */
+  std::vector<std::pair<Id, Id>> StructuralEdgeFacets;
+  /** Two border facets that go straight on across their common edge. */
+  std::vector<std::pair<Id, Id>> SmoothFacets;
 };
 
 /** The criteria are those of the mesh's points. Input has been checked by CheckMeshInput(). */

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Certificate/FlatTetrahedra.h"
 
+#include "Core/Basics/DisjointSets.h"
 #include "Core/Basics/IdLists.h"
+#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
 
@@ -17,21 +20,88 @@ constexpr double LargestBound = 15.0;
 constexpr double SharpWedge = 60.0;
 /** Cosine of 30 degrees. */
 constexpr double SharpPlaneCosine = 0.8660254037844387;
+/** Edges with a smaller sine of the angle between them go straight on, up to rounding. */
+constexpr double StraightSine = 1e-6;
+/** Each edge of a point is compared with so many others: among a few dozen two are that close. */
+constexpr std::size_t MostEdgesOfCorner = 64;
+/** For pairs of sides that are sharp in each region. */
+constexpr Id AnyRegion = 0;
 
 /** Vertices of the edges of a tetrahedron, in the order of GetDihedralAngles(). */
 constexpr int EdgeVertices[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
+
+/** Pairs of sides that meet at a sharp angle of a region, and which of these sides points lie on. */
+class SharpPairs
+{
+public:
+  void Add(Id region, Id first, Id second)
+  {
+    this->Pairs.push_back({ region, std::min(first, second), std::max(first, second) });
+  }
+
+  /** @param pointSides points of flat tetrahedra with sides on which they lie */
+  void Build(Id numberOfPoints, std::vector<std::pair<Id, Id>> pointSides)
+  {
+    SortUnique(this->Pairs);
+    std::vector<Id> sharp;
+    for (const auto& [region, first, second] : this->Pairs)
+    {
+      sharp.push_back(first);
+      sharp.push_back(second);
+    }
+    SortUnique(sharp);
+    pointSides.erase(std::remove_if(pointSides.begin(), pointSides.end(),
+                       [&](const auto& use)
+                       { return !std::binary_search(sharp.begin(), sharp.end(), use.second); }),
+      pointSides.end());
+    SortUnique(pointSides);
+    this->PointSides.Build(numberOfPoints, pointSides);
+  }
+
+  /** Whether one vertex of a tetrahedron lies on one side of a pair, and another one on the other. */
+  bool AreBetween(const TetrahedronIds& ids, Id region) const
+  {
+    const auto isPair = [&](Id a, Id b)
+    {
+      const std::array<Id, 3> pair{ region, std::min(a, b), std::max(a, b) };
+      return a != b && std::binary_search(this->Pairs.begin(), this->Pairs.end(), pair);
+    };
+    const auto areBetween = [&](Id first, Id second)
+    {
+      const IdLists::Range others = this->PointSides[second];
+      for (const Id a : this->PointSides[first])
+      {
+        if (std::any_of(others.begin(), others.end(), [&](Id b) { return isPair(a, b); }))
+        {
+          return true;
+        }
+      }
+      return false;
+    };
+    return !this->Pairs.empty() &&
+      std::any_of(std::begin(EdgeVertices), std::end(EdgeVertices),
+        [&](const auto& edge) { return areBetween(ids[edge[0]], ids[edge[1]]); });
+  }
+
+private:
+  /** A region and two sides, the smaller one first, ascending. */
+  std::vector<std::array<Id, 3>> Pairs;
+  IdLists PointSides;
+};
 
 class FlatTetrahedra
 {
 public:
   FlatTetrahedra(
     const TetMesh& mesh, const std::vector<double>& smallestAngles, const BasicFindings& findings)
-    : Mesh(mesh)
+    : Mesh(mesh), Edges(findings.StructuralEdges)
   {
-    this->MarkPoints(smallestAngles, findings);
-    this->ListEdges(findings.StructuralEdges);
-    this->FindSharpWedges();
-    this->FindSharpPlaneAngles();
+    if (this->MarkPoints(smallestAngles, findings))
+    {
+      this->MarkEnds();
+      this->FindSharpWedges(findings);
+      this->FindSharpPlaneAngles();
+    }
   }
 
   bool IsAtSharpAngle(Id tetrahedron) const
@@ -39,12 +109,13 @@ public:
     const TetrahedronIds& ids = this->Mesh.Tetrahedra[tetrahedron];
     const Id region = this->Mesh.Regions[tetrahedron];
     return std::any_of(ids.begin(), ids.end(),
-      [&](Id point)
-      {
-        return this->IsSharp[point] != 0 ||
-          std::binary_search(
-            this->SharpPoints.begin(), this->SharpPoints.end(), std::pair(point, region));
-      });
+             [&](Id point)
+             {
+               return this->IsSharp[point] != 0 ||
+                 std::binary_search(
+                   this->SharpPoints.begin(), this->SharpPoints.end(), std::pair(point, region));
+             }) ||
+      this->SharpSides.AreBetween(ids, region) || this->SharpChains.AreBetween(ids, AnyRegion);
   }
   bool IsAcrossLayer(Id tetrahedron) const
   {
@@ -54,10 +125,11 @@ public:
   }
 
 private:
-  void MarkPoints(const std::vector<double>& smallestAngles, const BasicFindings& findings);
-  void ListEdges(const std::vector<EdgeIds>& structuralEdges);
+  bool MarkPoints(const std::vector<double>& smallestAngles, const BasicFindings& findings);
+  void MarkEnds();
   Id FindEdge(Id a, Id b) const;
-  void FindSharpWedges();
+  void FindSharpWedges(const BasicFindings& findings);
+  void ListSharpSides(const std::vector<std::pair<Id, Id>>& wedges, const BasicFindings& findings);
   void FindSharpPlaneAngles();
 
   /**
@@ -77,8 +149,8 @@ private:
   /** One for each point: of outer or interface facets; of these and of a flat tetrahedron. */
   std::vector<char> IsOnBorder;
   std::vector<char> IsOfFlat;
-  /** Structural edges with an end that a flat tetrahedron has, ascending; their ends. */
-  std::vector<EdgeIds> Edges;
+  /** Structural edges, ascending; their ends. */
+  const std::vector<EdgeIds>& Edges;
   std::vector<char> IsEnd;
   /** For each point the number of the first of these edges that does not begin at a lower one. */
   std::vector<Id> FirstEdges;
@@ -86,11 +158,17 @@ private:
   std::vector<char> IsSharp;
   /** Points of sharp wedges with the region of the wedge, ascending. */
   std::vector<std::pair<Id, Id>> SharpPoints;
+  /** Surface facets that make a sharp wedge, by the smallest border facet of each. */
+  SharpPairs SharpSides;
+  /** Chains of straight structural edges that meet at a sharp angle, by the first edge of each. */
+  SharpPairs SharpChains;
 };
 
-void FlatTetrahedra::MarkPoints(
+/** Returns whether any tetrahedron is flat. */
+bool FlatTetrahedra::MarkPoints(
   const std::vector<double>& smallestAngles, const BasicFindings& findings)
 {
+  bool isAnyFlat = false;
   this->IsOnBorder.assign(this->Mesh.Points.size(), 0);
   this->IsOfFlat.assign(this->Mesh.Points.size(), 0);
   this->IsEnd.assign(this->Mesh.Points.size(), 0);
@@ -106,25 +184,23 @@ void FlatTetrahedra::MarkPoints(
   {
     if (smallestAngles[i] < LargestBound)
     {
+      isAnyFlat = true;
       for (const Id point : this->Mesh.Tetrahedra[i])
       {
         this->IsOfFlat[point] = this->IsOnBorder[point];
       }
     }
   }
+  return isAnyFlat;
 }
 
-void FlatTetrahedra::ListEdges(const std::vector<EdgeIds>& structuralEdges)
+void FlatTetrahedra::MarkEnds()
 {
   this->FirstEdges.assign(this->Mesh.Points.size() + 1, 0);
-  for (const EdgeIds& edge : structuralEdges)
+  for (const EdgeIds& edge : this->Edges)
   {
-    if (this->IsOfFlat[edge[0]] != 0 || this->IsOfFlat[edge[1]] != 0)
-    {
-      this->Edges.push_back(edge);
-      ++this->FirstEdges[edge[0] + 1];
-      this->IsEnd[edge[0]] = this->IsEnd[edge[1]] = 1;
-    }
+    ++this->FirstEdges[edge[0] + 1];
+    this->IsEnd[edge[0]] = this->IsEnd[edge[1]] = 1;
   }
   std::partial_sum(this->FirstEdges.begin(), this->FirstEdges.end(), this->FirstEdges.begin());
 }
@@ -146,7 +222,7 @@ Id FlatTetrahedra::FindEdge(Id a, Id b) const
   return NoId;
 }
 
-void FlatTetrahedra::FindSharpWedges()
+void FlatTetrahedra::FindSharpWedges(const BasicFindings& findings)
 {
   if (this->Edges.empty())
   {
@@ -182,10 +258,12 @@ void FlatTetrahedra::FindSharpWedges()
       }
     }
   }
+  std::vector<std::pair<Id, Id>> sharp;
   for (const Wedge& wedge : wedges)
   {
     if (wedge.Angle < SharpWedge)
     {
+      sharp.emplace_back(wedge.Edge, wedge.Region);
       for (const Id point : this->Edges[wedge.Edge])
       {
         this->SharpPoints.emplace_back(point, wedge.Region);
@@ -193,41 +271,112 @@ void FlatTetrahedra::FindSharpWedges()
     }
   }
   std::sort(this->SharpPoints.begin(), this->SharpPoints.end());
+  this->ListSharpSides(sharp, findings);
 }
 
-/** Among a few dozen edges at a point two are that close: no point takes long. */
+/** @param wedges edges of the list, and regions that are sharp wedges there */
+void FlatTetrahedra::ListSharpSides(
+  const std::vector<std::pair<Id, Id>>& wedges, const BasicFindings& findings)
+{
+  DisjointSets sets(findings.BorderFacets.size());
+  for (const auto& [first, second] : findings.SmoothFacets)
+  {
+    sets.Unite(first, second);
+  }
+  const std::vector<Id> names = sets.TakeNames();
+  const std::vector<std::pair<Id, Id>>& uses = findings.StructuralEdgeFacets;
+  std::vector<Id> sides;
+  for (const auto& [edge, region] : wedges)
+  {
+    sides.clear();
+    for (auto use = std::lower_bound(uses.begin(), uses.end(), std::pair(edge, Id(0)));
+         use != uses.end() && use->first == edge; ++use)
+    {
+      const RegionPair& regions = findings.BorderFacets[use->second].Regions;
+      if (regions.Front == region || regions.Back == region)
+      {
+        sides.push_back(names[use->second]);
+      }
+    }
+    SortUnique(sides);
+    for (std::size_t i = 0; i < sides.size(); ++i)
+    {
+      for (std::size_t j = 0; j < i; ++j)
+      {
+        this->SharpSides.Add(region, sides[i], sides[j]);
+      }
+    }
+  }
+  std::vector<std::pair<Id, Id>> pointSides;
+  for (std::size_t facet = 0; facet < names.size(); ++facet)
+  {
+    for (const Id point : findings.BorderFacets[facet].Points)
+    {
+      if (this->IsOfFlat[point] != 0)
+      {
+        pointSides.emplace_back(point, names[facet]);
+      }
+    }
+  }
+  this->SharpSides.Build(static_cast<Id>(this->Mesh.Points.size()), std::move(pointSides));
+}
+
+/** Edges of a point that make a sharp angle, and those that go straight on from each other. */
 void FlatTetrahedra::FindSharpPlaneAngles()
 {
-  if (this->Edges.empty())
+  std::vector<std::pair<Id, Id>> pointEdges;
+  for (std::size_t edge = 0; edge < this->Edges.size(); ++edge)
   {
-    return;
-  }
-  std::vector<std::pair<Id, Id>> neighbors;
-  for (const EdgeIds& edge : this->Edges)
-  {
-    neighbors.emplace_back(edge[0], edge[1]);
-    neighbors.emplace_back(edge[1], edge[0]);
+    for (const Id point : this->Edges[edge])
+    {
+      pointEdges.emplace_back(point, static_cast<Id>(edge));
+    }
   }
   const Id count = static_cast<Id>(this->Mesh.Points.size());
-  IdLists pointNeighbors;
-  pointNeighbors.Build(count, neighbors);
+  IdLists edgesOfPoints;
+  edgesOfPoints.Build(count, pointEdges);
+  DisjointSets chains(this->Edges.size());
+  std::vector<std::pair<Id, Id>> sharp;
   std::vector<Vec3> directions;
   for (Id point = 0; point < count; ++point)
   {
+    const IdLists::Range edges = edgesOfPoints[point];
     directions.clear();
-    for (const Id neighbor : pointNeighbors[point])
+    for (const Id edge : edges)
     {
-      const Vec3 offset = this->Mesh.Points[neighbor] - this->Mesh.Points[point];
-      const Vec3 direction = (1.0 / Norm(offset)) * offset;
-      this->IsSharp[point] = std::any_of(directions.begin(), directions.end(),
-        [&](const Vec3& other) { return Dot(direction, other) > SharpPlaneCosine; });
-      if (this->IsSharp[point] != 0)
+      const auto [a, b] = this->Edges[edge];
+      const Vec3 offset = this->Mesh.Points[a == point ? b : a] - this->Mesh.Points[point];
+      directions.push_back((1.0 / Norm(offset)) * offset);
+      const std::size_t last = directions.size() - 1;
+      for (std::size_t i = 0; i < std::min(last, MostEdgesOfCorner); ++i)
       {
-        break;
+        const double cosine = Dot(directions[i], directions[last]);
+        if (cosine > SharpPlaneCosine)
+        {
+          this->IsSharp[point] = 1;
+          sharp.emplace_back(edges.First[i], edge);
+        }
+        else if (cosine < 0.0 && Norm(Cross(directions[i], directions[last])) < StraightSine)
+        {
+          chains.Unite(edges.First[i], edge);
+        }
       }
-      directions.push_back(direction);
     }
   }
+  const std::vector<Id> names = chains.TakeNames();
+  for (const auto& [first, second] : sharp)
+  {
+    this->SharpChains.Add(AnyRegion, names[first], names[second]);
+  }
+  std::vector<std::pair<Id, Id>> pointChains;
+  for (const auto& [point, edge] : pointEdges)
+  {
+    if (this->IsOfFlat[point] != 0)
+    {
+      pointChains.emplace_back(point, names[edge]);
+    }
+  }
+  this->SharpChains.Build(count, std::move(pointChains));
 }
 } // namespace
 

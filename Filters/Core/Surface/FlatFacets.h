@@ -17,8 +17,9 @@
  *  3. the facet is plane if its points differ by at most twice the tolerance in height over that
  *     plane, and if no triangle is turned from it by more than 60 degrees. Then all edges between
  *     triangles of the facet are flat;
- *  4. what is not plane is tried again with a tenth of the tolerance, until that would be less than
- *     the rounding of double precision. There each edge counts by itself (IsSmoothEdge()).
+ *  4. triangles are united by 1.75 times the tolerance first, then by once. What is still not plane is
+ *     tried again with a tenth of the tolerance, until that would be less than the rounding of double
+ *     precision. There each edge counts by itself (IsSmoothEdge()).
  * Known facets, of a surface that has been refined since, are looked at first, as a whole. Far from the
  * origin triangles may be no wider than their coordinates are rounded: these may be turned there.
  *
