@@ -61,7 +61,7 @@ inline void ExpectRight(const SteinerPointRefinerInput& input,
   ASSERT_TRUE(CertifyMesh(output.Mesh, &output.Boundary, {}, check).IsOk());
   EXPECT_TRUE(check.IsDelaunay()) << check.GetText();
   EXPECT_EQ(check.UnusedPoints, 0);
-  // Without time for the boundary it is that of the input.
+  // The boundary stays as it was given where the time was over before it fulfilled the criterion.
   const bool isRefined = !output.Report.IsLate || output.Report.WeakTriangles == 0;
   if (isRefined)
   {

@@ -289,12 +289,7 @@ TEST(FullCriteria, FlatTetrahedraBetweenSidesOfAWedgeAreAtASharpAngle)
     for (const TetrahedronIds& ids : mesh.Tetrahedra)
     {
       const auto [a, b, c, d] = GetCorners(mesh.Points, ids);
-      double smallest = 180.0;
-      for (int edge = 0; edge < 6; ++edge)
-      {
-        smallest = std::min(smallest, GetDihedralAngle(a, b, c, d, edge));
-      }
-      const bool isFlat = smallest < 15.0;
+      const bool isFlat = GetSmallestDihedralAngle(a, b, c, d) < 15.0;
       const bool isBetween =
         std::any_of(ids.begin(), ids.end(), [&](Id p) { return isOnSide(p, -1.0); }) &&
         std::any_of(ids.begin(), ids.end(), [&](Id p) { return isOnSide(p, 1.0); });

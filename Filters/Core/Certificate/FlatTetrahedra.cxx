@@ -274,7 +274,7 @@ void FlatTetrahedra::FindSharpWedges(const BasicFindings& findings)
   this->ListSharpSides(sharp, findings);
 }
 
-/** @param wedges edges of the list, and regions that are sharp wedges there */
+/** @param wedges numbers of structural edges, and of regions that are sharp wedges there */
 void FlatTetrahedra::ListSharpSides(
   const std::vector<std::pair<Id, Id>>& wedges, const BasicFindings& findings)
 {

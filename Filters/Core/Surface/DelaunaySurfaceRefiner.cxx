@@ -28,11 +28,9 @@ namespace
 constexpr int LargestNumberOfAttempts = 20;
 
 /**
- * The largest number of new points of plans that may give up, or so many for each triangle. What ends by
- * the first plans hardly ever takes as many; thin stacks of many sheets need 340,000 at times.
+ * The largest numbers of new points of later plans that may give up, after those of MostInFirstPlans. Thin
+ * stacks of many sheets need 340,000 at times.
  */
-constexpr std::size_t MostInFirstPlans = 4000;
-constexpr std::size_t MostPerTriangleInFirstPlans = 10;
 constexpr std::size_t MostInThinLayers = 50000;
 constexpr std::size_t MostInStacks = 400000;
 /** The largest numbers of tests of needles (SurfaceRefinementPlan) in thin layers, at first and at last. */

@@ -21,12 +21,6 @@ constexpr std::size_t ReportInterval = 256;
 
 /** The largest number of new points where sizes or angles are asked for. */
 constexpr std::size_t MostForSizes = 1000000;
-/**
- * Once the time is over, this is the largest number of points that make a surface with sizes Delaunay: so
- * many, or so many for each triangle, if that is more. One that takes more is refined without sizes.
- */
-constexpr std::size_t MostWhenLate = 4000;
-constexpr std::size_t MostPerTriangleWhenLate = 10;
 /** See SurfaceRefinementPlan::MostNeedles. */
 constexpr std::size_t NeedlePart = 4;
 /**
@@ -397,12 +391,15 @@ bool SurfaceRefinement::IsGood(Id t, SurfaceDelaunayTest::Result& found, bool is
   return !isStrong || found.InsideSmallestSphere.empty();
 }
 
-/** How many points are made beyond a limit: as many as usual, or fewer if it is the time. */
+/**
+ * How many points are made beyond a limit. If that is the time, no more than by the first plans: a
+ * surface that takes more is refined without sizes then.
+ */
 Id SurfaceRefinement::GetMostForRescue(bool isLate) const
 {
   const std::size_t usual = static_cast<std::size_t>(this->UsualMaximum);
   const std::size_t triangles = static_cast<std::size_t>(this->Surface->GetNumberOfTriangles());
-  const std::size_t most = std::max(MostWhenLate, MostPerTriangleWhenLate * triangles);
+  const std::size_t most = std::max(MostInFirstPlans, MostPerTriangleInFirstPlans * triangles);
   return static_cast<Id>(isLate ? std::min(usual, most) : usual);
 }
 

@@ -32,12 +32,20 @@
 #include "Core/Surface/SurfaceIncidences.h"
 #include "Core/Surface/TriangleProofs.h"
 
+#include <cstddef>
 #include <memory>
 #include <utility>
 #include <vector>
 
 namespace cdm
 {
+/**
+ * The largest number of new points of the first plans, which may give up: so many, or so many for each
+ * triangle, if that is more. What ends by these plans hardly ever takes as many.
+ */
+constexpr std::size_t MostInFirstPlans = 4000;
+constexpr std::size_t MostPerTriangleInFirstPlans = 10;
+
 /** How a surface is refined. A surface on which one plan does not end may need another plan. */
 struct SurfaceRefinementPlan
 {
