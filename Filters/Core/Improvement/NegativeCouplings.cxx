@@ -345,13 +345,19 @@ const std::vector<EdgeIds>& NegativeCouplings::Update(const DynamicTetrahedraliz
   }
   this->Changed.clear();
   this->NumberOfVisits += others.empty() ? 0 : 2 * mesh.GetNumberOfTetrahedra();
-  const Id numberOfPoints = static_cast<Id>(boundary.Points.size());
-  const std::vector<EdgeIds> filled = FindFilledEdges(mesh.GetMesh(), others, numberOfPoints);
-  const std::vector<EdgeIds> negative = FindNegative(mesh.GetMesh(), filled, numberOfPoints);
+  const std::vector<EdgeIds> negative =
+    FindNegativeCouplings(mesh.GetMesh(), others, static_cast<Id>(boundary.Points.size()));
   found.insert(found.end(), negative.begin(), negative.end());
   std::sort(found.begin(), found.end());
   this->Negative = std::move(found);
   return this->Negative;
+}
+
+std::vector<EdgeIds> FindNegativeCouplings(
+  const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfBoundaryPoints)
+{
+  const std::vector<EdgeIds> filled = FindFilledEdges(mesh, edges, numberOfBoundaryPoints);
+  return FindNegative(mesh, filled, numberOfBoundaryPoints);
 }
 
 bool IsBoundaryEdge(

@@ -72,6 +72,13 @@ private:
 };
 
 /**
+ * Those of some edges of the boundary whose coupling in a region is negative; both lists ascend.
+ * @param mesh has the points of the boundary first
+ */
+std::vector<EdgeIds> FindNegativeCouplings(
+  const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfBoundaryPoints);
+
+/**
  * Whether two points are joined by an edge of the boundary.
  * @param pointTriangles the triangles at each point of the boundary
  */

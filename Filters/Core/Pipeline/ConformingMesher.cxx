@@ -7,12 +7,12 @@
 #include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/MeshBoundary.h"
 #include "Core/Meshes/SurfaceArea.h"
+#include "Core/Pipeline/FacetCouplings.h"
 #include "Core/Pipeline/RegionVolumes.h"
 #include "Core/Pipeline/SurfaceCoarsener.h"
 #include "Core/Search/BallIndex.h"
 #include "Core/Search/PointOctree.h"
 #include "Core/Sizing/DefaultSize.h"
-#include "Core/Surface/FlatFacets.h"
 #include "Core/Surface/MeshPointClearance.h"
 #include "Core/Surface/StructuralEdges.h"
 #include "Core/Surface/SurfaceChecks.h"
@@ -33,6 +33,8 @@ namespace
 constexpr double LargestSteinerAngle = 40.0;
 /** How much of the volume of a region facets of rounded points may change, as a ratio. */
 constexpr double LargestVolumeChange = 5e-7;
+/** So often single triangles are to keep their edges, then all of them. */
+constexpr int MostLocalRounds = 10;
 
 /** from[via[i]] for all i; NoId stays. */
 template <typename T>
@@ -74,7 +76,7 @@ public:
   Status Run();
 
 private:
-  /** The surface that was refined last, if facets of rounded points have been divided anew. */
+  /** The surface that was refined last, if facets of rounded points may have been divided anew. */
   struct RoundedSurface
   {
     TriangleMesh Surface;
@@ -92,6 +94,7 @@ private:
   BallIndex FindProofs() const;
   void AddUnencroachingPoints(Id firstNumber, const std::vector<StructuralEdge>& edges);
   Status Tetrahedralize();
+  bool MarkExactTriangles(int round);
   Status AddSteinerPoints();
   Status RemoveFlatTetrahedra();
   void WarnOfFlatTetrahedra();
@@ -102,6 +105,10 @@ private:
   ExecutionContext GetPart(const char* stage, double begin, double end) const
   {
     return this->Context.Part(begin, end).Named(stage);
+  }
+  double GetEndOfTetrahedralization() const
+  {
+    return this->Settings.AddsSteinerPoints ? 0.6 : 0.85;
   }
   /** Whether a number of MeshPointSources is that of a given point; generated ones are larger. */
   bool IsGivenMeshPoint(Id source) const
@@ -114,8 +121,13 @@ private:
   void TakeWarnings(std::vector<Warning>&& warnings, const std::vector<Id>& cellSources);
   /** Follows the triangles of the boundary to those that they were, sources[i]. */
   void FollowBoundary(const std::vector<Id>& sources);
-  Status MakeFirstMesh(
-    const AdvancingFrontTetrahedralizerOptions& options, const ExecutionContext& context);
+  /** Whether couplings count, and no stage follows that mends negative ones. */
+  bool NeedsCouplings() const
+  {
+    return this->Settings.Criterion != SurfaceCriterion::Delaunay &&
+      !this->Settings.AddsSteinerPoints;
+  }
+  Status MakeFirstMesh(const ExecutionContext& context);
   void FindFreePoints();
   void FollowPoints(std::vector<Id>&& sources, TetMesh&& before);
 
@@ -280,7 +292,7 @@ Status ConformingMesher::PlaceMeshPoints()
 
 /**
  * Refines and tetrahedralizes the surface; anew, with the edges as they are, where facets of rounded
- * points have changed the volume of a region.
+ * points have changed the volume of a region, or have negative couplings.
  */
 Status ConformingMesher::MakeBoundaryMesh()
 {
@@ -288,14 +300,65 @@ Status ConformingMesher::MakeBoundaryMesh()
   const auto make = [this]
   { return this->RefineSurface().Then([this] { return this->Tetrahedralize(); }); };
   Status status = make();
-  if (!status.IsOk() || this->IsExact.empty())
+  for (int round = 1; status.IsOk() && this->MarkExactTriangles(round); ++round)
+  {
+    this->Output.Warnings.resize(warnings);
+    this->Surface = std::move(this->Rounded->Surface);
+    this->MeshPoints = std::move(this->Rounded->MeshPoints);
+    status = make();
+  }
+  if (!status.IsOk())
   {
     return status;
   }
-  this->Output.Warnings.resize(warnings);
-  this->Surface = std::move(this->Rounded->Surface);
-  this->MeshPoints = std::move(this->Rounded->MeshPoints);
-  return make();
+  this->Rounded.reset();
+  const std::vector<Id> sources = std::move(this->Output.Boundary.SourceCells);
+  this->FollowBoundary(sources);
+  this->FindFreePoints();
+  const double end = this->GetEndOfTetrahedralization();
+  return this->MakeFirstMesh(this->GetPart("Tetrahedralization", end - 0.01, end));
+}
+
+/**
+ * Marks the triangles of the surface before whose facets are to keep their edges. False if no other
+ * ones than before are.
+ * @param round how many meshes there have been; from a number on all triangles are marked
+ */
+bool ConformingMesher::MarkExactTriangles(int round)
+{
+  if (!this->Rounded)
+  {
+    return false;
+  }
+  TriangleMesh& boundary = this->Output.Boundary;
+  const TriangleMesh& before = this->Rounded->Surface;
+  std::vector<Id> sources = std::exchange(
+    boundary.SourceCells, Compose(this->Rounded->Sources, boundary.SourceCells, NoId));
+  this->IsExact.resize(before.Triangles.size(), 0);
+  bool isAny = false;
+  const auto mark = [&](Id triangle)
+  {
+    isAny = isAny || this->IsExact[triangle] == 0;
+    this->IsExact[triangle] = 1;
+  };
+  for (const Id triangle : FindChangedRegions(before, boundary, LargestVolumeChange))
+  {
+    mark(triangle);
+  }
+  if (this->NeedsCouplings() && !this->Context.IsLate())
+  {
+    for (const Id triangle :
+      FindNegativeFacets(this->Output.Mesh, boundary, Compose(this->Facets, sources, Id(0))))
+    {
+      mark(triangle);
+    }
+  }
+  if (isAny && round >= MostLocalRounds)
+  {
+    this->IsExact.assign(before.Triangles.size(), 1);
+  }
+  boundary.SourceCells = std::move(sources);
+  return isAny;
 }
 
 Status ConformingMesher::RefineSurface()
@@ -312,12 +375,6 @@ Status ConformingMesher::RefineSurface()
     options.StructuralEdges.Facets = Compose(this->Input.Facets, this->Surface.SourceCells, Id(0));
   }
   options.StructuralEdges.IsExact = this->IsExact;
-  if (this->Settings.Criterion != SurfaceCriterion::Delaunay && !this->Settings.AddsSteinerPoints)
-  {
-    // No stage follows that mends couplings which are negative by as little as facets are bent.
-    double& flatness = options.StructuralEdges.FlatnessRatio;
-    flatness = std::min(flatness, RoundedFlatnessRatio);
-  }
   DelaunaySurfaceRefinerOutput refined;
   Status status = RefineDelaunaySurface(input, options,
     this->GetPart("Surface refinement", this->Settings.GeneratesMeshPoints ? 0.2 : 0.1, 0.5),
@@ -330,7 +387,8 @@ Status ConformingMesher::RefineSurface()
   std::vector<Id> sources = std::move(refined.Surface.SourceCells);
   refined.Surface.SourceCells = Compose(this->Surface.SourceCells, sources, NoId);
   this->Rounded.reset();
-  if (refined.Report.HasRoundedFacets && options.StructuralEdges.AccuracyAngle == 0.0)
+  if ((refined.Report.HasRoundedFacets || this->NeedsCouplings()) &&
+    options.StructuralEdges.AccuracyAngle == 0.0)
   {
     this->Rounded =
       RoundedSurface{ std::move(this->Surface), this->MeshPoints, std::move(sources) };
@@ -440,9 +498,8 @@ Status ConformingMesher::Tetrahedralize()
   AdvancingFrontTetrahedralizerOptions options;
   options.CloseOpenBoundary = this->Options.CloseOpenBoundary;
   AdvancingFrontTetrahedralizerOutput made;
-  const double end = this->Settings.AddsSteinerPoints ? 0.6 : 0.85;
-  Status status = TetrahedralizeByAdvancingFront(
-    input, options, this->GetPart("Tetrahedralization", 0.5, end - 0.01), made);
+  Status status = TetrahedralizeByAdvancingFront(input, options,
+    this->GetPart("Tetrahedralization", 0.5, this->GetEndOfTetrahedralization() - 0.01), made);
   if (!status.IsOk())
   {
     return this->Name(std::move(status), this->Surface.SourceCells);
@@ -451,27 +508,12 @@ Status ConformingMesher::Tetrahedralize()
   this->Output.Mesh = std::move(made.Mesh);
   this->Output.Points.MeshPointSources =
     Compose(this->MeshPointSources, made.MeshPointSources, NoId);
-  const std::vector<Id> sources = std::move(made.Boundary.SourceCells);
   this->Output.Boundary = std::move(made.Boundary);
-  if (this->Rounded && this->IsExact.empty())
-  {
-    this->Output.Boundary.SourceCells = Compose(this->Rounded->Sources, sources, NoId);
-    this->IsExact =
-      FindChangedRegions(this->Rounded->Surface, this->Output.Boundary, LargestVolumeChange);
-    if (!this->IsExact.empty())
-    {
-      return status;
-    }
-  }
-  this->Rounded.reset();
-  this->FollowBoundary(sources);
-  this->FindFreePoints();
-  return this->MakeFirstMesh(options, this->GetPart("Tetrahedralization", end - 0.01, end));
+  return status;
 }
 
 /** Data of generated points comes from a mesh without them: see PointHistory. */
-Status ConformingMesher::MakeFirstMesh(
-  const AdvancingFrontTetrahedralizerOptions& options, const ExecutionContext& context)
+Status ConformingMesher::MakeFirstMesh(const ExecutionContext& context)
 {
   PointHistory& history = this->Output.Points;
   const auto isGiven = [this](Id source) { return this->IsGivenMeshPoint(source); };
@@ -486,6 +528,8 @@ Status ConformingMesher::MakeFirstMesh(
   AdvancingFrontTetrahedralizerInput input;
   input.Surface = &this->Surface;
   input.MeshPoints = &given;
+  AdvancingFrontTetrahedralizerOptions options;
+  options.CloseOpenBoundary = this->Options.CloseOpenBoundary;
   AdvancingFrontTetrahedralizerOutput made;
   Status status = TetrahedralizeByAdvancingFront(input, options, context, made);
   // Points that lie in no region are in neither mesh, so those of the first mesh come first.

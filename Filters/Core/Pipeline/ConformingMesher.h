@@ -9,7 +9,9 @@
  *     MeshPointGenerator.h, if points are to be generated;
  *  2. DelaunaySurfaceRefiner.h: flips and new points until the surface is part of its Delaunay
  *     mesh;
- *  3. AdvancingFrontTetrahedralizer.h: tetrahedra for every enclosed region;
+ *  3. AdvancingFrontTetrahedralizer.h: tetrahedra for every enclosed region; steps 2 and 3 again, with
+ *     more edges as they are, where facets of rounded points have changed a volume (RegionVolumes.h)
+ *     or have negative couplings (FacetCouplings.h), eleven times at most;
  *  4. SteinerPointRefiner.h, if Steiner points are to be added, otherwise SliverRemover.h, if
  *     slivers are to be removed: MeshPurpose.h says what is to be done where that is not given, and
  *     DefaultSize.h how long edges may be;

@@ -41,7 +41,7 @@ private:
 };
 } // namespace
 
-std::vector<char> FindChangedRegions(
+std::vector<Id> FindChangedRegions(
   const TriangleMesh& before, const TriangleMesh& boundary, double ratio)
 {
   // One of the boundary triangles that come from each triangle before.
@@ -76,17 +76,18 @@ std::vector<char> FindChangedRegions(
     return region >= 0 &&
       std::abs(now.Get(region) - then.Get(region)) > ratio * std::abs(now.Get(region));
   };
-  std::vector<char> marks(before.Triangles.size(), 0);
-  bool isAny = false;
+  std::vector<Id> found;
   for (std::size_t t = 0; t < triangles.size(); ++t)
   {
     if (triangles[t] != NoId)
     {
       const RegionPair& labels = boundary.Labels[triangles[t]];
-      marks[t] = isChanged(labels.Front) || isChanged(labels.Back) ? 1 : 0;
-      isAny = isAny || marks[t] != 0;
+      if (isChanged(labels.Front) || isChanged(labels.Back))
+      {
+        found.push_back(static_cast<Id>(t));
+      }
     }
   }
-  return isAny ? marks : std::vector<char>();
+  return found;
 }
 } // namespace cdm

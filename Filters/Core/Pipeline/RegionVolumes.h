@@ -22,12 +22,12 @@
 namespace cdm
 {
 /**
- * Marks the triangles of the surface before that bound a region whose volume differs by more than a
- * ratio of it; empty if there is no such region.
+ * The triangles of the surface before that bound a region whose volume differs by more than a ratio
+ * of it, ascending.
  * @param boundary has labels; its source cells are triangles of the surface before. Those that come
  *        from none close the surface, before as well.
  */
-std::vector<char> FindChangedRegions(
+std::vector<Id> FindChangedRegions(
   const TriangleMesh& before, const TriangleMesh& boundary, double ratio);
 } // namespace cdm
 

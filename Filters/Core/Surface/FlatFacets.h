@@ -40,6 +40,8 @@ namespace cdm
 {
 /** The part of the size of a surface (GetFlatness()) that counts as rounding in double precision. */
 constexpr double RoundedFlatnessRatio = 1e-9;
+/** The same where edges have to stay as they are: no more than the last digits of the coordinates. */
+constexpr double ExactFlatnessRatio = 1e-15;
 
 /** Two triangles at an edge, as uses of it (EdgeUses.h). */
 using UsePair = std::pair<Id, Id>;

@@ -332,6 +332,14 @@ bool IsSmoothEdge(
   return largerHeight * std::sin(bend / WideDegreesPerRadian) <= flatness;
 }
 
+bool IsSmoothEdge(const TriangleMesh& surface, const EdgeUse& first, const EdgeUse& second,
+  double accuracyAngle, double flatness)
+{
+  const EdgeIds ends = first.GetPoints();
+  return IsSmoothEdge(surface.Points[ends[0]], surface.Points[ends[1]],
+    GetOpposite(surface, first.Use), GetOpposite(surface, second.Use), accuracyAngle, flatness);
+}
+
 double GetBoundingBoxDiagonal(const std::vector<Vec3>& points)
 {
   if (points.empty())
@@ -423,13 +431,11 @@ bool EdgeJudge::IsExact(std::size_t begin) const
 
 bool EdgeJudge::IsSmoothPair(std::size_t begin, double accuracyAngle, double flatness) const
 {
-  const EdgeIds ends = this->Uses[begin].GetPoints();
-  return IsSmoothEdge(this->Surface.Points[ends[0]], this->Surface.Points[ends[1]],
-    GetOpposite(this->Surface, this->Uses[begin].Use),
-    GetOpposite(this->Surface, this->Uses[begin + 1].Use), accuracyAngle, flatness);
+  return IsSmoothEdge(
+    this->Surface, this->Uses[begin], this->Uses[begin + 1], accuracyAngle, flatness);
 }
 
-/** Fills IsFlat. Edges at exact triangles are flat only if their triangles are plane to rounding. */
+/** Fills IsFlat. Edges at exact triangles are flat only if their triangles are plane to the last digit. */
 void EdgeJudge::FindFlat()
 {
   const double ratio = this->Options.FlatnessRatio;
@@ -438,6 +444,7 @@ void EdgeJudge::FindFlat()
   options.RoundedTolerance =
     GetFlatness(std::min(ratio, RoundedFlatnessRatio), this->Surface.Points);
   options.Tolerance = GetFlatness(ratio, this->Surface.Points);
+  const double exact = GetFlatness(ExactFlatnessRatio, this->Surface.Points);
   this->IsFlat.assign(this->Uses.size(), 0);
   std::vector<UsePair> pairs;
   std::vector<std::size_t> begins;
@@ -451,7 +458,7 @@ void EdgeJudge::FindFlat()
     }
     if (this->IsExact(begin))
     {
-      this->IsFlat[begin] = this->IsSmoothPair(begin, 0.0, options.RoundedTolerance) ? 1 : 0;
+      this->IsFlat[begin] = this->IsSmoothPair(begin, 0.0, exact) ? 1 : 0;
       continue;
     }
     pairs.emplace_back(this->Uses[begin].Use, this->Uses[begin + 1].Use);

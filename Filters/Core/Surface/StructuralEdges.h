@@ -81,8 +81,8 @@ struct StructuralEdgeOptions
    */
   std::vector<Id> Facets = {};
   /**
-   * Marks triangles at whose edges accuracy angle and plane facets do not count, only rounding;
-   * empty: none.
+   * Marks triangles at whose edges accuracy angle and plane facets do not count, only the last digits
+   * of the coordinates; empty: none.
    */
   std::vector<char> IsExact = {};
 };
@@ -119,6 +119,9 @@ const StructuralEdge* FindStructuralEdge(
  */
 bool IsSmoothEdge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double accuracyAngle,
   double flatness);
+/** The same for an edge of a surface, from two of its uses. */
+bool IsSmoothEdge(const TriangleMesh& surface, const EdgeUse& first, const EdgeUse& second,
+  double accuracyAngle, double flatness);
 
 /** Diagonal of the bounding box of the points; 0 without points. */
 double GetBoundingBoxDiagonal(const std::vector<Vec3>& points);
