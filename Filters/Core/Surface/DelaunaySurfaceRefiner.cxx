@@ -357,6 +357,8 @@ private:
   void RunUsual(SurfaceRefinementPlan plan);
   void RunThinWay(const SurfaceRefinementPlan& first, const ThinWay& way);
   void RunThin(const SurfaceRefinementPlan& first);
+  void RunUsualAndThin(const SurfaceRefinementPlan& plan);
+  void RunOtherOrder(SurfaceRefinementPlan plan);
   void RunRelaxed(SurfaceRefinementPlan plan);
   void RunLastResort(SurfaceRefinementPlan plan);
   bool HasSizes() const
@@ -517,6 +519,21 @@ void SurfaceAttempts::RunUsual(SurfaceRefinementPlan plan)
   }
 }
 
+/**
+ * Refines by the usual plan in the other order: edges before all triangles by criterion 3.2, which
+ * implies 3.1, or after them. That ends soon or not at all, and then bounds what thin layers may take.
+ */
+void SurfaceAttempts::RunOtherOrder(SurfaceRefinementPlan plan)
+{
+  const SurfaceCriterion criterion = this->Options.Criterion;
+  const double flatness = this->Options.StructuralEdges.FlatnessRatio;
+  plan.AreEdgesLast = criterion == SurfaceCriterion::SmallestSphereAndEdges;
+  this->Options.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
+  this->RunUsual(plan);
+  this->Options.Criterion = criterion;
+  this->Options.StructuralEdges.FlatnessRatio = flatness;
+}
+
 /** Refines with rules for thin layers, if nothing has ended yet or if fewer points are wanted. */
 void SurfaceAttempts::RunThinWay(const SurfaceRefinementPlan& first, const ThinWay& way)
 {
@@ -558,19 +575,15 @@ void SurfaceAttempts::RunThinWay(const SurfaceRefinementPlan& first, const ThinW
 }
 
 /**
- * If nothing has ended yet: refines with the rules for thin layers, edges before all triangles and
- * after them, and with those for stacks, in two ways. Any of these takes five times as many points as
- * another one at times. So all are tried, each with at most as many points as the best one so far, and
- * the fewest points are kept; the second way for stacks only if nothing else ends. Where a plan does
- * not give up, the first one that ends is taken. With more needles allowed than at first, only those
- * are tried again that gave up at them.
+ * Refines with the rules for thin layers, edges before all triangles and after them, and with those
+ * for stacks, in two ways. Any of these takes five times as many points as another one at times. So all
+ * are tried, each with at most as many points as the best one so far, and the fewest points are kept;
+ * the second way for stacks only if nothing else ends. Where a plan does not give up, the first one
+ * that ends is taken. With more needles allowed than at first, only those are tried again that gave up
+ * at them.
  */
 void SurfaceAttempts::RunThin(const SurfaceRefinementPlan& first)
 {
-  if (!this->IsOpen())
-  {
-    return;
-  }
   const bool areEdgesTested =
     this->Options.Criterion != SurfaceCriterion::Delaunay && first.RelaxedLength == 0.0;
   std::vector<ThinWay> ways{ { MatchingRules::ThinLayers, areEdgesTested, false },
@@ -588,6 +601,16 @@ void SurfaceAttempts::RunThin(const SurfaceRefinementPlan& first)
   }
 }
 
+/** Refines by the usual plan and, if that does not end, with rules for thin layers. */
+void SurfaceAttempts::RunUsualAndThin(const SurfaceRefinementPlan& plan)
+{
+  this->RunUsual(plan);
+  if (this->IsOpen())
+  {
+    this->RunThin(plan);
+  }
+}
+
 /**
  * Refines as if the criterion Delaunay were asked for, by which each plan either ends soon or not at all.
  * Then only triangles and edges shorter than a length may miss the criterion: with ever smaller lengths,
@@ -600,15 +623,13 @@ void SurfaceAttempts::RunRelaxed(SurfaceRefinementPlan plan)
   partly.GivesUp = this->Options.MaximumNewPoints == 0;
   partly.MostPerTriangle = MostPerTriangleInFirstPlans;
   plan.RelaxedLength = Infinity;
-  this->RunUsual(plan);
-  this->RunThin(plan);
+  this->RunUsualAndThin(plan);
   const bool hasEnded = this->IsSettled;
   while (this->IsSettled && !this->IsAborted && !this->Best.UnresolvedTriangles.empty())
   {
     partly.MostPoints = MostInFirstPlans + this->Best.NewPoints.size();
     this->IsSettled = false;
-    this->RunUsual(partly);
-    this->RunThin(partly);
+    this->RunUsualAndThin(partly);
     partly.RelaxedLength *= RelaxedLengthPart;
   }
   this->IsSettled = hasEnded;
@@ -625,13 +646,11 @@ void SurfaceAttempts::RunLastResort(SurfaceRefinementPlan plan)
   plan.MakesShorterEdges = true;
   plan.IsRescue = this->IsLate();
   plan.GivesUp = plan.IsRescue;
-  this->RunUsual(plan);
-  this->RunThin(plan);
+  this->RunUsualAndThin(plan);
   if (plan.GivesUp && !this->HasMesh())
   {
     plan.GivesUp = false;
-    this->RunUsual(plan);
-    this->RunThin(plan);
+    this->RunUsualAndThin(plan);
   }
 }
 
@@ -641,17 +660,14 @@ Status SurfaceAttempts::Run()
   // Where sizes are asked for, they are what most of the points are for.
   plan.GivesUp = !this->HasSizes() || this->Options.IsTrial;
   this->RunUsual(plan);
-  const SurfaceCriterion criterion = this->Options.Criterion;
-  const bool isStrong = criterion != SurfaceCriterion::Delaunay;
-  this->RunThin(plan);
-  if (isStrong && this->IsOpen())
+  const bool isStrong = this->Options.Criterion != SurfaceCriterion::Delaunay;
+  if (this->IsOpen())
   {
-    // The other order: edges before all triangles by criterion 3.2, which implies 3.1, or after them.
-    SurfaceRefinementPlan other = plan;
-    other.AreEdgesLast = criterion == SurfaceCriterion::SmallestSphereAndEdges;
-    this->Options.Criterion = SurfaceCriterion::SmallestSphereAndEdges;
-    this->RunUsual(other);
-    this->Options.Criterion = criterion;
+    if (isStrong)
+    {
+      this->RunOtherOrder(plan);
+    }
+    this->RunThin(plan);
   }
   if (this->Options.IsTrial)
   {
