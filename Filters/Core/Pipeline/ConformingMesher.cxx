@@ -95,6 +95,9 @@ private:
   void AddUnencroachingPoints(Id firstNumber, const std::vector<StructuralEdge>& edges);
   Status Tetrahedralize();
   bool MarkExactTriangles(int round);
+  template <typename Visitor>
+  void VisitNegativeSources(
+    const std::vector<Id>& facets, Visitor&& visit, const bool& hasHelped) const;
   Status AddSteinerPoints();
   Status RemoveFlatTetrahedra();
   void WarnOfFlatTetrahedra();
@@ -347,11 +350,7 @@ bool ConformingMesher::MarkExactTriangles(int round)
   }
   if (this->NeedsCouplings() && !this->Context.IsLate())
   {
-    for (const Id triangle :
-      FindNegativeFacets(this->Output.Mesh, boundary, Compose(this->Facets, sources, Id(0))))
-    {
-      mark(triangle);
-    }
+    this->VisitNegativeSources(Compose(this->Facets, sources, Id(0)), mark, isAny);
   }
   if (isAny && round >= MostLocalRounds)
   {
@@ -359,6 +358,45 @@ bool ConformingMesher::MarkExactTriangles(int round)
   }
   boundary.SourceCells = std::move(sources);
   return isAny;
+}
+
+/**
+ * Visits the triangles of the surface before at edges with negative couplings in facets of rounded
+ * points. Flips may have taken the edges away from those that bend: if no visit helps, visits all of
+ * their facets.
+ * @param facets of the triangles of the boundary
+ * @param hasHelped what the visitor sets when a triangle is new to it
+ */
+template <typename Visitor>
+void ConformingMesher::VisitNegativeSources(
+  const std::vector<Id>& facets, Visitor&& visit, const bool& hasHelped) const
+{
+  const TriangleMesh& boundary = this->Output.Boundary;
+  const auto visitSource = [&](Id triangle)
+  {
+    if (boundary.SourceCells[triangle] != NoId)
+    {
+      visit(boundary.SourceCells[triangle]);
+    }
+  };
+  std::vector<Id> negative = FindNegativeTriangles(this->Output.Mesh, boundary, facets);
+  std::for_each(negative.begin(), negative.end(), visitSource);
+  if (hasHelped)
+  {
+    return;
+  }
+  for (Id& triangle : negative)
+  {
+    triangle = facets[triangle];
+  }
+  SortUnique(negative);
+  for (std::size_t t = 0; t < facets.size(); ++t)
+  {
+    if (std::binary_search(negative.begin(), negative.end(), facets[t]))
+    {
+      visitSource(static_cast<Id>(t));
+    }
+  }
 }
 
 Status ConformingMesher::RefineSurface()

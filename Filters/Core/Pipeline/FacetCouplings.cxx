@@ -47,7 +47,7 @@ std::vector<RoundedEdge> FindRoundedEdges(
 }
 } // namespace
 
-std::vector<Id> FindNegativeFacets(
+std::vector<Id> FindNegativeTriangles(
   const TetMesh& mesh, const TriangleMesh& boundary, const std::vector<Id>& facets)
 {
   const std::vector<RoundedEdge> edges = FindRoundedEdges(boundary, facets);
@@ -64,17 +64,10 @@ std::vector<Id> FindNegativeFacets(
   {
     if (std::binary_search(negative.begin(), negative.end(), edge.Points))
     {
-      for (const Id triangle : edge.Triangles)
-      {
-        found.push_back(boundary.SourceCells[triangle]);
-      }
+      found.insert(found.end(), edge.Triangles.begin(), edge.Triangles.end());
     }
   }
   SortUnique(found);
-  if (!found.empty() && found.front() == NoId)
-  {
-    found.erase(found.begin());
-  }
   return found;
 }
 } // namespace cdm

@@ -27,12 +27,11 @@
 namespace cdm
 {
 /**
- * The triangles of the surface before that triangles at such edges come from, ascending.
- * @param boundary on the points of the mesh; its source cells are triangles of the surface before, or
- *        NoId
+ * The triangles of the boundary at such edges, ascending.
+ * @param boundary on the points of the mesh
  * @param facets of the triangles of the boundary
  */
-std::vector<Id> FindNegativeFacets(
+std::vector<Id> FindNegativeTriangles(
   const TetMesh& mesh, const TriangleMesh& boundary, const std::vector<Id>& facets);
 } // namespace cdm
 
