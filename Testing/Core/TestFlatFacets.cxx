@@ -192,7 +192,7 @@ TEST(FlatFacets, RoundedBoxesHaveSixFacets)
     }
     EXPECT_EQ(CountFacets(box), 6);
     StructuralEdgeOptions strict;
-    strict.FlatnessRatio = ExactFlatnessRatio;
+    strict.FlatnessRatio = RoundedFlatnessRatio;
     EXPECT_GT(Extract(box, strict).size(), 4 * Extract(box).size());
   }
 }

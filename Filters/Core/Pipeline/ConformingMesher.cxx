@@ -49,6 +49,23 @@ std::vector<T> Compose(const std::vector<T>& from, const std::vector<Id>& via, T
   return composed;
 }
 
+/** All triangles of the facets of some, ascending; facets has that of each triangle. */
+std::vector<Id> FindTrianglesOfSameFacets(
+  const std::vector<Id>& triangles, const std::vector<Id>& facets)
+{
+  std::vector<Id> wanted = Compose(facets, triangles, NoId);
+  SortUnique(wanted);
+  std::vector<Id> found;
+  for (std::size_t t = 0; t < facets.size(); ++t)
+  {
+    if (std::binary_search(wanted.begin(), wanted.end(), facets[t]))
+    {
+      found.push_back(static_cast<Id>(t));
+    }
+  }
+  return found;
+}
+
 /** How much of a region peeling may take, at most: a layer as thin as what counts as flat. */
 double GetPeeledVolumeRatio(
   const TriangleMesh& boundary, const MeshCertificate& report, double flatnessRatio)
@@ -94,10 +111,8 @@ private:
   BallIndex FindProofs() const;
   void AddUnencroachingPoints(Id firstNumber, const std::vector<StructuralEdge>& edges);
   Status Tetrahedralize();
+  bool MarkExact(const std::vector<Id>& triangles);
   bool MarkExactTriangles(int round);
-  template <typename Visitor>
-  void VisitNegativeSources(
-    const std::vector<Id>& facets, Visitor&& visit, const bool& hasHelped) const;
   Status AddSteinerPoints();
   Status RemoveFlatTetrahedra();
   void WarnOfFlatTetrahedra();
@@ -322,6 +337,21 @@ Status ConformingMesher::MakeBoundaryMesh()
   return this->MakeFirstMesh(this->GetPart("Tetrahedralization", end - 0.01, end));
 }
 
+/** Whether any of the triangles of the surface before, of which some are NoId, was not marked yet. */
+bool ConformingMesher::MarkExact(const std::vector<Id>& triangles)
+{
+  bool isAny = false;
+  for (const Id triangle : triangles)
+  {
+    if (triangle != NoId)
+    {
+      isAny = isAny || this->IsExact[triangle] == 0;
+      this->IsExact[triangle] = 1;
+    }
+  }
+  return isAny;
+}
+
 /**
  * Marks the triangles of the surface before whose facets are to keep their edges. False if no other
  * ones than before are.
@@ -338,19 +368,16 @@ bool ConformingMesher::MarkExactTriangles(int round)
   std::vector<Id> sources = std::exchange(
     boundary.SourceCells, Compose(this->Rounded->Sources, boundary.SourceCells, NoId));
   this->IsExact.resize(before.Triangles.size(), 0);
-  bool isAny = false;
-  const auto mark = [&](Id triangle)
-  {
-    isAny = isAny || this->IsExact[triangle] == 0;
-    this->IsExact[triangle] = 1;
-  };
-  for (const Id triangle : FindChangedRegions(before, boundary, LargestVolumeChange))
-  {
-    mark(triangle);
-  }
+  bool isAny = this->MarkExact(FindChangedRegions(before, boundary, LargestVolumeChange));
   if (this->NeedsCouplings() && !this->Context.IsLate())
   {
-    this->VisitNegativeSources(Compose(this->Facets, sources, Id(0)), mark, isAny);
+    const std::vector<Id> facets = Compose(this->Facets, sources, Id(0));
+    const std::vector<Id> negative = FindNegativeTriangles(this->Output.Mesh, boundary, facets);
+    const auto markSources = [&](const std::vector<Id>& triangles)
+    { return this->MarkExact(Compose(boundary.SourceCells, triangles, NoId)); };
+    isAny = markSources(negative) || isAny;
+    // Flips may have taken the edges away from those that bend.
+    isAny = isAny || markSources(FindTrianglesOfSameFacets(negative, facets));
   }
   if (isAny && round >= MostLocalRounds)
   {
@@ -358,45 +385,6 @@ bool ConformingMesher::MarkExactTriangles(int round)
   }
   boundary.SourceCells = std::move(sources);
   return isAny;
-}
-
-/**
- * Visits the triangles of the surface before at edges with negative couplings in facets of rounded
- * points. Flips may have taken the edges away from those that bend: if no visit helps, visits all of
- * their facets.
- * @param facets of the triangles of the boundary
- * @param hasHelped what the visitor sets when a triangle is new to it
- */
-template <typename Visitor>
-void ConformingMesher::VisitNegativeSources(
-  const std::vector<Id>& facets, Visitor&& visit, const bool& hasHelped) const
-{
-  const TriangleMesh& boundary = this->Output.Boundary;
-  const auto visitSource = [&](Id triangle)
-  {
-    if (boundary.SourceCells[triangle] != NoId)
-    {
-      visit(boundary.SourceCells[triangle]);
-    }
-  };
-  std::vector<Id> negative = FindNegativeTriangles(this->Output.Mesh, boundary, facets);
-  std::for_each(negative.begin(), negative.end(), visitSource);
-  if (hasHelped)
-  {
-    return;
-  }
-  for (Id& triangle : negative)
-  {
-    triangle = facets[triangle];
-  }
-  SortUnique(negative);
-  for (std::size_t t = 0; t < facets.size(); ++t)
-  {
-    if (std::binary_search(negative.begin(), negative.end(), facets[t]))
-    {
-      visitSource(static_cast<Id>(t));
-    }
-  }
 }
 
 Status ConformingMesher::RefineSurface()
