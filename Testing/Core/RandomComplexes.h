@@ -189,6 +189,18 @@ inline void Rotate(std::vector<Vec3>& points, const Vec3& axis, double angle)
   }
 }
 
+/** Which keeps seven digits. */
+inline void RoundToSinglePrecision(std::vector<Vec3>& points)
+{
+  for (Vec3& point : points)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      point[axis] = static_cast<double>(static_cast<float>(point[axis]));
+    }
+  }
+}
+
 /** A box cut by planes near its center, turned about a random axis by an angle in radians. */
 inline PolygonSoup MakeTurnedComplex(
   std::mt19937_64& generator, const Vec3& size, int cuts, double angle)

@@ -60,13 +60,7 @@ PolygonSoup MakeRoundedCylinder(Id sides, double slope, std::uint64_t seed)
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> angle(0.0, TwoPi);
   Rotate(soup.Points, MakeRandomDirection(random), angle(random));
-  for (Vec3& point : soup.Points)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      point[axis] = static_cast<double>(static_cast<float>(point[axis]));
-    }
-  }
+  RoundToSinglePrecision(soup.Points);
   return soup;
 }
 

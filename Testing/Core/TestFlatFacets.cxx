@@ -70,18 +70,6 @@ TriangleMesh MakeBox(int n, std::mt19937_64& generator)
   return box;
 }
 
-/** Rounds to single precision, which keeps seven digits. */
-void RoundPoints(TriangleMesh& surface)
-{
-  for (Vec3& point : surface.Points)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      point[axis] = static_cast<float>(point[axis]);
-    }
-  }
-}
-
 void RoundPointsToDigits(TriangleMesh& surface, double unit)
 {
   for (Vec3& point : surface.Points)
@@ -181,7 +169,7 @@ TEST(FlatFacets, RoundedBoxesHaveSixFacets)
     std::mt19937_64 generator(seed);
     TriangleMesh box = MakeBox(8, generator);
     Rotate(box.Points, MakeRandomDirection(generator), 0.1 * seed);
-    RoundPoints(box);
+    RoundToSinglePrecision(box.Points);
     // Which way triangles look does not matter.
     for (TriangleIds& ids : box.Triangles)
     {
@@ -291,7 +279,7 @@ TEST(FlatFacets, ExactTrianglesKeepTheirEdges)
   std::mt19937_64 generator(3);
   TriangleMesh box = MakeBox(4, generator);
   Rotate(box.Points, MakeRandomDirection(generator), 1.0);
-  RoundPoints(box);
+  RoundToSinglePrecision(box.Points);
   StructuralEdgeOptions options;
   options.IsExact.assign(box.Triangles.size(), 1);
   StructuralEdgeOptions strict;
@@ -308,7 +296,7 @@ TEST(FlatFacets, StayWhenTheSurfaceIsRefined)
     std::mt19937_64 generator(seed);
     TriangleMesh box = MakeBox(6, generator);
     Rotate(box.Points, MakeRandomDirection(generator), 0.2 * seed);
-    RoundPoints(box);
+    RoundToSinglePrecision(box.Points);
     const std::vector<Id> facets = GetFacets(box);
     DelaunaySurfaceRefinerInput input;
     input.Surface = &box;
@@ -366,7 +354,7 @@ TEST(FlatFacets, RoundedBoxesAreMeshedLikeThePlaneOnes)
       if (i == 1)
       {
         Rotate(box.Points, MakeRandomDirection(generator), 0.3 * seed);
-        RoundPoints(box);
+        RoundToSinglePrecision(box.Points);
       }
       if (i == 2)
       {
@@ -422,7 +410,7 @@ TEST(FlatFacets, OpenRoundedSurfacesAreClosed)
   std::mt19937_64 generator(5);
   TriangleMesh box = MakeBox(6, generator);
   Rotate(box.Points, MakeRandomDirection(generator), 0.7);
-  RoundPoints(box);
+  RoundToSinglePrecision(box.Points);
   box.Triangles.pop_back();
   ConformingMesherOptions options;
   options.Choices.Criterion = SurfaceCriterion::Delaunay;
