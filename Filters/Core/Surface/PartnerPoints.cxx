@@ -273,6 +273,10 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id encroaching) const
   return 0.5 * (a + b);
 }
 
+/**
+ * Type R for facets, about the nearest edge that they share. The lines of other edges may be nearer,
+ * but triangles at such a line would not be near the point.
+ */
 bool PartnerPoints::RotateAboutEdge(Id t, Id encroaching, Vec3& target) const
 {
   const RefinableSurface::Triangle& triangle = this->Surface.GetTriangle(t);
@@ -287,15 +291,18 @@ bool PartnerPoints::RotateAboutEdge(Id t, Id encroaching, Vec3& target) const
       {
         const EdgeIds& axis = this->Surface.GetInputEdges()[edge];
         const Vec3& begin = this->Points[axis[0]];
-        const Vec3 direction =
-          (1.0 / Distance(begin, this->Points[axis[1]])) * (this->Points[axis[1]] - begin);
-        const Vec3 foot = begin + Dot(p - begin, direction) * direction;
+        const double length = Distance(begin, this->Points[axis[1]]);
+        const Vec3 direction = (1.0 / length) * (this->Points[axis[1]] - begin);
+        const double way = Dot(p - begin, direction);
+        const Vec3 foot = begin + way * direction;
         const Vec3 inward = center - (begin + Dot(center - begin, direction) * direction);
         const double distance = Distance(p, foot);
-        if (distance < nearest && distance > 0.0 &&
+        const double beyond = std::max({ 0.0, -way, way - length });
+        const double fromEdge = std::hypot(distance, beyond);
+        if (fromEdge < nearest && distance > 0.0 &&
           Dot(inward, p - foot) > PerpendicularCosine * distance * Norm(inward))
         {
-          nearest = distance;
+          nearest = fromEdge;
           target = foot + (distance / Norm(inward)) * inward;
         }
       });

@@ -14,8 +14,8 @@
  *     projection is taken. Edges split for no point are split near an acute corner at a power of
  *     two of the unit of length (concentric shells), so that all edges there end up alike;
  *     otherwise in the middle.
- *  2. Partner in a facet: the encroaching point is rotated about the edge that the two facets
- *     share, or mirrored between the two planes if they share a corner (rotated about that if the
+ *  2. Partner in a facet: the encroaching point is rotated about the nearest edge that the two
+ *     facets share, or mirrored between the two planes if they share a corner (rotated about that if the
  *     planes are steep or the point is one of an edge), or projected along the normal, in this
  *     order. In stacks it is always mirrored, wherever the planes meet.
  *  3. The last bits are chosen so that the two points match exactly (MatchingPoints.h).
