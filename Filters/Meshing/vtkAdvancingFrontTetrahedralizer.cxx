@@ -96,7 +96,7 @@ int vtkAdvancingFrontTetrahedralizer::RequestData(
     });
   this->NumberOfRegions = result.Report.NumberOfRegions;
   this->NumberOfUnusedMeshPoints = result.Report.UnusedMeshPoints;
-  this->NumberOfUnusedTriangles = result.Report.UnusedTriangles;
+  this->NumberOfUnusedTriangles = static_cast<vtkIdType>(result.Report.UnusedTriangles.size());
   this->NumberOfTurnedDiagonals = result.Report.TurnedDiagonals;
   if (!status.IsOk() && !status.IsAborted())
   {
@@ -119,6 +119,7 @@ int vtkAdvancingFrontTetrahedralizer::RequestData(
   {
     vtkConformingDelaunayCompatibility::KeepOutputsOfAbortedRun(this);
   }
+  vtkCoreBridge::OffsetCells(result.Warnings, vtkCoreBridge::GetFirstPolygon(input));
   vtkCoreBridge::ReportWarnings(this, result.Warnings);
   return 1;
 }

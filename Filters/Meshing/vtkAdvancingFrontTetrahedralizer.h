@@ -33,7 +33,8 @@
  *
  * Failure: an error that names the cells, and empty outputs, for an empty input, triangles that are
  * not Delaunay, labels that contradict each other, and a surface that encloses nothing. A warning
- * counts mesh points in no meshed region and triangles that bound none. An aborted run, from the
+ * counts mesh points in no meshed region, and another one names the cells that bound none: they are
+ * not in the boundary of a finished mesh. An aborted run, from the
  * moment the front advances, and one stopped by MaximumNumberOfTetrahedra leave the valid mesh made
  * so far and its front in the outputs. (VTK empties the outputs of an aborted filter; this one
  * takes its mark back. Filters downstream decide for themselves whether they run on it.)

@@ -641,6 +641,29 @@ TEST(AdvancingFront, LeavesCavitiesAndMeshesNestedRegions)
   ASSERT_EQ(report.Regions.size(), 1u);
   EXPECT_EQ(report.Regions[0].Region, 3);
   EXPECT_NEAR(report.Regions[0].Volume, 0.008, 1e-14);
+  EXPECT_EQ(output.Boundary.Triangles.size(), 12u);
+  EXPECT_TRUE(output.Warnings.empty());
+}
+
+TEST(AdvancingFront, LeavesOutTrianglesThatBoundNothing)
+{
+  // An open sheet beside a box: its triangles come first.
+  TriangleMesh sheet;
+  sheet.Points = { { 2.0, 0.0, 0.0 }, { 3.0, 0.0, 0.0 }, { 3.0, 1.0, 0.0 }, { 2.0, 1.0, 0.0 } };
+  sheet.Triangles = { { 0, 1, 2 }, { 0, 2, 3 } };
+  const TriangleMesh surface = MakeBox({ 0.0, 0.0, 0.0 }, { 1.0, 1.0, 1.0 }, sheet);
+  AdvancingFrontTetrahedralizerOutput output;
+  ASSERT_TRUE(
+    TetrahedralizeByAdvancingFront({ &surface, nullptr, nullptr }, {}, {}, output).IsOk());
+  CheckSurfaceMesh(output);
+  MeshCertificate report;
+  ASSERT_TRUE(CertifyMesh(output.Mesh, &output.Boundary, {}, report).IsOk());
+  EXPECT_TRUE(report.IsDelaunay(1e-12)) << report.GetText();
+  EXPECT_EQ(output.Boundary.Triangles.size(), 12u);
+  EXPECT_EQ(output.Boundary.SourceCells.front(), 2);
+  EXPECT_EQ(output.Report.UnusedTriangles, std::vector<Id>({ 0, 1 }));
+  ASSERT_EQ(output.Warnings.size(), 1u);
+  EXPECT_EQ(output.Warnings[0].Cells, std::vector<Id>({ 0, 1 }));
 }
 
 TEST(AdvancingFront, MeshesTouchingRegions)

@@ -157,6 +157,32 @@ TEST(ConformingMesher, ErrorsNamePolygonsAndPointsOfTheInput)
 }
 
 /** Walls and bottom 3 thick: points of the octree lie in the middle of them, but are not needed. */
+// Steiner points took an open sheet beside the body for a boundary that is not in the mesh.
+TEST(ConformingMesher, OpenSheetsBesideABodyAreLeftOut)
+{
+  PolygonSoup soup = MakeCube();
+  for (const Vec3& p : { Vec3{ 2.0, 0.0, 0.0 }, Vec3{ 3.0, 0.0, 0.0 }, Vec3{ 2.0, 1.0, 0.5 } })
+  {
+    soup.Connectivity.push_back(static_cast<Id>(soup.Points.size()));
+    soup.Points.push_back(p);
+  }
+  soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+  ConformingMesherOptions options;
+  options.Surface.MaximumEdgeLength = 0.4;
+  for (const bool addsSteinerPoints : { false, true })
+  {
+    options.Choices.AddsSteinerPoints = addsSteinerPoints;
+    const ConformingMesherOutput output = Mesh(soup, options);
+    EXPECT_TRUE(output.Certificate.IsDelaunay(1e-12)) << output.Certificate.GetText();
+    const auto warning = std::find_if(output.Warnings.begin(), output.Warnings.end(),
+      [](const Warning& one) { return one.Message.find("bound no") != std::string::npos; });
+    ASSERT_NE(warning, output.Warnings.end());
+    EXPECT_FALSE(warning->Cells.empty());
+    EXPECT_EQ(std::count(warning->Cells.begin(), warning->Cells.end(), 6),
+      static_cast<std::ptrdiff_t>(warning->Cells.size()));
+  }
+}
+
 TEST(ConformingMesher, MeshPointsAndSteinerPointsDoNotMultiply)
 {
   // An open tray: corners of the outer box, then of the cavity, by z, y, x.

@@ -70,6 +70,7 @@ private:
   void CollectPointsUsed();
   void AppendHull();
   void CompleteBoundary();
+  void LeaveOutUnusedTriangles();
   Id GetSideLabel(Id side) const
   {
     const RegionPair& labels = this->Surface.Labels[side / 2];
@@ -566,14 +567,34 @@ void AdvancingFront::CompleteBoundary()
       (side % 2 == 0 ? labels.Front : labels.Back) = this->Regions[t];
     }
   }
-  for (Id side = 0; side < 2 * this->NumberOfSurfaceTriangles; side += 2)
-  {
-    this->Output.Report.UnusedTriangles += this->States[this->Facets.Sides[side] / 4] != Meshed &&
-        this->States[this->Facets.Sides[side + 1] / 4] != Meshed
-      ? 1
-      : 0;
-  }
+  this->LeaveOutUnusedTriangles();
   this->AppendHull();
+}
+
+/** Triangles with no meshed region on either side are no part of the boundary of a finished mesh. */
+void AdvancingFront::LeaveOutUnusedTriangles()
+{
+  Id kept = 0;
+  for (Id t = 0; t < this->NumberOfSurfaceTriangles; ++t)
+  {
+    const auto isMeshed = [&](Id side)
+    { return this->States[this->Facets.Sides[side] / 4] == Meshed; };
+    const bool isUsed = isMeshed(2 * t) || isMeshed(2 * t + 1);
+    if (!isUsed)
+    {
+      this->Output.Report.UnusedTriangles.push_back(this->Surface.SourceCells[t]);
+    }
+    if (isUsed || this->IsStopped)
+    {
+      this->Surface.Triangles[kept] = this->Surface.Triangles[t];
+      this->Surface.Labels[kept] = this->Surface.Labels[t];
+      this->Surface.SourceCells[kept] = this->Surface.SourceCells[t];
+      ++kept;
+    }
+  }
+  this->Surface.Triangles.resize(kept);
+  this->Surface.Labels.resize(kept);
+  this->Surface.SourceCells.resize(kept);
 }
 
 void AdvancingFront::Finish()
@@ -680,10 +701,13 @@ std::vector<Warning> MakeWarnings(const AdvancingFrontTetrahedralizerReport& rep
     warnings.push_back({ "Left out " + std::to_string(report.UnusedMeshPoints) +
       " mesh points that lie in no meshed region." });
   }
-  if (report.UnusedTriangles > 0 && !hasSeeds)
+  if (!report.UnusedTriangles.empty() && !hasSeeds)
   {
-    warnings.push_back({ std::to_string(report.UnusedTriangles) +
-      " triangles of the surface bound no meshed region." });
+    warnings.push_back({ "Left out " + std::to_string(report.UnusedTriangles.size()) +
+        " triangles of the surface that bound no meshed region. If they should, close what they "
+        "are "
+        "part of.",
+      report.UnusedTriangles });
   }
   return warnings;
 }

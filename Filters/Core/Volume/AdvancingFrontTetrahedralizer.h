@@ -75,8 +75,8 @@ struct AdvancingFrontTetrahedralizerReport
 {
   /** Mesh points that lie in no meshed region, and copies of points. */
   Id UnusedMeshPoints = 0;
-  /** Triangles with no meshed region on either side. */
-  Id UnusedTriangles = 0;
+  /** Triangles with no meshed region on either side, ascending. */
+  std::vector<Id> UnusedTriangles;
   Id TurnedDiagonals = 0;
   Id NumberOfRegions = 0;
 };
@@ -89,7 +89,8 @@ struct AdvancingFrontTetrahedralizerOutput
   std::vector<Id> MeshPointSources;
   /**
    * The surface that bounds the mesh and its regions, on the points of Mesh; with Labels. A
-   * triangle made to close an open boundary has SourceCells NoId.
+   * triangle made to close an open boundary has SourceCells NoId. Unused triangles are left out,
+   * unless the mesh is unfinished.
    */
   TriangleMesh Boundary;
   /** Triangles of the front left by an abort or the limit, fronts to the unmeshed side. */
