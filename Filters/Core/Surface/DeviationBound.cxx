@@ -17,6 +17,8 @@ constexpr double Slack = 1e-9;
 constexpr double SmallestPieceRatio = 1.0 / 16.0;
 /** How far a corner may be from a plane that does not cut it off, as a ratio of the piece. */
 constexpr double CutTolerance = 1e-9;
+/** Room for rounding where a piece is cut to a box, as a ratio of the bound. */
+constexpr double ClipMargin = 1e-2;
 
 Vec3 FindNearestOnSegment(const Vec3& a, const Vec3& b, const Vec3& position)
 {
@@ -34,7 +36,7 @@ double GetSquaredDistance(const std::array<Vec3, 3>& corners, const Vec3& positi
 /** A convex polygon, or a segment of two corners. */
 struct Piece
 {
-  static constexpr int Capacity = 12;
+  static constexpr int Capacity = 16;
 
   explicit Piece(const std::array<Vec3, 3>& corners)
     : Corners{ corners[0], corners[1], corners[2] }, Count(corners[1] == corners[2] ? 2 : 3)
@@ -91,6 +93,34 @@ bool Cut(const Piece& piece, const Vec3& origin, const Vec3& normal, double tole
     }
   }
   return fits;
+}
+
+/**
+ * Leaves of a piece what lies within a box, or more; false if that is nothing. What is cut off lies
+ * outside of the box, or on it.
+ */
+bool ClipToBox(Piece& piece, const Box& box)
+{
+  for (const Vec3& axis : { Vec3{ 1.0, 0.0, 0.0 }, Vec3{ 0.0, 1.0, 0.0 }, Vec3{ 0.0, 0.0, 1.0 } })
+  {
+    for (const auto& [origin, outward] :
+      { std::pair(box.Low, -1.0 * axis), std::pair(box.High, axis) })
+    {
+      std::array<Piece, 2> parts;
+      const Vec3* const end = piece.Corners.data() + piece.Count;
+      const auto isInside = [&origin = origin, &outward = outward](const Vec3& corner)
+      { return Dot(corner - origin, outward) < 0.0; };
+      if (Cut(piece, origin, outward, 0.0, parts))
+      {
+        piece = parts[1];
+      }
+      else if (std::none_of<const Vec3*>(piece.Corners.data(), end, isInside))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 Box GetBox(const std::array<Vec3, 3>& corners, double margin)
@@ -249,6 +279,35 @@ bool ProofSearch::Prove(const Piece& piece, const std::vector<Id>& candidates, I
            Cut(piece, center, (1.0 / radius) * farthest, tolerance, parts)) &&
     this->Prove(parts[0], near, nearest) && this->Prove(parts[1], near, nearest);
 }
+
+/**
+ * Proves a piece of a group, and adds the simplices that it takes to its witnesses. numbers: of the
+ * offered simplices, which are those of the search.
+ */
+bool AddWitnesses(const Piece& piece, Id group, const std::vector<BoundSimplex>& offered,
+  const std::vector<Id>& numbers, ProofSearch& search, std::vector<Id>& witnesses)
+{
+  std::vector<Id> candidates;
+  for (Id i = 0; i < static_cast<Id>(offered.size()); ++i)
+  {
+    if (offered[i].Group == group)
+    {
+      candidates.push_back(i);
+    }
+  }
+  if (!search.Prove(piece, candidates))
+  {
+    return false;
+  }
+  for (const Id i : candidates)
+  {
+    if (search.Used[i] && !Contains(witnesses, numbers[i]))
+    {
+      witnesses.push_back(numbers[i]);
+    }
+  }
+  return true;
+}
 } // namespace
 
 // By the regions of Voronoi of its corners, edges and inside: C. Ericson, "Real-Time Collision
@@ -353,9 +412,13 @@ bool DeviationBound::FindWitnesses(const std::vector<Id>& removed,
   const std::vector<BoundSimplex>& added, const std::vector<Id>& neighbors,
   std::vector<Proof>& proofs) const
 {
+  // What is farther from the simplices that go is within the bound of those that stay.
+  const double reach = (1.0 + ClipMargin) * this->Bound;
+  Box lost;
   std::vector<Id> affected;
   for (const Id id : removed)
   {
+    lost.Add(GetBox(this->Current[id].Corners, reach));
     affected.insert(affected.end(), this->Proven[id].begin(), this->Proven[id].end());
   }
   SortUnique(affected);
@@ -376,34 +439,26 @@ bool DeviationBound::FindWitnesses(const std::vector<Id>& removed,
   SortUnique(others);
   for (const Id other : others)
   {
-    if (!Contains(removed, other))
+    const BoundSimplex& current = this->Current[other];
+    if (!Contains(removed, other) && GetBox(current.Corners, reach).Overlaps(lost))
     {
-      offered.push_back(this->Current[other]);
+      offered.push_back(current);
       numbers.push_back(other);
     }
   }
   ProofSearch search(offered, this->Bound);
   for (const Id original : affected)
   {
-    std::vector<Id> candidates;
-    for (Id i = 0; i < static_cast<Id>(offered.size()); ++i)
-    {
-      if (offered[i].Group == this->Original[original].Group)
-      {
-        candidates.push_back(i);
-      }
-    }
-    if (!search.Prove(Piece(this->Original[original].Corners), candidates))
+    Proof proof{ original, this->Witnesses[original] };
+    proof.Witnesses.erase(std::remove_if(proof.Witnesses.begin(), proof.Witnesses.end(),
+                            [&removed](Id witness) { return Contains(removed, witness); }),
+      proof.Witnesses.end());
+    const BoundSimplex& simplex = this->Original[original];
+    Piece piece(simplex.Corners);
+    if (ClipToBox(piece, lost) &&
+      !AddWitnesses(piece, simplex.Group, offered, numbers, search, proof.Witnesses))
     {
       return false;
-    }
-    Proof proof{ original, {} };
-    for (std::size_t i = 0; i < offered.size(); ++i)
-    {
-      if (search.Used[i])
-      {
-        proof.Witnesses.push_back(numbers[i]);
-      }
     }
     proofs.push_back(std::move(proof));
   }

@@ -12,14 +12,15 @@
  *     follows, as distances grow no faster than the way. Large pieces are cut where they leave the
  *     space above and below the simplex that is nearest to their center, others in the middle;
  *  2. from the original to the current in the same way. The current simplices that prove an original
- *     one are its witnesses: when one of them goes it is proven again, with those that are left, the
- *     new simplices and their neighbors.
+ *     one are its witnesses: when some of them go, what lies near these is proven again, with those
+ *     that are left, the new simplices and their neighbors.
  * Pieces are not cut below a sixteenth of the bound: what is not proven then is refused.
  *
  * Guarantees: after any number of replacements the Hausdorff distance of each group of the current
  * simplices from the same group of the original is at most the bound, but for rounding.
- * Cost: a replacement proves the original simplices around, in about as many pieces as there are
- * pairs of simplices that lie above each other. About 300 bytes per simplex.
+ * Cost: a replacement proves what is around it, in about as many pieces as there are pairs of
+ * simplices that lie above each other there, however large the original ones are. About 300 bytes
+ * per simplex.
  * References: H. Borouchaki, P. J. Frey, "Simplification of surface mesh using Hausdorff envelope",
  * 2005, doi:10.1016/j.cma.2004.11.016; K. Hu, D.-M. Yan, D. Bommes, P. Alliez, B. Benes,
  * "Error-bounded and feature preserving surface remeshing with minimal angle improvement", 2017,
@@ -73,8 +74,8 @@ public:
   };
 
   /**
-   * Proves the original simplices anew that lose a witness. neighbors: current simplices that may
-   * help. False if that fails.
+   * Proves the original simplices that lose a witness, where they may need it. neighbors: current
+   * simplices that may help. False if that fails.
    */
   bool FindWitnesses(const std::vector<Id>& removed, const std::vector<BoundSimplex>& added,
     const std::vector<Id>& neighbors, std::vector<Proof>& proofs) const;
