@@ -106,7 +106,30 @@ TriangleMesh MakePlateWithObliqueHole(Id sides, double lean, double turn)
     AddQuadrangle(plate, 2 * sides + i, 2 * sides + j, 3 * sides + j, 3 * sides + i);
     AddQuadrangle(plate, i, sides + i, sides + j, j);
   }
+  plate.Labels.clear();
   return plate;
+}
+
+/** A torus around the z axis: so many prisms of so many corners, 1 and the radius wide. */
+TriangleMesh MakeRing(Id sides, Id corners, double radius)
+{
+  TriangleMesh ring;
+  for (Id i = 0; i < sides; ++i)
+  {
+    const double around = 2.0 * Pi * static_cast<double>(i) / static_cast<double>(sides);
+    for (Id j = 0; j < corners; ++j)
+    {
+      const double angle = 2.0 * Pi * (static_cast<double>(j) + 0.5) / static_cast<double>(corners);
+      const double distance = 1.0 + radius * std::cos(angle);
+      ring.Points.push_back(
+        { distance * std::cos(around), distance * std::sin(around), radius * std::sin(angle) });
+      const Id next = (i + 1) % sides * corners;
+      const Id above = (j + 1) % corners;
+      AddQuadrangle(ring, i * corners + j, next + j, next + above, i * corners + above);
+    }
+  }
+  ring.Labels.clear();
+  return ring;
 }
 
 /** Prism over a triangle whose angle at the first edge is given in degrees. */
@@ -445,6 +468,50 @@ TEST(DelaunaySurfaceRefiner, MatchesAboutTheNearestEdge)
       EXPECT_GT(nearest, 0.06) << lean << " " << turn;
       EXPECT_LT(nearest, Infinity) << lean << " " << turn;
     }
+  }
+}
+
+// In facets of rounded points matches are not exact: the same point was matched twice, 1e-11 apart, and
+// points above the ends of edges, but for rounding, were matched 1e-9 beside them.
+TEST(DelaunaySurfaceRefiner, RoundedFacetsAreNotMatchedTwice)
+{
+  std::mt19937_64 generator(5);
+  std::uniform_real_distribution<double> random(0.0, 1.0);
+  DelaunaySurfaceRefinerOptions options;
+  options.Criterion = SurfaceCriterion::SmallestSphere;
+  for (int i = 0; i < 200; ++i)
+  {
+    // A ring above another one, or within it.
+    const Id sides = 5 + i % 10;
+    const Id corners = 4 + i % 7 % 5;
+    const bool isWithin = i % 3 == 0;
+    TriangleMesh rings = MakeRing(sides, corners, 0.3);
+    const auto count = static_cast<Id>(rings.Points.size());
+    const double radius = isWithin ? 0.15 + 0.13 * random(generator) : 0.15;
+    const double height = isWithin ? 0.0 : 0.46 + 0.14 * random(generator);
+    for (const Vec3& p : MakeRing(sides, corners, radius).Points)
+    {
+      rings.Points.push_back(p + Vec3{ 0.0, 0.0, height });
+    }
+    for (const TriangleIds& ids : std::vector<TriangleIds>(rings.Triangles))
+    {
+      rings.Triangles.push_back({ ids[0] + count, ids[1] + count, ids[2] + count });
+    }
+    Rotate(rings.Points, MakeRandomDirection(generator), 1.0);
+    RoundToSinglePrecision(rings.Points);
+    options.MaximumEdgeLength = 0.15 + 0.65 * random(generator);
+    SCOPED_TRACE(std::to_string(i));
+    const TriangleMesh refined = Refine(rings, options).Surface;
+    double shortest = Infinity;
+    for (const TriangleIds& ids : refined.Triangles)
+    {
+      for (int j = 0; j < 3; ++j)
+      {
+        shortest =
+          std::min(shortest, Distance(refined.Points[ids[j]], refined.Points[ids[(j + 1) % 3]]));
+      }
+    }
+    EXPECT_GT(shortest, 1e-5);
   }
 }
 

@@ -29,6 +29,11 @@ constexpr double NeedleGapRatio = 1e-3;
 /** ... if the match would be closer to the end than this part of the point's distance. */
 constexpr double CloseEndRatio = 0.25;
 /**
+ * A match closer to an end than this part of the point's distance is the end, but for rounding: of
+ * single precision, as STL files have it. Two points 1e-8 apart were made for a point above a corner.
+ */
+constexpr double RoundedEndRatio = 1e-5;
+/**
  * Another point on an edge is matched instead if it is closer to the match than this part of the
  * encroaching point's distance.
  */
@@ -216,7 +221,8 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id encroaching) const
     const double rest = std::abs(std::min(way, length - way));
     const bool isOnSphere =
       std::abs(Dot(a - p, b - p)) <= PerpendicularCosine * Distance(a, p) * Distance(b, p);
-    const bool isClose = (isOnSphere || height < needleGap * length) && rest < closeEnd * height;
+    const bool isClose = rest < RoundedEndRatio * height ||
+      ((isOnSphere || height < needleGap * length) && rest < closeEnd * height);
     if (isClose)
     {
       // A point on the sphere, up to rounding, is outside of the spheres of all shorter pieces.

@@ -24,6 +24,11 @@ constexpr double OverrefinementRatio = 1.0 / 8.0;
  * match enough. The triangle is too large then: a match would encroach on what lies between.
  */
 constexpr double MatchEnoughRatio = 0.1;
+/**
+ * The same without the rules for thin layers. Matches in facets of rounded points are not exact: what
+ * is so close is the match of the same point, and smaller triangles leave that outside.
+ */
+constexpr double SameMatchRatio = 1e-3;
 /** A segment passes a new point if it is closer above or below than this, in circumradii ... */
 constexpr double PassingRadiusRatio = 0.5;
 /** ... and in lengths of the segment, ... */
@@ -222,9 +227,10 @@ bool SurfaceRefinement::ResolveInFacet(Id t, Id encroaching, const Vec3& target,
   {
     return false;
   }
-  if (isMirrored && AreForLayers(this->Plan.Rules))
+  if (isMirrored)
   {
-    const double reach = MatchEnoughRatio * Distance(position, this->Points[encroaching]);
+    const double ratio = AreForLayers(this->Plan.Rules) ? MatchEnoughRatio : SameMatchRatio;
+    const double reach = ratio * Distance(position, this->Points[encroaching]);
     NearestPointVisitor visitor(position, encroaching, reach);
     this->Octree.Visit(visitor, visitor.GetReach());
     const IdLists::Range facets =
