@@ -443,7 +443,7 @@ TEST(DelaunaySurfaceRefiner, KeepsItsCountWhenTheDeviceTurns)
  * the box turns, rounding folds the top along its diagonal: as a valley, it left no empty sphere.
  */
 // Points of the hole's ridges have two facets, both of which share an edge with the plate's faces.
-// Those were matched about the nearest line; a second match came as close as 0.018 to the first.
+// Those were matched about the nearest line; a second match came as close as 0.009 to the first.
 TEST(DelaunaySurfaceRefiner, MatchesAboutTheNearestEdge)
 {
   DelaunaySurfaceRefinerOptions options;

@@ -15,9 +15,9 @@
  *     two of the unit of length (concentric shells), so that all edges there end up alike;
  *     otherwise in the middle.
  *  2. Partner in a facet: the encroaching point is rotated about the nearest edge that the two
- *     facets share, or mirrored between the two planes if they share a corner (rotated about that if the
- *     planes are steep or the point is one of an edge), or projected along the normal, in this
- *     order. In stacks it is always mirrored, wherever the planes meet.
+ *     facets share, or mirrored between the two planes if they share a corner (rotated about that
+ *     if the planes are steep or the point is one of an edge), or projected along the normal, in
+ *     this order. In stacks it is always mirrored, wherever the planes meet.
  *  3. The last bits are chosen so that the two points match exactly (MatchingPoints.h).
  *
  * Cost: constant, but for the search of shared edges and corners.

@@ -704,9 +704,8 @@ std::vector<Warning> MakeWarnings(const AdvancingFrontTetrahedralizerReport& rep
   if (!report.UnusedTriangles.empty() && !hasSeeds)
   {
     warnings.push_back({ "Left out " + std::to_string(report.UnusedTriangles.size()) +
-        " triangles of the surface that bound no meshed region. If they should, close what they "
-        "are "
-        "part of.",
+        " triangles of the surface that bound no meshed region. If they should, close the surface "
+        "that they are part of.",
       report.UnusedTriangles });
   }
   return warnings;
