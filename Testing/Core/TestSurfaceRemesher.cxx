@@ -452,6 +452,35 @@ TEST(SurfaceRemesher, FindsTheFacetsOfABox)
   EXPECT_DOUBLE_EQ(volumes.at(1), 3.0);
 }
 
+// A needle along an edge of a turned cube, which is flat but for rounding: its long side cannot be split.
+// The other edges beside it were split time and again, as one of two is always long there.
+TEST(SurfaceRemesher, EndsBesideEdgesThatCannotBeSplit)
+{
+  std::mt19937 generator(3);
+  std::uniform_real_distribution<double> random(0.0, 6.0);
+  for (int i = 0; i < 5; ++i)
+  {
+    const double first = random(generator);
+    const double second = random(generator);
+    TriangleMesh cube;
+    for (int j = 0; j < 9; ++j)
+    {
+      const Vec3 p =
+        j < 8 ? Vec3{ double(j & 1), double(j >> 1 & 1), double(j >> 2) } : Vec3{ 0.375, 0.0, 0.0 };
+      const Vec3 turned{ std::cos(first) * p.X - std::sin(first) * p.Y,
+        std::sin(first) * p.X + std::cos(first) * p.Y, p.Z };
+      cube.Points.push_back({ turned.X, std::cos(second) * turned.Y - std::sin(second) * turned.Z,
+        std::sin(second) * turned.Y + std::cos(second) * turned.Z });
+    }
+    cube.Triangles = { { 0, 2, 1 }, { 1, 2, 3 }, { 0, 1, 8 }, { 0, 8, 4 }, { 8, 5, 4 }, { 8, 1, 5 },
+      { 4, 5, 6 }, { 5, 7, 6 }, { 0, 4, 6 }, { 0, 6, 2 }, { 1, 3, 5 }, { 3, 7, 5 }, { 2, 6, 7 },
+      { 2, 7, 3 } };
+    cube.Labels.assign(cube.Triangles.size(), { OutsideRegion, 0 });
+    const SurfaceRemesherOutput output = Remesh(cube, 0.1, 0.01);
+    EXPECT_LT(output.Surface.Triangles.size(), 4000u) << i;
+  }
+}
+
 TEST(SurfaceRemesher, KeepsTheInterfaceOfTwoRegions)
 {
   for (const double wave : { 0.05, 0.4 })

@@ -136,6 +136,7 @@ private:
   bool IsRegular(Id point) const;
   std::vector<EdgeIds> ListEdges() const;
   bool Split(const ExecutionContext& context);
+  bool HasLongerBeside(const EdgeIds& edge, double ratio) const;
   void SplitEdge(const EdgeIds& edge);
   bool Collapse(const ExecutionContext& context);
   bool CollapseEdge(Id point, Id target);
@@ -316,10 +317,15 @@ bool Remesher::Split(const ExecutionContext& context)
     {
       return false;
     }
-    const EdgeIds edge = queue.top().second;
+    const auto [ratio, edge] = queue.top();
     queue.pop();
     const Id point = this->Surface.GetNewPoint();
-    this->SplitEdge(edge);
+    // The longest come first: a longer one beside it could not be split. As that stays, one of the
+    // other two edges would always be long.
+    if (!this->HasLongerBeside(edge, ratio))
+    {
+      this->SplitEdge(edge);
+    }
     if (this->Surface.GetNewPoint() > point)
     {
       for (const Id neighbor : this->Surface.GetNeighbors(point))
@@ -329,6 +335,20 @@ bool Remesher::Split(const ExecutionContext& context)
     }
   }
   return true;
+}
+
+/** Whether a triangle at an edge has another one that is longer, as a ratio of the wanted length. */
+bool Remesher::HasLongerBeside(const EdgeIds& edge, double ratio) const
+{
+  const std::vector<Id> uses = this->Surface.GetUses(edge);
+  return std::any_of(uses.begin(), uses.end(),
+    [&](Id t)
+    {
+      const TriangleIds& ids = this->Surface.GetTriangle(t);
+      return this->GetRatio(ids[0], ids[1], this->WantedLengths) > ratio ||
+        this->GetRatio(ids[1], ids[2], this->WantedLengths) > ratio ||
+        this->GetRatio(ids[2], ids[0], this->WantedLengths) > ratio;
+    });
 }
 
 void Remesher::SplitEdge(const EdgeIds& edge)
