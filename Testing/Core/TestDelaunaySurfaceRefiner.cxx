@@ -438,10 +438,6 @@ TEST(DelaunaySurfaceRefiner, KeepsItsCountWhenTheDeviceTurns)
   }
 }
 
-/**
- * A point close below the top of a box. An empty sphere of the top's triangles lies above them. When
- * the box turns, rounding folds the top along its diagonal: as a valley, it left no empty sphere.
- */
 // Points of the hole's ridges have two facets, both of which share an edge with the plate's faces.
 // Those were matched about the nearest line; a second match came as close as 0.009 to the first.
 TEST(DelaunaySurfaceRefiner, MatchesAboutTheNearestEdge)
@@ -515,6 +511,10 @@ TEST(DelaunaySurfaceRefiner, RoundedFacetsAreNotMatchedTwice)
   }
 }
 
+/**
+ * A point close below the top of a box. An empty sphere of the top's triangles lies above them. When
+ * the box turns, rounding folds the top along its diagonal: as a valley, it left no empty sphere.
+ */
 TEST(DelaunaySurfaceRefiner, RoundedRectanglesNeedNoPoints)
 {
   for (int degrees = 0; degrees < 90; degrees += 3)
