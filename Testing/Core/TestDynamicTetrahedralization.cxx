@@ -376,3 +376,24 @@ TEST(DynamicTetrahedralization, TakesNothingOnOrBeyondABoundary)
   mesh.UndoRemove();
   ExpectMeshOfStage3(mesh, refined.Surface);
 }
+
+/** A flat tetrahedron of the boundary is left out: the one behind it is known at its points. */
+TEST(DynamicTetrahedralization, KnowsATetrahedronAtThePointsOfAnOuterFacet)
+{
+  TetMesh pair;
+  pair.Points = { { 0.0, 0.0, 0.0 }, { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 },
+    { 0.3, 0.3, -1e-17 } };
+  pair.Tetrahedra = { { 0, 1, 2, 3 }, { 0, 2, 1, 4 } };
+  pair.Regions = { 0, 0 };
+  pair.Neighbors = { { NoId, NoId, NoId, 7 }, { NoId, NoId, NoId, 3 } };
+  DynamicTetrahedralization mesh(pair);
+  EXPECT_EQ(mesh.GetTetrahedronAt(0), 1);
+  mesh.MakeOuter(3);
+  mesh.Replace({ 1 }, {}, {});
+  EXPECT_TRUE(mesh.IsDead(1));
+  EXPECT_EQ(mesh.GetMesh().Neighbors[0][3], NoId);
+  for (Id point = 0; point < 4; ++point)
+  {
+    EXPECT_EQ(mesh.GetTetrahedronAt(point), 0);
+  }
+}

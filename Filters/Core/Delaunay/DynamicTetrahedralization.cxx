@@ -245,6 +245,17 @@ void DynamicTetrahedralization::UndoRemove()
   this->Changed.clear();
 }
 
+void DynamicTetrahedralization::MakeOuter(Id facet)
+{
+  const Id t = facet / 4;
+  this->Mesh.Neighbors[t][facet % 4] = NoId;
+  // What lay beyond may be the tetrahedron that is known at these points.
+  for (Id point : GetFacet(this->Mesh.Tetrahedra[t], facet % 4))
+  {
+    this->PointTetrahedra[point] = t;
+  }
+}
+
 void DynamicTetrahedralization::Replace(const std::vector<Id>& tetrahedra,
   const std::vector<Id>& outer, const std::vector<CavityCell>& cells)
 {

@@ -143,7 +143,7 @@ public:
     const std::vector<CavityCell>& cells);
 
   /** Makes a facet an outer one: the outside replaces what lay beyond. */
-  void MakeOuter(Id facet) { this->Mesh.Neighbors[facet / 4][facet % 4] = NoId; }
+  void MakeOuter(Id facet);
 
   /** The tetrahedra made by the last change. */
   const std::vector<Id>& GetChanged() const { return this->Changed; }
