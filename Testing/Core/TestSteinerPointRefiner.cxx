@@ -331,6 +331,36 @@ TEST(SteinerPointRefiner, DoesNotDependOnThreads)
   }
 }
 
+/**
+ * Schoenhardt's polyhedron: a prism with its top turned, which has three reflex edges, and sharp ones
+ * around them. Sixteen tetrahedra were below 15 degrees before points of the surface were moved there.
+ */
+TEST(SteinerPointRefiner, MovesSurfacePointsAtSharpAngles)
+{
+  PolygonSoup soup;
+  soup.Points = { { 0.0, 0.0, 0.0 }, { 2.0, 0.0, 0.0 }, { 1.0, 2.0, 0.0 }, { 1.0, -0.5, 2.0 },
+    { 3.0, 0.5, 2.0 }, { 1.5, 2.5, 2.0 } };
+  soup.Connectivity = { 0, 2, 1, 3, 4, 5, 0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4, 2, 0, 3, 2, 3, 5 };
+  soup.Offsets = { 0, 3, 6, 9, 12, 15, 18, 21, 24 };
+  soup.Labels.assign(8, { OutsideRegion, 0 });
+  const Stage3 mesh = MakeMesh(soup);
+  SteinerPointRefinerInput input;
+  input.Mesh = &mesh.Output.Mesh;
+  SteinerPointRefinerOptions options;
+  options.MaximumEdgeLength = 0.2;
+  const SteinerPointRefinerOutput output = Refine(input, options);
+  const std::vector<Vec3>& p = output.Mesh.Points;
+  const auto isSliver = [&p](const TetrahedronIds& ids)
+  { return GetSmallestDihedralAngle(p[ids[0]], p[ids[1]], p[ids[2]], p[ids[3]]) < 15.0; };
+  const std::vector<TetrahedronIds> tetrahedra(
+    output.Mesh.Tetrahedra.begin(), output.Mesh.Tetrahedra.end());
+  EXPECT_LE(std::count_if(tetrahedra.begin(), tetrahedra.end(), isSliver), 4);
+  for (const int threads : { 2, 5 })
+  {
+    EXPECT_EQ(p, Refine(input, options, ExecutionContext(threads)).Mesh.Points) << threads;
+  }
+}
+
 /** Refines with a time limit that is over when the stage has reported its progress so many times. */
 SteinerPointRefinerOutput RefineUntil(int call, double seconds,
   const SteinerPointRefinerInput& input, SteinerPointRefinerOptions options)

@@ -26,11 +26,13 @@ namespace cdm
 /** The attempts to remove a sliver, in this order. */
 enum class SliverAttempt
 {
+  /** Move one of its points on the surface, where it is across a sharp angle. */
+  SharpSurfaceMove,
   /** Move or remove one of its free interior points. */
   Move,
   /** Insert a point. */
   Insertion,
-  /** Move one of its points on the surface. */
+  /** Move one of its points on the surface, where it is not. */
   SurfaceMove
 };
 

@@ -194,7 +194,8 @@ Status SliverPointMoves::MoveBoundary(const ExecutionContext& context, bool& isM
       return Status::Aborted();
     }
     RefinedMesh mesh = this->MakeMesh(context, parts);
-    const std::vector<Vec3> positions = MoveSurfacePoints(this->Target, isFree, true, mesh);
+    const std::vector<Vec3> positions =
+      MoveSurfacePoints(this->Target, SliverPlace::Elsewhere, isFree, true, mesh);
     std::vector<Vec3> points = this->Mesh.Points;
     std::vector<Id> moved;
     for (Id p = 0; p < static_cast<Id>(positions.size()); ++p)

@@ -99,7 +99,7 @@ RoundResult SliverSchedule::PerturbMoveOrRequest(bool isFull)
     this->Rounds.CountRequests() > requests ? RoundEnd::Requested : RoundEnd::Open };
 }
 
-/** Means 6 to 9. */
+/** Means 6 to 10. */
 RoundResult SliverSchedule::MendCouplings()
 {
   if (this->RequestCouplings())
@@ -109,6 +109,10 @@ RoundResult SliverSchedule::MendCouplings()
   if (this->Options.DihedralAngleTarget <= 0.0)
   {
     return { {}, RoundEnd::Done };
+  }
+  if (this->MoveSharpSurfacePoints())
+  {
+    return { {}, RoundEnd::Moved };
   }
   Status status = this->PerturbLast();
   if (status.IsOk() && this->RequestCouplings())
@@ -140,7 +144,7 @@ bool SliverSchedule::MayHalveSizes(const std::vector<Id>& left)
   return !left.empty() && (!isInVain || static_cast<double>(left.size()) <= few);
 }
 
-/** Means 9. */
+/** Means 10. */
 RoundResult SliverSchedule::MendWhatIsLeft()
 {
   Status status;
@@ -238,8 +242,21 @@ bool SliverSchedule::MoveSurfacePoints()
   }
   this->SurfaceMoves.NoteTry();
   return this->Rounds.TakeSurfacePositions(
-    cdm::MoveSurfacePoints(target, this->Rounds.GetFreeSurfacePoints(),
+    cdm::MoveSurfacePoints(target, SliverPlace::Elsewhere, this->Rounds.GetFreeSurfacePoints(),
       this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges, this->GetMesh()));
+}
+
+/** Moves free surface points of slivers at sharp angles, once. False if all points stay. */
+bool SliverSchedule::MoveSharpSurfacePoints()
+{
+  if (this->AreSharpMoved || this->GetMesh().IsFull())
+  {
+    return false;
+  }
+  this->AreSharpMoved = true;
+  return this->Rounds.TakeSurfacePositions(cdm::MoveSurfacePoints(this->Options.DihedralAngleTarget,
+    SliverPlace::SharpAngle, this->Rounds.GetFreeSurfacePoints(),
+    this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges, this->GetMesh()));
 }
 
 Status SliverSchedule::RefineShapes()

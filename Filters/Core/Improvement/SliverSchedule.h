@@ -14,26 +14,29 @@
  * | 4 | request splits of the boundary for slivers       | Requested                |
  * | 5 | refine shapes inside again                       | Requested after 4; Open  |
  * | 6 | request splits for negative couplings            | Requested                |
- * | 7 | last passes: 2 and 5 in turns, then sharp angles | -                        |
- * | 8 | 6 again, for what the last passes have made      | Requested                |
- * | 9 | come closer to the points of what is left        | Requested, or else Done  |
+ * | 7 | move surface points at sharp angles              | Moved                    |
+ * | 8 | last passes: 2 and 5 in turns, then sharp angles | -                        |
+ * | 9 | 6 again, for what the last passes have made      | Requested                |
+ * |10 | come closer to the points of what is left        | Requested, or else Done  |
  *
  *  - 1 (PointRounding.h) is tried unless all flat tetrahedra are among those given up on: three
  *    tries in a row left more than three quarters of them;
- *  - 2 (SliverPerturbation.h) only moves points once no more may be made. 1, 3 and 4 are left out
+ *  - 2 (SliverPerturbation.h) only moves points once no more may be made. 1, 3, 4 and 7 are left out
  *    then: what they change asks for new points;
  *  - 3 (SurfacePointMoves.h) pauses once when four tries in a row have left as many slivers;
  *  - 4 waits for the splits that bad shapes request, if these can be made: they remove slivers too;
  *  - 5 ends the round if it leaves new points or requests that can be made;
  *  - 6 (NegativeCouplings.h) is given up after sixteen tries in a row that left as many couplings.
- *    Each try lets 1 to 5 begin anew, as splits make new slivers. It comes before 7, which takes
+ *    Each try lets 1 to 5 begin anew, as splits make new slivers. It comes before 8, which takes
  *    long;
- *  - 9 halves the sizes there, which only keep the refinement from going on without end, and searches
+ *  - 7 is tried once. Along with 3 it would find hardly more, and take several times as long, as
+ *    what it moves starts round after round;
+ *  - 10 halves the sizes there, which only keep the refinement from going on without end, and searches
  *    longer, up to five times in all: it is needed for one to three tetrahedra of a million. Where
  *    more than one in 2000 is left, it is given up after a halving that left three quarters of them:
  *    beside sharp angles each halving only makes half as many more;
  *  - 1 to 5 are left out after forty rounds in a row that moved or split the boundary for slivers
- *    in vain. They and 7 are left out if no dihedral angle is asked for.
+ *    in vain. They, 7 and 8 are left out if no dihedral angle is asked for.
  */
 #ifndef cdmSliverSchedule_h
 #define cdmSliverSchedule_h
@@ -99,6 +102,7 @@ private:
   bool MayHalveSizes(const std::vector<Id>& left);
   bool RoundFlatTetrahedraAway();
   bool MoveSurfacePoints();
+  bool MoveSharpSurfacePoints();
   Status RefineShapes();
   Status Perturb(SliverMeans means);
   Status PerturbLast();
@@ -117,7 +121,8 @@ private:
   Patience Couplings;
   /** The flat tetrahedra that rounding could not remove, by their sorted points. */
   std::vector<TetrahedronIds> LeftFlat;
-  /** Whether points at sharp angles have been moved. */
+  /** Whether points of the surface at sharp angles have been moved, and others there. */
+  bool AreSharpMoved = false;
   bool IsSharpPerturbed = false;
   /** Limits the halvings of sizes where they are for more than a few tetrahedra. */
   Patience ManyHalvings;

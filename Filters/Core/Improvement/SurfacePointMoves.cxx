@@ -8,12 +8,12 @@
 #include "Core/Geometry/Predicates.h"
 #include "Core/Improvement/LookAhead.h"
 #include "Core/Improvement/PointRounding.h"
-#include "Core/Improvement/SliverList.h"
-#include "Core/Search/PlaceSearch.h"
+#include "Core/Improvement/SurfaceSpheres.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <utility>
 
 namespace cdm
@@ -31,6 +31,14 @@ constexpr double LineAngle = 1e-9;
 constexpr std::size_t LargestCavity = 500;
 /** Points with more tetrahedra and triangles of the surface are hubs. */
 constexpr std::size_t LargestStar = 64;
+/**
+ * At sharp angles. With the effort for other slivers a tenth more time goes there, and two of a
+ * hundred more are mended.
+ */
+constexpr SearchEffort SharpEffort{ 1, 1 };
+/** Passes over slivers at sharp angles, as long as more than this part of them is mended. */
+constexpr int MaximumSharpPasses = 5;
+constexpr double WorthwhileRatio = 0.05;
 
 /** Opposite ways in a plane, or along a line. */
 std::vector<Vec3> MakeDirections(const Vec3& axis, bool isLine)
@@ -496,7 +504,9 @@ double SurfacePointMoves::GetSmallerAngle(
 {
   const double own = GetSmallestDihedralAngle(corners[0], corners[1], corners[2], corners[3]);
   // In that order: whether an angle counts takes longer than the angle.
-  return own < angle && this->Given.HasAngle(ids, region) ? own : angle;
+  return own < std::max(angle, this->Given.WeighedBelow)
+    ? std::min(angle, this->Given.Weigh(ids, region, own))
+    : angle;
 }
 
 /** The corners of a tetrahedron with the point moved. */
@@ -581,7 +591,9 @@ double SurfacePointMoves::Rate(
     const TetrahedronIds& ids = mesh.Tetrahedra[this->Tetrahedra[k]];
     broken -= this->Given.BreaksLimit(ids, GetCorners(mesh.Points, ids));
   }
-  return broken > 0 ? 0.0 : smallest;
+  const bool isAllowed =
+    broken <= 0 && (!this->Given.IsAllowed || this->Given.IsAllowed(point, position));
+  return isAllowed ? smallest : 0.0;
 }
 
 bool SurfacePointMoves::Find(Id point, const TetrahedronIds& sliver, double target, Vec3& position)
@@ -607,7 +619,7 @@ bool SurfacePointMoves::Find(Id point, const TetrahedronIds& sliver, double targ
   if (best.IsFound || !this->Given.IsImmovable(point))
   {
     SearchPlace(
-      old, FirstMove * around.Nearest, support.Directions, target, rate, best, SliverEffort);
+      old, FirstMove * around.Nearest, support.Directions, target, rate, best, this->Given.Effort);
   }
   position = best.Position;
   return best.IsFound;
@@ -646,10 +658,10 @@ struct SurfaceMove
 class SliverSurfaceMoves
 {
 public:
-  SliverSurfaceMoves(
-    double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh);
+  SliverSurfaceMoves(double target, SliverPlace place, const std::vector<char>& isFree,
+    bool areEdgesKept, RefinedMesh& mesh);
 
-  /** Passes over all slivers until nothing is moved any more. */
+  /** Passes over all slivers as long as that is worthwhile. */
   void Run();
   std::vector<Vec3>& GetPoints() { return this->Points; }
 
@@ -657,46 +669,43 @@ private:
   /** Whether a sliver is still there, and not known to be hopeless. */
   bool IsOpen(const Sliver& sliver) const
   {
-    return !IsGone(sliver, this->Mesh) &&
-      !IsHopeless(sliver, SliverAttempt::SurfaceMove, this->Mesh);
+    return !IsGone(sliver, this->Mesh) && !IsHopeless(sliver, this->Attempt, this->Mesh);
   }
+  SurfacePointMoves::Rules MakeRules() const;
   const SurfaceMove& Find(std::size_t i);
   bool Mend(std::size_t i);
 
   const double Target;
+  const SliverPlace Place;
+  const bool IsSharp;
+  const SliverAttempt Attempt;
   const std::vector<char>& IsFree;
   RefinedMesh& Mesh;
   const std::vector<StructuralEdge> NoEdges;
   std::vector<Vec3> Points;
+  /** None: spheres beyond outer facets may be filled. */
+  std::unique_ptr<SurfaceSpheres> Spheres;
   /** One for each thread. */
   std::vector<SurfacePointMoves> Searches;
   std::vector<Sliver> Slivers;
   LookAhead<SurfaceMove> Ahead;
 };
 
-SliverSurfaceMoves::SliverSurfaceMoves(
-  double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh)
-  : Target(target), IsFree(isFree), Mesh(mesh), Points(mesh.GetBoundary().Surface.Points),
+SliverSurfaceMoves::SliverSurfaceMoves(double target, SliverPlace place,
+  const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh)
+  : Target(target), Place(place), IsSharp(place == SliverPlace::SharpAngle),
+    Attempt(IsSharp ? SliverAttempt::SharpSurfaceMove : SliverAttempt::SurfaceMove), IsFree(isFree),
+    Mesh(mesh), Points(mesh.GetBoundary().Surface.Points),
     Ahead(mesh, SliversPerThread, TetrahedraPerSliver)
 {
-  const BoundaryShape& shape = mesh.GetShape();
-  SurfacePointMoves::Rules rules;
-  rules.HasAngle = [&shape](const TetrahedronIds& ids, Id region)
-  {
-    return !shape.Sharp.IsAcross(ids, SharpAngleUse::Sliver) && !shape.Layers.IsAcross(ids, region);
-  };
-  rules.GetSmallerAngle = [&mesh](Id t, double angle)
-  {
-    const double own = mesh.GetAngle(t);
-    return own < angle && !mesh.IsAcrossSharp(t, SharpAngleUse::Sliver) && !mesh.IsInLayer(t)
-      ? own
-      : angle;
-  };
-  rules.BreaksLimit = [&mesh](const TetrahedronIds& ids, const std::array<Vec3, 4>& corners)
-  { return mesh.BreaksLimit(ids, corners); };
-  rules.GetClearance = [&mesh](Id point) { return mesh.GetClearance(point); };
-  rules.IsImmovable = [&mesh](Id point) { return mesh.IsImmovable(point, SliverPlace::Elsewhere); };
   const RefinedBoundary& boundary = mesh.GetBoundary();
+  const BoundaryShape& shape = mesh.GetShape();
+  if (this->IsSharp)
+  {
+    this->Spheres =
+      std::make_unique<SurfaceSpheres>(boundary.Surface, shape.PointTriangles, shape.Spheres);
+  }
+  const SurfacePointMoves::Rules rules = this->MakeRules();
   const int numberOfThreads = mesh.GetThreads().GetNumberOfThreads();
   for (int i = 0; i < numberOfThreads; ++i)
   {
@@ -704,6 +713,44 @@ SliverSurfaceMoves::SliverSurfaceMoves(
       shape.PointTriangles, boundary.Edges, areEdgesKept ? boundary.KeptEdges : this->NoEdges,
       rules, numberOfThreads > 1);
   }
+}
+
+SurfacePointMoves::Rules SliverSurfaceMoves::MakeRules() const
+{
+  const RefinedMesh& mesh = this->Mesh;
+  const BoundaryShape& shape = mesh.GetShape();
+  const bool isSharp = this->IsSharp;
+  SurfacePointMoves::Rules rules;
+  rules.Weigh = [&shape, isSharp, this](const TetrahedronIds& ids, Id region, double angle)
+  {
+    if (isSharp && angle >= this->Target)
+    {
+      return 180.0;
+    }
+    const bool isAimed = shape.Sharp.IsAcross(ids, SharpAngleUse::Sliver) == isSharp;
+    const double weight = isAimed ? angle : isSharp ? 0.0 : 180.0;
+    return weight < 180.0 && shape.Layers.IsAcross(ids, region) ? 180.0 : weight;
+  };
+  rules.GetSmallerAngle = [&mesh, isSharp](Id t, double angle)
+  {
+    const double own = mesh.GetAngle(t);
+    return own < angle && mesh.IsAcrossSharp(t, SharpAngleUse::Sliver) == isSharp &&
+        !mesh.IsInLayer(t)
+      ? own
+      : angle;
+  };
+  rules.BreaksLimit = [&mesh](const TetrahedronIds& ids, const std::array<Vec3, 4>& corners)
+  { return mesh.BreaksLimit(ids, corners); };
+  rules.GetClearance = [&mesh](Id point) { return mesh.GetClearance(point); };
+  rules.IsImmovable = [this](Id point) { return this->Mesh.IsImmovable(point, this->Place); };
+  if (isSharp)
+  {
+    rules.WeighedBelow = this->Target;
+    rules.IsAllowed = [this](Id point, const Vec3& position)
+    { return this->Spheres->StayEmpty(point, position); };
+    rules.Effort = SharpEffort;
+  }
+  return rules;
 }
 
 const SurfaceMove& SliverSurfaceMoves::Find(std::size_t i)
@@ -742,10 +789,10 @@ bool SliverSurfaceMoves::Mend(std::size_t i)
     return false;
   }
   const SurfaceMove& move = this->Find(i);
-  this->Mesh.SetImmovable(move.Immovable, SliverPlace::Elsewhere);
+  this->Mesh.SetImmovable(move.Immovable, this->Place);
   if (move.Point == NoId)
   {
-    SetHopeless(sliver, SliverAttempt::SurfaceMove, this->Mesh);
+    SetHopeless(sliver, this->Attempt, this->Mesh);
     return false;
   }
   const std::vector<Id>& changed =
@@ -761,24 +808,27 @@ bool SliverSurfaceMoves::Mend(std::size_t i)
 
 void SliverSurfaceMoves::Run()
 {
-  bool isMended = true;
-  for (int pass = 0; pass < MaximumSliverPasses && isMended; ++pass)
+  const int maximum = this->IsSharp ? MaximumSharpPasses : MaximumSliverPasses;
+  const double part = this->IsSharp ? WorthwhileRatio : 0.0;
+  bool isWorthwhile = true;
+  for (int pass = 0; pass < maximum && isWorthwhile; ++pass)
   {
-    isMended = false;
-    this->Slivers = FindSlivers(this->Target, SliverPlace::Elsewhere, this->Mesh);
+    this->Slivers = FindSlivers(this->Target, this->Place, this->Mesh);
     this->Ahead.Clear();
+    std::size_t mended = 0;
     for (std::size_t i = 0; i < this->Slivers.size(); ++i)
     {
-      isMended = this->Mend(i) || isMended;
+      mended += this->Mend(i) ? 1 : 0;
     }
+    isWorthwhile = static_cast<double>(mended) > part * static_cast<double>(this->Slivers.size());
   }
 }
 } // namespace
 
-std::vector<Vec3> MoveSurfacePoints(
-  double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh)
+std::vector<Vec3> MoveSurfacePoints(double target, SliverPlace place,
+  const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh)
 {
-  SliverSurfaceMoves moves(target, isFree, areEdgesKept, mesh);
+  SliverSurfaceMoves moves(target, place, isFree, areEdgesKept, mesh);
   moves.Run();
   return std::move(moves.GetPoints());
 }

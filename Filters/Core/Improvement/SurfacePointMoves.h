@@ -19,8 +19,12 @@
  * which often has many slivers, too: what is known of the tetrahedra at a hub is kept until they
  * change. To find it anew for each sliver took nine tenths of the time of meshes with such points.
  *
- * The method does not look beyond outer facets: the surface has to be checked again with the new
- * positions (DelaunaySurfaceRefiner.h). So the functions at the end, which say where the points of
+ * At sharp angles tetrahedra are mended by themselves, once and with fewer positions: most searches
+ * find nothing there. The others must not get angles below the target. As splits would ask for more
+ * splits, the spheres of all triangles have to stay empty there, on both sides (SurfaceSpheres.h).
+ *
+ * Elsewhere the method does not look beyond outer facets: the surface has to be checked again with
+ * the new positions (DelaunaySurfaceRefiner.h). So the functions at the end, which say where the points of
  * a refined mesh go, leave the surface as it is. The caller gives the positions to it, and calls
  * RefinedMesh::SplitBoundary() or makes a new mesh.
  *
@@ -34,7 +38,9 @@
 #include "Core/Delaunay/CavityFilling.h"
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 #include "Core/Improvement/RefinedMesh.h"
+#include "Core/Improvement/SliverList.h"
 #include "Core/Meshes/TriangleMesh.h"
+#include "Core/Search/PlaceSearch.h"
 #include "Core/Surface/StructuralEdges.h"
 
 #include <array>
@@ -52,13 +58,22 @@ public:
   {
     /** The smallest dihedral angle of a tetrahedron of the mesh if that counts and is smaller. */
     std::function<double(Id tetrahedron, double angle)> GetSmallerAngle;
-    /** Whether the dihedral angles of a new tetrahedron count, and whether it breaks a limit. */
-    std::function<bool(const TetrahedronIds&, Id region)> HasAngle;
+    /**
+     * What the smallest dihedral angle of a new tetrahedron counts: as much as it is; 180 if it does
+     * not matter, 0 if there must be no such tetrahedron. Degrees.
+     */
+    std::function<double(const TetrahedronIds&, Id region, double angle)> Weigh;
+    /** Whether angles up to this have to be weighed even if there are smaller ones. Degrees. */
+    double WeighedBelow = 0.0;
+    /** Whether a new tetrahedron breaks a limit. */
     std::function<bool(const TetrahedronIds&, const std::array<Vec3, 4>&)> BreaksLimit;
     /** How close another point may come to this one. */
     std::function<double(Id point)> GetClearance;
     /** Whether a point is immovable, see SliverMemory. */
     std::function<bool(Id point)> IsImmovable;
+    /** Whether a point may be there, whatever the mesh shows. Empty: anywhere. */
+    std::function<bool(Id point, const Vec3& position)> IsAllowed;
+    SearchEffort Effort = SliverEffort;
   };
 
   /**
@@ -181,12 +196,13 @@ private:
 /**
  * Moves points of the surface that are corners of slivers, also in the mesh.
  * @param target slivers have a dihedral angle below this. Degrees
+ * @param place which slivers these are
  * @param isFree one for each point of the surface, whether it may be moved
  * @param areEdgesKept whether smallest spheres of the kept edges stay empty, too
  * @return the new positions of the surface's points
  */
-std::vector<Vec3> MoveSurfacePoints(
-  double target, const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh);
+std::vector<Vec3> MoveSurfacePoints(double target, SliverPlace place,
+  const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh);
 
 /**
  * Perturbs the last bits of surface points, for tetrahedra that are flat but for rounding
