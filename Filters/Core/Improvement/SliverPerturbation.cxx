@@ -15,12 +15,6 @@ namespace cdm
 namespace
 {
 constexpr std::size_t SliversBetweenChecks = 16;
-/**
- * Passes over slivers at sharp angles go on as long as one mends more than this part of them. The first
- * one only moves points: where that helps few, as in thin layers, new ones do not either.
- */
-constexpr int MaximumSharpPasses = 5;
-constexpr double WorthwhileRatio = 0.05;
 
 /** Mends slivers of a list, one after the other; threads look ahead. */
 class Perturbation
@@ -249,6 +243,7 @@ Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh&
 {
   // Tetrahedra just above the target stay: to improve them, too, took longer and mended no more.
   const SliverAim aim{ target, SliverPlace::SharpAngle };
+  // The first pass only moves points: where that helps few, as in thin layers, new ones do not either.
   Perturbation perturbation(aim, mesh);
   bool isWorthwhile = true;
   for (int pass = 0; pass < MaximumSharpPasses && isWorthwhile; ++pass)
