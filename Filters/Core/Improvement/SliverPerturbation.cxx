@@ -243,11 +243,11 @@ Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh&
 {
   // Tetrahedra just above the target stay: to improve them, too, took longer and mended no more.
   const SliverAim aim{ target, SliverPlace::SharpAngle };
-  // The first pass only moves points: where that helps few, as in thin layers, new ones do not either.
   Perturbation perturbation(aim, mesh);
   bool isWorthwhile = true;
   for (int pass = 0; pass < MaximumSharpPasses && isWorthwhile; ++pass)
   {
+    // The first pass only moves points: where that helps few, as in thin layers, new ones do not.
     perturbation.Start(FindSlivers(aim.Target, aim.Place, mesh), pass > 0 ? target : 0.0);
     std::size_t mended = 0;
     const auto visit = [&mended](const Sliver&, bool isMended) { mended += isMended ? 1 : 0; };

@@ -234,16 +234,13 @@ bool SliverSchedule::RoundFlatTetrahedraAway()
  */
 bool SliverSchedule::MoveSurfacePoints()
 {
-  const double target = this->Options.DihedralAngleTarget;
-  if (this->SurfaceMoves.IsOver(CountSlivers(target, this->GetMesh())))
+  if (this->SurfaceMoves.IsOver(CountSlivers(this->Options.DihedralAngleTarget, this->GetMesh())))
   {
     this->SurfaceMoves.Renew();
     return false;
   }
   this->SurfaceMoves.NoteTry();
-  return this->Rounds.TakeSurfacePositions(
-    cdm::MoveSurfacePoints(target, SliverPlace::Elsewhere, this->Rounds.GetFreeSurfacePoints(),
-      this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges, this->GetMesh()));
+  return this->TakeSurfaceMoves(SliverPlace::Elsewhere);
 }
 
 /** Moves free surface points of slivers at sharp angles, once. False if all points stay. */
@@ -254,8 +251,13 @@ bool SliverSchedule::MoveSharpSurfacePoints()
     return false;
   }
   this->AreSharpMoved = true;
+  return this->TakeSurfaceMoves(SliverPlace::SharpAngle);
+}
+
+bool SliverSchedule::TakeSurfaceMoves(SliverPlace place)
+{
   return this->Rounds.TakeSurfacePositions(cdm::MoveSurfacePoints(this->Options.DihedralAngleTarget,
-    SliverPlace::SharpAngle, this->Rounds.GetFreeSurfacePoints(),
+    place, this->Rounds.GetFreeSurfacePoints(),
     this->Options.Criterion == SurfaceCriterion::SmallestSphereAndEdges, this->GetMesh()));
 }
 

@@ -103,6 +103,7 @@ private:
   bool RoundFlatTetrahedraAway();
   bool MoveSurfacePoints();
   bool MoveSharpSurfacePoints();
+  bool TakeSurfaceMoves(SliverPlace place);
   Status RefineShapes();
   Status Perturb(SliverMeans means);
   Status PerturbLast();

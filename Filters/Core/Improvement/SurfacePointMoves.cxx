@@ -32,8 +32,8 @@ constexpr std::size_t LargestCavity = 500;
 /** Points with more tetrahedra and triangles of the surface are hubs. */
 constexpr std::size_t LargestStar = 64;
 /**
- * At sharp angles. With the effort for other slivers a tenth more time goes there, and two of a
- * hundred more are mended.
+ * At sharp angles. With the effort for other slivers the mesher takes 6 % more time, and leaves 1 %
+ * fewer there.
  */
 constexpr SearchEffort SharpEffort{ 1, 1 };
 /**
@@ -672,7 +672,12 @@ private:
   /** Whether a sliver is still there, and not known to be hopeless. */
   bool IsOpen(const Sliver& sliver) const
   {
-    return !IsGone(sliver, this->Mesh) && !IsHopeless(sliver, this->Attempt, this->Mesh);
+    return !IsGone(sliver, this->Mesh) && !IsHopeless(sliver, this->GetAttempt(), this->Mesh);
+  }
+  bool IsSharp() const { return this->Place == SliverPlace::SharpAngle; }
+  SliverAttempt GetAttempt() const
+  {
+    return this->IsSharp() ? SliverAttempt::SharpSurfaceMove : SliverAttempt::SurfaceMove;
   }
   SurfacePointMoves::Rules MakeRules() const;
   const SurfaceMove& Find(std::size_t i);
@@ -680,19 +685,17 @@ private:
   /** Whether a pass with so few mended slivers so far is not worth its time. */
   bool IsInVain(std::size_t mended, std::size_t seen) const
   {
-    return this->IsSharp && seen >= FewestSlivers &&
+    return this->IsSharp() && seen >= FewestSlivers &&
       static_cast<double>(mended) < LeastRatio * static_cast<double>(seen);
   }
 
   const double Target;
   const SliverPlace Place;
-  const bool IsSharp;
-  const SliverAttempt Attempt;
   const std::vector<char>& IsFree;
   RefinedMesh& Mesh;
   const std::vector<StructuralEdge> NoEdges;
   std::vector<Vec3> Points;
-  /** None: spheres beyond outer facets may be filled. */
+  /** Null as long as there are no slivers at sharp angles to be moved. */
   std::unique_ptr<SurfaceSpheres> Spheres;
   /** One for each thread. */
   std::vector<SurfacePointMoves> Searches;
@@ -702,18 +705,11 @@ private:
 
 SliverSurfaceMoves::SliverSurfaceMoves(double target, SliverPlace place,
   const std::vector<char>& isFree, bool areEdgesKept, RefinedMesh& mesh)
-  : Target(target), Place(place), IsSharp(place == SliverPlace::SharpAngle),
-    Attempt(IsSharp ? SliverAttempt::SharpSurfaceMove : SliverAttempt::SurfaceMove), IsFree(isFree),
-    Mesh(mesh), Points(mesh.GetBoundary().Surface.Points),
-    Ahead(mesh, SliversPerThread, TetrahedraPerSliver)
+  : Target(target), Place(place), IsFree(isFree), Mesh(mesh),
+    Points(mesh.GetBoundary().Surface.Points), Ahead(mesh, SliversPerThread, TetrahedraPerSliver)
 {
   const RefinedBoundary& boundary = mesh.GetBoundary();
   const BoundaryShape& shape = mesh.GetShape();
-  if (this->IsSharp)
-  {
-    this->Spheres =
-      std::make_unique<SurfaceSpheres>(boundary.Surface, shape.PointTriangles, shape.Spheres);
-  }
   const SurfacePointMoves::Rules rules = this->MakeRules();
   const int numberOfThreads = mesh.GetThreads().GetNumberOfThreads();
   for (int i = 0; i < numberOfThreads; ++i)
@@ -728,7 +724,7 @@ SurfacePointMoves::Rules SliverSurfaceMoves::MakeRules() const
 {
   const RefinedMesh& mesh = this->Mesh;
   const BoundaryShape& shape = mesh.GetShape();
-  const bool isSharp = this->IsSharp;
+  const bool isSharp = this->IsSharp();
   SurfacePointMoves::Rules rules;
   rules.Weigh = [&shape, isSharp, this](const TetrahedronIds& ids, Id region, double angle)
   {
@@ -801,7 +797,7 @@ bool SliverSurfaceMoves::Mend(std::size_t i)
   this->Mesh.SetImmovable(move.Immovable, this->Place);
   if (move.Point == NoId)
   {
-    SetHopeless(sliver, this->Attempt, this->Mesh);
+    SetHopeless(sliver, this->GetAttempt(), this->Mesh);
     return false;
   }
   const std::vector<Id>& changed =
@@ -817,13 +813,19 @@ bool SliverSurfaceMoves::Mend(std::size_t i)
 
 void SliverSurfaceMoves::Run()
 {
-  const int maximum = this->IsSharp ? MaximumSharpPasses : MaximumSliverPasses;
-  const double part = this->IsSharp ? WorthwhileRatio : 0.0;
+  const int maximum = this->IsSharp() ? MaximumSharpPasses : MaximumSliverPasses;
+  const double part = this->IsSharp() ? WorthwhileRatio : 0.0;
   bool isWorthwhile = true;
   for (int pass = 0; pass < maximum && isWorthwhile; ++pass)
   {
     this->Slivers = FindSlivers(this->Target, this->Place, this->Mesh);
     this->Ahead.Clear();
+    if (this->IsSharp() && !this->Spheres && !this->Slivers.empty())
+    {
+      const BoundaryShape& shape = this->Mesh.GetShape();
+      this->Spheres = std::make_unique<SurfaceSpheres>(
+        this->Mesh.GetBoundary().Surface, shape.PointTriangles, shape.Spheres);
+    }
     std::size_t mended = 0;
     for (std::size_t i = 0; i < this->Slivers.size() && !this->IsInVain(mended, i); ++i)
     {

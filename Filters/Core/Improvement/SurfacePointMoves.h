@@ -63,7 +63,7 @@ public:
      * not matter, 0 if there must be no such tetrahedron. Degrees.
      */
     std::function<double(const TetrahedronIds&, Id region, double angle)> Weigh;
-    /** Whether angles up to this have to be weighed even if there are smaller ones. Degrees. */
+    /** Angles below this have to be weighed even if there are smaller ones. Degrees. */
     double WeighedBelow = 0.0;
     /** Whether a new tetrahedron breaks a limit. */
     std::function<bool(const TetrahedronIds&, const std::array<Vec3, 4>&)> BreaksLimit;
