@@ -205,7 +205,6 @@ public:
       }
       const TetrahedronIds& ids = mesh.Tetrahedra[t];
       EXPECT_EQ(this->Shape->Sharp.IsAcross(ids), expected->Sharp.IsAcross(ids));
-      EXPECT_EQ(this->Shape->Sharp.IsAtCorner(ids), expected->Sharp.IsAtCorner(ids));
       EXPECT_EQ(this->Shape->Layers.IsAcross(ids, mesh.Regions[t]),
         expected->Layers.IsAcross(ids, mesh.Regions[t]));
       const std::array<Vec3, 4> v = this->Mesh->GetCorners(t);

@@ -138,8 +138,7 @@ TEST(SharpAngles, BetweenFacets)
     SCOPED_TRACE(angle);
     const bool isSharp = angle < 60.0;
     const Sharp sharp = MakeFacets(angle);
-    EXPECT_EQ(sharp.Angles.IsAtCorner({ 0, Inside, Inside + 1, Inside + 2 }), isSharp);
-    EXPECT_FALSE(sharp.Angles.IsAtCorner({ 2, 3, 4, Inside }));
+    EXPECT_FALSE(sharp.Angles.IsAcross({ 0, Inside, Inside + 1, Inside + 2 }));
     EXPECT_EQ(sharp.Angles.IsAcross({ 2, 3, Inside, Inside + 1 }), isSharp);
     EXPECT_EQ(sharp.Angles.IsAcross({ Inside, 4, Inside + 1, 5 }), isSharp);
     // On one side only, with the edge, or inside.
@@ -156,8 +155,7 @@ TEST(SharpAngles, BetweenEdges)
     SCOPED_TRACE(angle);
     const bool isSharp = angle < 30.0;
     const Sharp sharp = MakeArms(angle);
-    EXPECT_EQ(sharp.Angles.IsAtCorner({ 0, Inside, Inside + 1, Inside + 2 }), isSharp);
-    EXPECT_FALSE(sharp.Angles.IsAtCorner({ 1, 2, 3, 4 }));
+    EXPECT_FALSE(sharp.Angles.IsAcross({ 0, Inside, Inside + 1, Inside + 2 }));
     EXPECT_EQ(sharp.Angles.IsAcross({ 1, 3, Inside, Inside + 1 }), isSharp);
     EXPECT_EQ(sharp.Angles.IsAcross({ 4, Inside, Inside + 1, 1 }), isSharp);
     EXPECT_FALSE(sharp.Angles.IsAcross({ 1, 2, Inside, Inside + 1 }));
@@ -209,8 +207,7 @@ TEST(SharpAngles, BetweenAnEdgeAndAFacetAtAPoint)
   {
     SCOPED_TRACE(angle);
     Sharp sharp = MakeTip(angle);
-    EXPECT_EQ(sharp.Angles.IsAtCorner({ 0, Inside, Inside + 1, Inside + 2 }), angle < 30.0);
-    EXPECT_FALSE(sharp.Angles.IsAtCorner({ 1, 2, 3, 4 }));
+    EXPECT_FALSE(sharp.Angles.IsAcross({ 0, Inside, Inside + 1, Inside + 2 }));
     // From the edge to the corners of the facet it is more than 30 degrees.
     EXPECT_FALSE(sharp.Angles.IsAcross({ 1, 4, 5, Inside }));
     // Points of the edge and of the facet, at the foot of the first one.
@@ -262,6 +259,5 @@ TEST(SharpAngles, NoEdgesNoAngles)
   surface.Points = { { 0.0, 0.0, 0.0 }, { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 } };
   surface.Triangles = { { 0, 1, 2 } };
   const Sharp sharp(surface, {});
-  EXPECT_FALSE(sharp.Angles.IsAtCorner({ 0, 1, 2, 3 }));
   EXPECT_FALSE(sharp.Angles.IsAcross({ 0, 1, 2, 3 }));
 }

@@ -55,7 +55,7 @@ private:
   }
   void FindFaults();
   SteinerFault FindFault(const TetrahedronIds& ids, Id region) const;
-  bool IsInevitable(const TetrahedronIds& ids, Id region) const;
+  bool IsInevitable(const TetrahedronIds& ids, Id region, SharpAngleUse use) const;
 
   const SteinerPointRefinerInput& Input;
   const SteinerPointRefinerOptions& Options;
@@ -168,12 +168,12 @@ RoundResult SteinerPointRefinement::RunShapeRound()
   return isSliversTurn ? this->Schedule.Run() : round;
 }
 
-/** Whether a tetrahedron of the output is in a thin layer or at a sharp angle. */
-bool SteinerPointRefinement::IsInevitable(const TetrahedronIds& ids, Id region) const
+/** Whether a tetrahedron of the output is across a thin layer or a sharp angle. */
+bool SteinerPointRefinement::IsInevitable(
+  const TetrahedronIds& ids, Id region, SharpAngleUse use) const
 {
   const BoundaryShape& shape = this->Rounds.GetMesh().GetShape();
-  return shape.Layers.IsAcross(ids, region) || shape.Sharp.IsAtCorner(ids) ||
-    shape.Sharp.IsAcross(ids);
+  return shape.Layers.IsAcross(ids, region) || shape.Sharp.IsAcross(ids, use);
 }
 
 SteinerFault SteinerPointRefinement::FindFault(const TetrahedronIds& ids, Id region) const
@@ -192,9 +192,10 @@ SteinerFault SteinerPointRefinement::FindFault(const TetrahedronIds& ids, Id reg
   {
     return SteinerFault::None;
   }
-  return this->IsInevitable(ids, region) ? SteinerFault::Inevitable
-    : isBadlyShaped                      ? SteinerFault::Shape
-                                         : SteinerFault::Sliver;
+  const SharpAngleUse use = isBadlyShaped ? SharpAngleUse::Shape : SharpAngleUse::Sliver;
+  return this->IsInevitable(ids, region, use) ? SteinerFault::Inevitable
+    : isBadlyShaped                           ? SteinerFault::Shape
+                                              : SteinerFault::Sliver;
 }
 
 void SteinerPointRefinement::FindFaults()

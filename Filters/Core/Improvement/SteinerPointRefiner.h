@@ -147,8 +147,8 @@ enum class SteinerFault : unsigned char
   /** Its smallest dihedral angle is below the target. */
   Sliver = 3,
   /**
-   * Badly shaped or a sliver, but at a sharp input angle or in a thin layer, where no better one
-   * exists.
+   * Badly shaped or a sliver, but with points on both sides of a sharp input angle or of a thin
+   * layer (SharpAngles.h, ThinLayers.h).
    */
   Inevitable = 4
 };

@@ -77,14 +77,13 @@ SharpAngles::PlaneLimit::PlaneLimit(double degrees)
 SharpAngles::SharpAngles(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
   const IdLists& pointTriangles, double sharpPlaneAngle)
   : Surface(surface), ForShapes(sharpPlaneAngle), ForSlivers(SharpPlaneAngleOfSlivers),
-    IsCorner(surface.Points.size(), 0)
+    NumberOfPoints(static_cast<Id>(surface.Points.size()))
 {
   const IdLists neighbors = ListNeighbors(surface, edges);
   const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
   this->Facets = NumberFacets(uses, edges);
   this->FindFacetPairs(edges, uses);
   this->FindTips(pointTriangles, neighbors);
-  this->MarkSharpEdges(edges);
   this->FindArms(pointTriangles, neighbors);
   this->ListFacets(pointTriangles);
 }
@@ -100,21 +99,13 @@ void SharpAngles::Follow(const std::vector<StructuralEdge>& edges,
   }
   this->FollowFacets(triangles);
   this->FollowArms(edges, changedEdges);
-  this->IsCorner.resize(this->Surface.Points.size(), 0);
-  for (Id e : changedEdges)
-  {
-    if (IsSharp(edges[e]))
-    {
-      this->IsCorner[edges[e].Points[0]] = 1;
-      this->IsCorner[edges[e].Points[1]] = 1;
-    }
-  }
+  this->NumberOfPoints = static_cast<Id>(this->Surface.Points.size());
 }
 
 /** Lists the surface facets at new points. */
 void SharpAngles::FollowFacets(const std::vector<Id>& triangles)
 {
-  const Id first = static_cast<Id>(this->IsCorner.size());
+  const Id first = this->NumberOfPoints;
   std::vector<std::pair<Id, Id>> pairs;
   for (Id t : triangles)
   {
@@ -158,7 +149,7 @@ std::vector<Id> SharpAngles::ListArmsAt(Id point) const
 void SharpAngles::FollowArms(
   const std::vector<StructuralEdge>& edges, const std::vector<Id>& changedEdges)
 {
-  const Id first = static_cast<Id>(this->IsCorner.size());
+  const Id first = this->NumberOfPoints;
   const Id count = static_cast<Id>(this->Surface.Points.size()) - first;
   std::vector<std::pair<Id, Id>> pairs;
   for (Id e : changedEdges)
@@ -240,7 +231,7 @@ void SharpAngles::FindFacetPairs(
 /** Facets that do not meet at an edge of a point have at least two structural edges there each. */
 void SharpAngles::FindTips(const IdLists& pointTriangles, const IdLists& neighbors)
 {
-  for (Id corner = 0; corner < static_cast<Id>(this->IsCorner.size()); ++corner)
+  for (Id corner = 0; corner < this->NumberOfPoints; ++corner)
   {
     if (neighbors[corner].size() >= 4)
     {
@@ -294,21 +285,8 @@ void SharpAngles::FindTipsAt(Id corner, const IdLists::Range& triangles, const I
         GetSectorCosine(GetDirection(this->Surface, corner, end), first, second) >
           this->ForShapes.Cosine)
       {
-        this->IsCorner[corner] = 1;
         this->Tips.push_back({ pair, corner });
       }
-    }
-  }
-}
-
-void SharpAngles::MarkSharpEdges(const std::vector<StructuralEdge>& edges)
-{
-  for (const StructuralEdge& edge : edges)
-  {
-    if (IsSharp(edge))
-    {
-      this->IsCorner[edge.Points[0]] = 1;
-      this->IsCorner[edge.Points[1]] = 1;
     }
   }
 }
@@ -423,7 +401,6 @@ void SharpAngles::FindArms(const IdLists& pointTriangles, const IdLists& neighbo
       {
         continue;
       }
-      this->IsCorner[corner] = 1;
       Id last = corner;
       for (Id point = first; point != NoId;)
       {
@@ -460,16 +437,10 @@ std::vector<char> SharpAngles::MarkFacets() const
   return isMarked;
 }
 
-bool SharpAngles::IsAtCorner(const TetrahedronIds& ids) const
-{
-  return std::any_of(ids.begin(), ids.end(),
-    [this](Id id) { return id < static_cast<Id>(this->IsCorner.size()) && this->IsCorner[id]; });
-}
-
 bool SharpAngles::IsAcross(const TetrahedronIds& ids, SharpAngleUse use) const
 {
   const PlaneLimit& limit = use == SharpAngleUse::Sliver ? this->ForSlivers : this->ForShapes;
-  const Id numberOfPoints = static_cast<Id>(this->IsCorner.size());
+  const Id numberOfPoints = this->NumberOfPoints;
   for (std::size_t i = 0; i < ids.size(); ++i)
   {
     for (std::size_t j = 0; j < i; ++j)

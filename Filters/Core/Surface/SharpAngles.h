@@ -75,8 +75,6 @@ public:
   void Follow(const std::vector<StructuralEdge>& edges, const std::vector<Id>& changedEdges,
     const std::vector<Id>& triangles, const std::vector<Id>& parents);
 
-  /** Whether a vertex is the corner of a sharp angle, or lies on its edge. */
-  bool IsAtCorner(const TetrahedronIds& ids) const;
   /**
    * Whether one vertex lies on one side of a sharp angle, and another one on the other side. Only
    * the surface's points lie on sides; ids of other points are larger. A tetrahedron that is across
@@ -137,7 +135,6 @@ private:
   void FindFacetPairs(const std::vector<StructuralEdge>& edges, const std::vector<EdgeUse>& uses);
   void FindTips(const IdLists& pointTriangles, const IdLists& neighbors);
   void FindTipsAt(Id corner, const IdLists::Range& triangles, const IdLists::Range& ends);
-  void MarkSharpEdges(const std::vector<StructuralEdge>& edges);
   void ListFacets(const IdLists& pointTriangles);
   void FollowFacets(const std::vector<Id>& triangles);
   void FollowArms(const std::vector<StructuralEdge>& edges, const std::vector<Id>& changedEdges);
@@ -155,8 +152,8 @@ private:
   const PlaneLimit ForSlivers;
   /** The surface facet of each triangle. */
   std::vector<Id> Facets;
-  /** One for each point of the surface. */
-  std::vector<char> IsCorner;
+  /** Of the surface as it was followed to. */
+  Id NumberOfPoints;
   /** Whether a surface facet has a sharp angle; one for each triangle of the first surface. */
   std::vector<char> IsFacetSharp;
   /** Surface facets at each point; facets without a sharp angle are left out. */
