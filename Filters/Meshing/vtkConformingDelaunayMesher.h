@@ -249,8 +249,9 @@ public:
    * be points of the mesh. Model units; 0: it stays as it is; default AUTOMATIC: a tenth of
    * MaximumEdgeLength, or of the smallest sizing, or of the thickness of the thinnest region (twice
    * its volume over its area) if that is less, for surfaces of at least 500 polygons, all of them
-   * triangles, with half of the edges shorter than 0.64 of that size, otherwise 0. A warning says
-   * what was done. Range 0 and above, or AUTOMATIC.
+   * triangles, with half of the edges shorter than 0.64 of that size, or with half of the triangles
+   * narrow strips (one edge shorter than that, and one longer than 1.07 of the size), otherwise 0.
+   * A warning says what was done. Range 0 and above, or AUTOMATIC.
    */
   vtkSetMacro(MaximumDeviation, double);
   vtkGetMacro(MaximumDeviation, double);

@@ -5,6 +5,7 @@
 #include "Core/Pipeline/ConformingMesher.h"
 #include "Core/Surface/StructuralEdges.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
+#include "LayerSurfaces.h"
 
 #include <gtest/gtest.h>
 
@@ -301,6 +302,28 @@ TEST(ConformingMesher, LatticesLeaveEverySurfaceDelaunay)
       EXPECT_TRUE(output.Certificate.IsDelaunay()) << output.Certificate.GetText();
     }
   }
+}
+
+/** Long narrow triangles, as CAD programs cut walls of holes into, are remeshed by default. */
+TEST(ConformingMesher, StripsAreRemeshed)
+{
+  const TriangleMesh tube = MakeTubeSurface(100, 0.3);
+  PolygonSoup soup;
+  soup.Points = tube.Points;
+  soup.Labels = tube.Labels;
+  for (const TriangleIds& ids : tube.Triangles)
+  {
+    soup.Connectivity.insert(soup.Connectivity.end(), ids.begin(), ids.end());
+    soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+  }
+  const ConformingMesherOutput output = Mesh(soup, {});
+  EXPECT_TRUE(Warns(output, "remeshed"));
+  EXPECT_TRUE(output.Certificate.IsClean()) << output.Certificate.GetText();
+  EXPECT_EQ(output.Certificate.Under15Degrees.Count, 0);
+  EXPECT_LT(output.Mesh.Tetrahedra.size(), 30000u);
+  ConformingMesherOptions options;
+  options.MaximumDeviation = 0.0;
+  EXPECT_GT(Mesh(soup, options).Mesh.Tetrahedra.size(), 3 * output.Mesh.Tetrahedra.size());
 }
 
 /** Of what was not asked for no error comes: the octree cannot be so fine, or so large. */

@@ -8,6 +8,7 @@
 #include "Core/Surface/CurvatureLengths.h"
 #include "Core/Surface/SurfaceRemesher.h"
 #include "EnclosedVolumes.h"
+#include "LayerSurfaces.h"
 #include "SurfaceAngles.h"
 
 #include <gtest/gtest.h>
@@ -436,6 +437,20 @@ TEST(SurfaceRemesher, KeepsTheHoleOfATorus)
     Check(torus, output, 0.15);
     EXPECT_LT(output.Surface.Triangles.size(), torus.Triangles.size() / 3);
   }
+}
+
+/** The narrow sides of a tube of 300 facets, along its axis. */
+TEST(SurfaceRemesher, CollapsesStrips)
+{
+  const TriangleMesh tube = MakeTubeSurface(300, 0.2);
+  EXPECT_TRUE(IsOfStrips(tube, std::vector<double>(tube.Points.size(), 0.3)));
+  EXPECT_FALSE(IsOfStrips(tube, std::vector<double>(tube.Points.size(), 10.0)));
+  EXPECT_FALSE(IsOfStrips(tube, std::vector<double>(tube.Points.size(), 0.02)));
+  const SurfaceRemesherOutput output = Remesh(tube, 0.3, 0.02);
+  Check(tube, output, 0.02);
+  // Both walls in equilateral triangles of this size have 1,740.
+  EXPECT_LT(output.Surface.Triangles.size(), 2400u);
+  EXPECT_NEAR(GetMedianEdge(output.Surface), 0.3, 0.06);
 }
 
 TEST(SurfaceRemesher, FindsTheFacetsOfABox)

@@ -49,7 +49,23 @@ bool HasManyTriangles(const PolygonSoup& polygons)
   return count >= ManyTriangles;
 }
 
-/** 0 where the surface is not one of many small triangles. */
+/** Whether half of the edges are so short that they collapse. lengths: maximum ones at points. */
+bool HasSmallEdges(const TriangleMesh& surface, const std::vector<double>& lengths)
+{
+  Id edges = 0;
+  Id small = 0;
+  const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
+  for (std::size_t i = 0; i < uses.size(); i = FindEndOfEdge(uses, i))
+  {
+    const auto [a, b] = uses[i].GetPoints();
+    ++edges;
+    small += Distance(surface.Points[a], surface.Points[b]) <
+      SmallEdgeRatio * std::min(lengths[a], lengths[b]);
+  }
+  return 2 * small >= edges;
+}
+
+/** 0 where the surface is not one of many small triangles, or of strips. */
 double GetAutomaticDeviation(const PolygonSoup& polygons, const SizingField& sizing,
   double maximumEdgeLength, const TriangleMesh& surface)
 {
@@ -59,27 +75,15 @@ double GetAutomaticDeviation(const PolygonSoup& polygons, const SizingField& siz
     return 0.0;
   }
   std::vector<double> lengths;
+  std::vector<double> wanted;
   for (const Vec3& point : surface.Points)
   {
     lengths.push_back(GetMaximumLength(sizing, maximumEdgeLength, point));
+    wanted.push_back(WantedLengthRatio * lengths.back());
   }
-  Id edges = 0;
-  Id small = 0;
-  const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
-  for (std::size_t i = 0; i < uses.size(); ++i)
-  {
-    if (i > 0 && uses[i].Edge == uses[i - 1].Edge)
-    {
-      continue;
-    }
-    const auto [a, b] = uses[i].GetPoints();
-    ++edges;
-    small += Distance(surface.Points[a], surface.Points[b]) <
-      SmallEdgeRatio * std::min(lengths[a], lengths[b]);
-  }
-  return 2 * small >= edges ? AutomaticRatio *
+  return HasSmallEdges(surface, lengths) || IsOfStrips(surface, wanted) ? AutomaticRatio *
       std::min(*std::min_element(lengths.begin(), lengths.end()), GetLeastThickness(surface))
-                            : 0.0;
+                                                                        : 0.0;
 }
 
 /** A number for each triangle that says which polygons it may not be mixed with. */

@@ -11,8 +11,9 @@
  * The automatic bound is a tenth of that maximum, or of the smallest sizing on the surface, and at
  * most a tenth of how thick the thinnest region is (DefaultSize.h): plates stay plates. It is used
  * for a surface of many small triangles: at least 500 polygons, all of them triangles, and half of
- * the edges shorter than 0.64 of the maximum, which is where edges collapse. Otherwise it is 0:
- * polygons of devices stay as they are.
+ * the edges shorter than 0.64 of the maximum, which is where edges collapse; or half of the
+ * triangles are strips, which have such an edge and one longer than 1.07 of the maximum. Otherwise
+ * it is 0: polygons of devices stay as they are.
  *
  * What became of the surface is told in a warning.
  */

@@ -80,6 +80,7 @@ public:
   /** Numbers of the structural edges at a point. */
   const std::vector<Id>& GetEdges(Id point) const { return this->EdgesAt[point]; }
   const EdgeIds& GetEdge(Id edge) const { return this->Edges[edge]; }
+  Id GetChain(Id edge) const { return this->Chains[edge]; }
   Id GetOtherEnd(Id edge, Id point) const
   {
     return this->Edges[edge][0] == point ? this->Edges[edge][1] : this->Edges[edge][0];

@@ -9,13 +9,20 @@
  *     of a facet are none. They are the chains, which stay, and between them are the facets; the
  *     corners where chains meet or turn sharply stay where they are, and so do points where parts
  *     of the surface touch;
- *  2. rounds of: edges longer than 4/3 of the wanted length are split, longest first; edges shorter
+ *  2. a surface of strips (below) has its short edges collapsed first, and what is left is cut to 2^k
+ *     times the wanted length, 2^(k-1) times and so on: else strips would be cut into pieces as
+ *     narrow as they are, which collapse one by one;
+ *  3. rounds of: edges longer than 4/3 of the wanted length are split, longest first; edges shorter
  *     than 4/5 of it collapse, shortest first; edges are flipped where the smallest angle of the
  *     two triangles grows; points move towards the centers of gravity of their triangles, along
  *     chains to the middle between their neighbors, and from there to the nearest point of their
  *     original facet or chain;
- *  3. each of these changes is done only if the surface stays what it is (ChangeableSurface.h).
+ *  4. each of these changes is done only if the surface stays what it is (ChangeableSurface.h).
  * Where the bound does not allow it, edges stay shorter than wanted.
+ *
+ * A strip is a triangle that has an edge which would collapse, and one which would be split. A
+ * surface of strips has at least as many of them as of others: walls of holes, fillets and bent
+ * plates as CAD programs write them.
  *
  * Inputs: the invariants of TriangleMesh.h. Guarantees: these invariants are kept, and so are
  * topology, orientation, labels, and the positions of corners; each facet and each chain lies
@@ -44,6 +51,11 @@ namespace cdm
 {
 /** Edges shorter than this part of the wanted length collapse. */
 constexpr double CollapseRatio = 4.0 / 5.0;
+/** Edges longer than this part of the wanted length are split. */
+constexpr double SplitRatio = 4.0 / 3.0;
+
+/** Whether at least half of the triangles are strips. lengths: wanted ones, at each point. */
+bool IsOfStrips(const TriangleMesh& surface, const std::vector<double>& lengths);
 
 struct SurfaceRemesherOptions
 {

@@ -286,7 +286,7 @@ def mesh(
         How far the surface may be from that of the input, and the input's from it, where it is finer
         than edges are to be: it is made coarser first. Model units; 0: it stays as it is; None: a tenth
         of the longest edge or of the thickness of the thinnest region, whichever is less, for surfaces
-        of many small triangles, else 0.
+        of many small or narrow triangles, else 0.
     criterion : {"delaunay", "smallest sphere", "smallest sphere and edges"}, optional
         What the surface fulfils; the last one closes all control volumes.
     add_steiner_points : bool, optional
