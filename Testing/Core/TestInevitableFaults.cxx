@@ -23,8 +23,7 @@ namespace
 {
 double GetAngle(const Vec3& a, const Vec3& b)
 {
-  constexpr double degrees = 180.0 / 3.14159265358979323846;
-  return degrees * std::atan2(Norm(Cross(a, b)), Dot(a, b));
+  return DegreesPerRadian * std::atan2(Norm(Cross(a, b)), Dot(a, b));
 }
 
 /** A surface whose triangles are put together to facets, which bend by less than some degrees. */
@@ -90,9 +89,9 @@ public:
   }
 
   const TriangleMesh& Surface;
-  /** Of each triangle. */
+  /** The facet of each triangle: the number of the facet's first triangle. */
   std::vector<Id> Names;
-  /** At each point. */
+  /** The facets at each point. */
   std::vector<std::set<Id>> Points;
 };
 
@@ -123,7 +122,8 @@ public:
     this->Areas.resize(surface.Triangles.size());
     for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
     {
-      this->Areas[this->Sides.Names[t]] += 0.5 * Norm(this->Sides.GetNormal(static_cast<Id>(t)));
+      const auto [a, b, c] = this->Sides.GetCorners(static_cast<Id>(t));
+      this->Areas[this->Sides.Names[t]] += GetTriangleArea(a, b, c);
     }
   }
 
@@ -230,7 +230,7 @@ private:
   /** Ends of edges between facets, and those of them at which three facets meet. */
   std::set<Id> Ends;
   std::vector<Id> Corners;
-  /** Of sides, at the number of their first triangle. */
+  /** The areas of sides, at the number of their first triangle. */
   std::vector<double> Areas;
 };
 } // namespace

@@ -76,8 +76,7 @@ SharpAngles::PlaneLimit::PlaneLimit(double degrees)
 
 SharpAngles::SharpAngles(const TriangleMesh& surface, const std::vector<StructuralEdge>& edges,
   const IdLists& pointTriangles, double sharpPlaneAngle)
-  : Surface(surface), ForShapes(sharpPlaneAngle), ForSlivers(SharpPlaneAngleOfSlivers),
-    NumberOfPoints(static_cast<Id>(surface.Points.size()))
+  : Surface(surface), ForShapes(sharpPlaneAngle), ForSlivers(SharpPlaneAngleOfSlivers)
 {
   const IdLists neighbors = ListNeighbors(surface, edges);
   const std::vector<EdgeUse> uses = SortEdgeUses(surface.Triangles, surface.Points.size());
@@ -99,13 +98,12 @@ void SharpAngles::Follow(const std::vector<StructuralEdge>& edges,
   }
   this->FollowFacets(triangles);
   this->FollowArms(edges, changedEdges);
-  this->NumberOfPoints = static_cast<Id>(this->Surface.Points.size());
 }
 
 /** Lists the surface facets at new points. */
 void SharpAngles::FollowFacets(const std::vector<Id>& triangles)
 {
-  const Id first = this->NumberOfPoints;
+  const Id first = this->PointFacets.GetNumberOfOwners();
   std::vector<std::pair<Id, Id>> pairs;
   for (Id t : triangles)
   {
@@ -149,7 +147,7 @@ std::vector<Id> SharpAngles::ListArmsAt(Id point) const
 void SharpAngles::FollowArms(
   const std::vector<StructuralEdge>& edges, const std::vector<Id>& changedEdges)
 {
-  const Id first = this->NumberOfPoints;
+  const Id first = this->PointArms.GetNumberOfOwners();
   const Id count = static_cast<Id>(this->Surface.Points.size()) - first;
   std::vector<std::pair<Id, Id>> pairs;
   for (Id e : changedEdges)
@@ -231,7 +229,7 @@ void SharpAngles::FindFacetPairs(
 /** Facets that do not meet at an edge of a point have at least two structural edges there each. */
 void SharpAngles::FindTips(const IdLists& pointTriangles, const IdLists& neighbors)
 {
-  for (Id corner = 0; corner < this->NumberOfPoints; ++corner)
+  for (Id corner = 0; corner < neighbors.GetNumberOfOwners(); ++corner)
   {
     if (neighbors[corner].size() >= 4)
     {
@@ -440,7 +438,7 @@ std::vector<char> SharpAngles::MarkFacets() const
 bool SharpAngles::IsAcross(const TetrahedronIds& ids, SharpAngleUse use) const
 {
   const PlaneLimit& limit = use == SharpAngleUse::Sliver ? this->ForSlivers : this->ForShapes;
-  const Id numberOfPoints = this->NumberOfPoints;
+  const Id numberOfPoints = this->PointFacets.GetNumberOfOwners();
   for (std::size_t i = 0; i < ids.size(); ++i)
   {
     for (std::size_t j = 0; j < i; ++j)

@@ -152,8 +152,6 @@ private:
   const PlaneLimit ForSlivers;
   /** The surface facet of each triangle. */
   std::vector<Id> Facets;
-  /** Of the surface as it was followed to. */
-  Id NumberOfPoints;
   /** Whether a surface facet has a sharp angle; one for each triangle of the first surface. */
   std::vector<char> IsFacetSharp;
   /** Surface facets at each point; facets without a sharp angle are left out. */
