@@ -2,6 +2,7 @@
 // All stages in one run: the same as the stages one after the other, errors and warnings in cells of
 // the input, limits that are said.
 #include "ComplexKinds.h"
+#include "Core/Meshes/SurfacePolygons.h"
 #include "Core/Pipeline/ConformingMesher.h"
 #include "Core/Surface/StructuralEdges.h"
 #include "Core/Volume/AdvancingFrontTetrahedralizer.h"
@@ -308,14 +309,7 @@ TEST(ConformingMesher, LatticesLeaveEverySurfaceDelaunay)
 TEST(ConformingMesher, StripsAreRemeshed)
 {
   const TriangleMesh tube = MakeTubeSurface(100, 0.3);
-  PolygonSoup soup;
-  soup.Points = tube.Points;
-  soup.Labels = tube.Labels;
-  for (const TriangleIds& ids : tube.Triangles)
-  {
-    soup.Connectivity.insert(soup.Connectivity.end(), ids.begin(), ids.end());
-    soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
-  }
+  const PolygonSoup soup = MakePolygonSoup(tube);
   const ConformingMesherOutput output = Mesh(soup, {});
   EXPECT_TRUE(Warns(output, "remeshed"));
   EXPECT_TRUE(output.Certificate.IsClean()) << output.Certificate.GetText();

@@ -3,6 +3,7 @@
 #include "Core/Geometry/Measures.h"
 #include "Core/Meshes/EdgeUses.h"
 #include "Core/Meshes/SurfaceArea.h"
+#include "Core/Meshes/SurfacePolygons.h"
 #include "Core/Pipeline/ConformingMesher.h"
 #include "Core/Pipeline/RegionVolumes.h"
 #include "Core/Surface/FlatFacets.h"
@@ -104,13 +105,8 @@ Id CountFacets(const TriangleMesh& surface)
 /** The mesh of a surface all triangles of which stay, without any size. */
 ConformingMesherOutput Mesh(const TriangleMesh& surface, ConformingMesherOptions options)
 {
-  PolygonSoup soup;
-  soup.Points = surface.Points;
-  for (const TriangleIds& ids : surface.Triangles)
-  {
-    soup.Connectivity.insert(soup.Connectivity.end(), ids.begin(), ids.end());
-    soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
-  }
+  PolygonSoup soup = MakePolygonSoup(surface);
+  soup.Labels.clear();
   ConformingMesherInput input;
   input.Polygons = &soup;
   options.Choices.MaximumEdgeLength = 0.0;

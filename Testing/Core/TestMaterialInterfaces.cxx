@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/Measures.h"
 #include "Core/Meshes/SurfaceOrientation.h"
+#include "Core/Meshes/SurfacePolygons.h"
 #include "Core/Meshes/SurfaceSides.h"
 #include "Core/Meshes/TriangleIntersection.h"
 #include "Core/Repair/BoundaryTriangulator.h"
@@ -137,14 +138,7 @@ void ExpectSound(const TriangleMesh& surface)
 /** Stage 0 takes the surface as it is: same points, same triangles. */
 void ExpectTriangulatorTakes(const TriangleMesh& surface)
 {
-  PolygonSoup soup;
-  soup.Points = surface.Points;
-  soup.Labels = surface.Labels;
-  for (const TriangleIds& ids : surface.Triangles)
-  {
-    soup.Connectivity.insert(soup.Connectivity.end(), ids.begin(), ids.end());
-    soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
-  }
+  const PolygonSoup soup = MakePolygonSoup(surface);
   BoundaryTriangulatorOutput output;
   const Status status = TriangulateBoundary(soup, {}, {}, output);
   EXPECT_TRUE(status.IsOk()) << status.Message;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a mesh is for decides what is not given, and only that; the default size.
 #include "ComplexKinds.h"
+#include "Core/Meshes/SurfacePolygons.h"
 #include "Core/Meshes/VolumeSums.h"
 #include "Core/Pipeline/ConformingMesher.h"
 #include "Core/Sizing/DefaultSize.h"
@@ -38,19 +39,6 @@ void AddBox(TriangleMesh& surface, const Vec3& low, const Vec3& high, Id region 
       surface.Labels.insert(surface.Labels.end(), 2, { OutsideRegion, region });
     }
   }
-}
-
-PolygonSoup ToSoup(const TriangleMesh& surface)
-{
-  PolygonSoup soup;
-  soup.Points = surface.Points;
-  for (const TriangleIds& ids : surface.Triangles)
-  {
-    soup.Connectivity.insert(soup.Connectivity.end(), ids.begin(), ids.end());
-    soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
-  }
-  soup.Labels = surface.Labels;
-  return soup;
 }
 
 ConformingMesherOutput Mesh(const PolygonSoup& soup, const ConformingMesherOptions& options)
@@ -156,7 +144,7 @@ TEST(MeshPurpose, FiniteVolumesAreTheDefault)
 {
   TriangleMesh surface;
   AddBox(surface, { 0.0, 0.0, 0.0 }, { 3.0, 2.0, 1.0 });
-  const ConformingMesherOutput output = Mesh(ToSoup(surface), {});
+  const ConformingMesherOutput output = Mesh(MakePolygonSoup(surface), {});
   EXPECT_TRUE(output.Certificate.IsClean()) << output.Certificate.GetText();
   EXPECT_EQ(output.Certificate.Under15Degrees.Count, 0);
   const double size = output.Settings.MaximumEdgeLength;

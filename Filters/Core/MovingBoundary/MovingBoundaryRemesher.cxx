@@ -7,6 +7,7 @@
 #include "Core/Geometry/Predicates.h"
 #include "Core/Meshes/MeshBoundary.h"
 #include "Core/Meshes/ShortestEdges.h"
+#include "Core/Meshes/SurfacePolygons.h"
 #include "Core/Meshes/SurfaceSides.h"
 #include "Core/Meshes/TriangleIntersection.h"
 #include "Core/Meshes/VolumeSums.h"
@@ -592,13 +593,8 @@ Status Remeshing::KeepInterior(const std::vector<Vec3>& moved, const TriangleMes
 
 Status Remeshing::CutSurface(const Surface& surface, const ExecutionContext& context, Surface& cut)
 {
-  PolygonSoup soup;
-  soup.Points = surface.Mesh.Points;
-  for (const TriangleIds& ids : surface.Mesh.Triangles)
-  {
-    soup.Connectivity.insert(soup.Connectivity.end(), ids.begin(), ids.end());
-    soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
-  }
+  PolygonSoup soup = MakePolygonSoup(surface.Mesh);
+  soup.Labels.clear();
   BoundaryTriangulatorOptions options;
   options.ResolveSelfIntersections = true;
   options.Pieces = ResolvedPieces::All;
