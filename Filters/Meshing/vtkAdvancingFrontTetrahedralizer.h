@@ -39,7 +39,7 @@
  * so far and its front in the outputs. (VTK empties the outputs of an aborted filter; this one
  * takes its mark back. Filters downstream decide for themselves whether they run on it.)
  *
- * Cost: O(n log n) for usual distributions; 57 bytes per tetrahedron of all points at the peak, 36
+ * Cost: O(n log n) for usual distributions; 49 bytes per tetrahedron of all points at the peak, 36
  * for those of the result. Uses the threads of vtkSMPTools; the result does not depend on them.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien

@@ -17,7 +17,9 @@
 #include <vector>
 
 #ifdef __linux__
+#include <cstdint>
 #include <sys/mman.h>
+#include <unistd.h>
 #endif
 
 namespace cdm
@@ -72,6 +74,33 @@ struct RawAllocator : std::allocator<T>
 
 template <typename T>
 using RawVector = std::vector<T, RawAllocator<T>>;
+
+/**
+ * Gives the memory of the elements from begin to end back to the system, where it takes it before
+ * the vector ends. Their values are lost.
+ */
+template <typename T>
+void ReleaseMemory(RawVector<T>& items, std::size_t begin, std::size_t end)
+{
+#ifdef __linux__
+  if (items.size() < RawAllocator<T>::LargePage / sizeof(T))
+  {
+    return;
+  }
+  // Whole pages only: their other elements stay.
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto first = (reinterpret_cast<std::uintptr_t>(items.data() + begin) + page - 1) / page;
+  const auto last = reinterpret_cast<std::uintptr_t>(items.data() + end) / page;
+  if (first < last)
+  {
+    madvise(reinterpret_cast<void*>(first * page), (last - first) * page, MADV_DONTNEED);
+  }
+#else
+  static_cast<void>(items);
+  static_cast<void>(begin);
+  static_cast<void>(end);
+#endif
+}
 } // namespace cdm
 
 #endif

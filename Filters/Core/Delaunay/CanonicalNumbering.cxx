@@ -18,6 +18,8 @@ constexpr unsigned char Turns[12][4] = { { 0, 1, 2, 3 }, { 0, 2, 3, 1 }, { 0, 3,
   { 1, 0, 3, 2 }, { 1, 3, 2, 0 }, { 1, 2, 0, 3 }, { 2, 0, 1, 3 }, { 2, 1, 3, 0 }, { 2, 3, 0, 1 },
   { 3, 0, 2, 1 }, { 3, 2, 1, 0 }, { 3, 1, 0, 2 } };
 constexpr unsigned char NotMeshed = 12;
+/** Items that a thread moves at once. */
+constexpr std::size_t SmallestBlock = std::size_t(1) << 15;
 
 /**
  * The permutation that puts the lowest vertex first and the second lowest after it, by which vertices
@@ -108,9 +110,53 @@ Id Increment(std::atomic<Id>& counter, bool isAlone)
   return value;
 }
 
-/** The neighbors of the old tetrahedra, by the new places and turns of all. */
-void CollectNeighbors(const DelaunayTetrahedralization& all, const RawVector<Id>& places,
-  const RawVector<unsigned char>& turns, int numberOfThreads, TetMesh& mesh)
+/**
+ * Moves items to new places, in two halves: those of the second one wait at the front of the old
+ * array, whose rest is released. So the arrays never take more than 1.5 times the memory of one.
+ * @param places of the items; NoId: dropped. Both are used up
+ */
+void MoveToPlaces(RawVector<TetrahedronIds>& items, RawVector<Id>& places, int numberOfThreads,
+  RawVector<TetrahedronIds>& moved)
+{
+  const auto half = static_cast<Id>(moved.size() / 2);
+  const std::size_t blockSize =
+    std::max(SmallestBlock, items.size() / (8 * GetNumberOfThreads(numberOfThreads)) + 1);
+  const ParallelLoopOptions options{ numberOfThreads, blockSize };
+  std::vector<std::size_t> ends(GetNumberOfBlocks(items.size(), options));
+  ParallelLoop(items.size(), options, {}, "",
+    [&](std::size_t begin, std::size_t end, std::size_t block)
+    {
+      std::size_t kept = begin;
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        const Id place = places[i];
+        if (place != NoId && place < half)
+        {
+          moved[place] = items[i];
+        }
+        else if (place != NoId)
+        {
+          items[kept] = items[i];
+          places[kept++] = place;
+        }
+      }
+      ends[block] = kept;
+      ReleaseMemory(items, kept, end);
+    });
+  ParallelLoop(items.size(), options, {}, "",
+    [&](std::size_t begin, std::size_t, std::size_t block)
+    {
+      for (std::size_t i = begin; i < ends[block]; ++i)
+      {
+        moved[places[i]] = items[i];
+      }
+    });
+  items = RawVector<TetrahedronIds>();
+}
+
+/** The neighbors of the tetrahedra, by the new places and turns of all. */
+void RenumberNeighbors(const RawVector<Id>& places, const RawVector<unsigned char>& turns,
+  int numberOfThreads, RawVector<TetrahedronIds>& neighbors)
 {
   unsigned char inverse[12][4];
   for (int turn = 0; turn < 12; ++turn)
@@ -120,7 +166,6 @@ void CollectNeighbors(const DelaunayTetrahedralization& all, const RawVector<Id>
       inverse[turn][Turns[turn][i]] = static_cast<unsigned char>(i);
     }
   }
-  mesh.Neighbors.resize(mesh.Tetrahedra.size());
   ForEach(turns.size(), numberOfThreads,
     [&](std::size_t t)
     {
@@ -129,15 +174,14 @@ void CollectNeighbors(const DelaunayTetrahedralization& all, const RawVector<Id>
       {
         return;
       }
-      const TetrahedronIds& facets = all.Neighbors[t];
-      TetrahedronIds neighbors;
+      const TetrahedronIds facets = neighbors[t];
       for (int i = 0; i < 4; ++i)
       {
         const Id facet = facets[Turns[own][i]];
         const unsigned char turn = turns[facet / 4];
-        neighbors[i] = turn == NotMeshed ? NoId : 4 * places[facet / 4] + inverse[turn][facet % 4];
+        neighbors[t][i] =
+          turn == NotMeshed ? NoId : 4 * places[facet / 4] + inverse[turn][facet % 4];
       }
-      mesh.Neighbors[places[t]] = neighbors;
     });
 }
 } // namespace
@@ -147,9 +191,10 @@ void CollectTetrahedra(DelaunayTetrahedralization& all, RawVector<Id>& regions,
   const std::vector<Id>& points, int numberOfThreads, TetMesh& mesh)
 {
   const std::size_t slots = all.Tetrahedra.size();
-  // Their order within a vertex is left to chance here; it is settled below.
+  // Their order within a vertex is left to chance here; it is settled below. Ranks first, then
+  // places.
   std::vector<std::atomic<Id>> counts(points.size());
-  RawVector<Id> ranks(slots);
+  RawVector<Id> places(slots);
   RawVector<unsigned char> turns(slots);
   const bool isAlone = numberOfThreads <= 1;
   const TurnTable table;
@@ -159,7 +204,7 @@ void CollectTetrahedra(DelaunayTetrahedralization& all, RawVector<Id>& regions,
       turns[t] = regions[t] == NoId ? NotMeshed : table.Find(all.Tetrahedra[t]);
       if (turns[t] != NotMeshed)
       {
-        ranks[t] = Increment(counts[all.Tetrahedra[t][Turns[turns[t]][0]]], isAlone);
+        places[t] = Increment(counts[all.Tetrahedra[t][Turns[turns[t]][0]]], isAlone);
       }
     });
   std::vector<Id> starts(points.size() + 1, 0);
@@ -167,21 +212,22 @@ void CollectTetrahedra(DelaunayTetrahedralization& all, RawVector<Id>& regions,
   {
     starts[vertex + 1] = starts[vertex] + counts[vertex].load(std::memory_order_relaxed);
   }
-  // Where the tetrahedra of a vertex will be: the others of their vertices, and where they are now.
-  mesh.Tetrahedra.resize(static_cast<std::size_t>(starts.back()));
+  // The others of its vertices, and where it is now.
   ForEach(slots, numberOfThreads,
     [&](std::size_t t)
     {
-      if (turns[t] != NotMeshed)
+      if (turns[t] == NotMeshed)
       {
-        const TetrahedronIds& ids = all.Tetrahedra[t];
-        const unsigned char* const turn = Turns[turns[t]];
-        mesh.Tetrahedra[starts[ids[turn[0]]] + ranks[t]] = { ids[turn[1]], ids[turn[2]],
-          ids[turn[3]], static_cast<Id>(t) };
+        places[t] = NoId;
+        return;
       }
+      const TetrahedronIds ids = all.Tetrahedra[t];
+      const unsigned char* const turn = Turns[turns[t]];
+      places[t] += starts[ids[turn[0]]];
+      all.Tetrahedra[t] = { ids[turn[1]], ids[turn[2]], ids[turn[3]], static_cast<Id>(t) };
     });
-  all.Tetrahedra = RawVector<TetrahedronIds>();
-  ranks = RawVector<Id>();
+  mesh.Tetrahedra.resize(static_cast<std::size_t>(starts.back()));
+  MoveToPlaces(all.Tetrahedra, places, numberOfThreads, mesh.Tetrahedra);
   mesh.Regions.resize(mesh.Tetrahedra.size());
   ForEach(points.size(), numberOfThreads,
     [&](std::size_t vertex)
@@ -197,6 +243,10 @@ void CollectTetrahedra(DelaunayTetrahedralization& all, RawVector<Id>& regions,
         regions[item[3]] = place;
       }
     });
-  CollectNeighbors(all, regions, turns, numberOfThreads, mesh);
+  places = RawVector<Id>();
+  RenumberNeighbors(regions, turns, numberOfThreads, all.Neighbors);
+  turns = RawVector<unsigned char>();
+  mesh.Neighbors.resize(mesh.Tetrahedra.size());
+  MoveToPlaces(all.Neighbors, regions, numberOfThreads, mesh.Neighbors);
 }
 } // namespace cdm

@@ -29,7 +29,7 @@
  * overlap. InvalidInput is, without a surface, for fewer than four points, and for collinear or
  * coplanar ones. Aborted leaves a valid partial mesh and its front, empty before step 4.
  *
- * Cost: O(n log n) for usual distributions; 57 bytes per tetrahedron of the convex hull and 76 per
+ * Cost: O(n log n) for usual distributions; 49 bytes per tetrahedron of the convex hull and 83 per
  * point at the peak. See Testing/Benchmarks/README.md.
  */
 #ifndef cdmAdvancingFrontTetrahedralizer_h
