@@ -603,7 +603,7 @@ TEST(ComplexKinds, GivesUpSoonByTheCriterionDelaunay)
 
 TEST(ComplexKinds, Fans)
 {
-  ExpectFulfilled(MeshComplexes(ComplexKind::Fan, 800));
+  ExpectFulfilled(MeshComplexes(ComplexKind::Fan, 300));
 }
 
 /**

@@ -7,7 +7,8 @@ Each is meshed by the composite mesher with each criterion, and but for most sla
 One slab may miss a stronger criterion: then there is a mesh, a warning, and the mark Unresolved on the
 triangles. All others have to fulfil it. Tetrahedra that miss the radius-edge ratio or the dihedral
 angle, which are many at such angles, come with a warning. An independent validator has to find each
-mesh Delaunay and conforming. Prints a table. Exit status 77: no complexes.
+mesh Delaunay and conforming. Prints a table. Three slabs are taken, and all with CDM_ALL_MODELS=1 in the
+environment. Exit status 77: no complexes.
 """
 import argparse
 import csv
@@ -15,7 +16,7 @@ import os
 import sys
 import time
 
-from TestSteinerModels import validate
+from TestSteinerModels import find_left_out, validate
 from conforming_delaunay import vtkConformingDelaunayMesher
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
@@ -28,6 +29,9 @@ INEVITABLE = 4
 # Slabs have 130,000 to 270,000 points on the boundary. With Steiner points they take 15 to 40 seconds.
 TOO_LONG = {"slab_1017.vtp", "slab_1040.vtp", "slab_1063.vtp", "slab_1086.vtp", "slab_1132.vtp",
             "slab_1155.vtp", "slab_1224.vtp", "slab_1247.vtp", "slab_1270.vtp"}
+# A minute each with two criteria, and as long again for the validator; one of those that remain has Steiner
+# points, and one misses the stronger criteria.
+SLOW = TOO_LONG - {"slab_1063.vtp", "slab_1132.vtp"}
 # Two facets at 1e-6 radians in a slab of 0.001.
 MISSED = {"slab_1132.vtp"}
 
@@ -92,8 +96,9 @@ def main():
         if not os.path.isfile(needed):
             print("Skipped: there is no " + needed)
             return 77
+    left_out = find_left_out(SLOW)
     with open(index, newline="") as file:
-        files = [row["file"] for row in csv.DictReader(file)]
+        files = [row["file"] for row in csv.DictReader(file) if row["file"] not in left_out]
     failures = []
     print("%-18s %-22s %7s %8s %8s %9s %8s" % (
         "complex", "criterion", "Steiner", "points", "tets", "fulfilled", "seconds"))

@@ -7,12 +7,16 @@
 #include <vtkDataSet.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
+#include <vtkMultiProcessController.h>
 #include <vtkSMPTools.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <string>
+#include <thread>
 
 namespace vtkCoreBridge
 {
@@ -48,7 +52,24 @@ cdm::ExecutionContext MakeContext(vtkAlgorithm* filter)
 //--------------------------------------------------------------------------------------------------
 int GetNumberOfThreads()
 {
-  return vtkSMPTools::GetEstimatedNumberOfThreads();
+  if (vtkSMPTools::GetBackend() != std::string("Sequential") ||
+    std::getenv("VTK_SMP_BACKEND_IN_USE") != nullptr)
+  {
+    return vtkSMPTools::GetEstimatedNumberOfThreads();
+  }
+  // The sequential backend does not say which number was asked for.
+  const int asked =
+    vtk::detail::smp::vtkSMPToolsAPI::GetInstance().GetInternalDesiredNumberOfThread();
+  const char* const most = std::getenv("VTK_SMP_MAX_THREADS");
+  const int wanted = asked <= 0 && most != nullptr ? std::atoi(most) : asked;
+  if (wanted > 0)
+  {
+    return wanted;
+  }
+  vtkMultiProcessController* const controller = vtkMultiProcessController::GetGlobalController();
+  const int processes = controller != nullptr ? controller->GetNumberOfProcesses() : 1;
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  return std::max(1, cores / std::max(1, processes));
 }
 
 //--------------------------------------------------------------------------------------------------

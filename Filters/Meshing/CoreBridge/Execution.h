@@ -17,10 +17,16 @@ class vtkInformationVector;
 
 namespace vtkCoreBridge
 {
-/** Progress and abort of a filter for the engine, and as many threads as vtkSMPTools may use. */
+/** Progress and abort of a filter for the engine, and GetNumberOfThreads() threads. */
 cdm::ExecutionContext MakeContext(vtkAlgorithm* filter);
 
-/** As many as vtkSMPTools may use. */
+/**
+ * How many threads filters may use: as many as vtkSMPTools. The engine has threads of its own, so
+ * that it needs no backend that has some, and that of Debian's ParaView has none: with the
+ * sequential one it takes the number of vtkSMPTools::Initialize(), or else of VTK_SMP_MAX_THREADS,
+ * or else one for each core that this process has to itself. One thread if the sequential backend
+ * is asked for by VTK_SMP_BACKEND_IN_USE.
+ */
 int GetNumberOfThreads();
 
 /** body(i) for all items, on so many threads; for short work, without progress. */
