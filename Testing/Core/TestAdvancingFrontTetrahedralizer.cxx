@@ -811,6 +811,12 @@ TEST(AdvancingFront, StopsAtSnapshotsAndAborts)
     EXPECT_LT(static_cast<Id>(part.Mesh.Tetrahedra.size()), limit + 100);
     EXPECT_FALSE(part.Front.empty());
     checkPartial(part);
+    AdvancingFrontTetrahedralizerOutput onThreads;
+    ASSERT_TRUE(TetrahedralizeByAdvancingFront(
+      { &surface, &points, nullptr }, options, ExecutionContext(3), onThreads)
+                  .IsOk());
+    EXPECT_EQ(onThreads.Mesh.Tetrahedra, part.Mesh.Tetrahedra);
+    EXPECT_EQ(onThreads.Front, part.Front);
   }
   // Once while the points are tetrahedralized, once when the front advances.
   for (const std::string activity : { "Tetrahedralizing the points", "Advancing the front" })

@@ -224,9 +224,12 @@ Status AdvancingFront::CollectPoints()
 
 Status AdvancingFront::TetrahedralizePoints()
 {
+  // Where a front goes first depends on the order in which tetrahedra and their vertices were
+  // listed: if it may be stopped, several threads would leave another part of the mesh.
+  const int numberOfThreads =
+    this->Options.MaximumNumberOfTetrahedra > 0 ? 1 : this->NumberOfThreads;
   const Status status = BuildDelaunayTetrahedralization(this->VertexPoints, this->Order,
-    FindGridBlock(this->VertexPoints), this->NumberOfThreads, this->Context.Part(0.05, 0.6),
-    this->All);
+    FindGridBlock(this->VertexPoints), numberOfThreads, this->Context.Part(0.05, 0.6), this->All);
   if (!status.IsOk())
   {
     // A surface of a few points or in a plane has nothing within.
