@@ -89,11 +89,14 @@ void ReleaseMemory(RawVector<T>& items, std::size_t begin, std::size_t end)
   }
   // Whole pages only: their other elements stay.
   const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-  const auto first = (reinterpret_cast<std::uintptr_t>(items.data() + begin) + page - 1) / page;
-  const auto last = reinterpret_cast<std::uintptr_t>(items.data() + end) / page;
-  if (first < last)
+  char* const first = reinterpret_cast<char*>(items.data() + begin);
+  char* const last = reinterpret_cast<char*>(items.data() + end);
+  const auto size = static_cast<std::size_t>(last - first);
+  const std::size_t before = (page - reinterpret_cast<std::uintptr_t>(first) % page) % page;
+  const std::size_t after = reinterpret_cast<std::uintptr_t>(last) % page;
+  if (size > before + after)
   {
-    madvise(reinterpret_cast<void*>(first * page), (last - first) * page, MADV_DONTNEED);
+    madvise(first + before, size - before - after, MADV_DONTNEED);
   }
 #else
   static_cast<void>(items);
