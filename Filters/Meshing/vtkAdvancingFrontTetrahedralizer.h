@@ -40,9 +40,8 @@
  * takes its mark back. Filters downstream decide for themselves whether they run on it.)
  *
  * Cost: O(n log n) for usual distributions; 49 bytes per tetrahedron of all points at the peak, 36
- * for those of the result.
- * Uses as many threads as vtkSMPTools, or one for each core where that is sequential; the result
- * does not depend on them.
+ * for those of the result. Uses as many threads as vtkSMPTools, or one for each core where that is
+ * sequential; the result does not depend on them.
  *
  * References: P. Fleischmann, "Mesh Generation for Technology CAD in Three Dimensions", TU Wien
  * 1999: the modified advancing front. Filters/Core/Volume/AdvancingFrontTetrahedralizer.h is the

@@ -83,15 +83,20 @@ bool ParallelLoop(std::size_t count, const ParallelLoopOptions& options,
 }
 
 /**
- * Calls work(begin, end) for parts of the numbers below size. The parts are large, because threads
- * that write close to each other in memory wait for each other.
+ * Large blocks of the numbers below size, because threads that write close to each other in memory
+ * wait for each other.
  */
+inline ParallelLoopOptions MakeLargeBlocks(std::size_t size, int numberOfThreads)
+{
+  return { numberOfThreads,
+    std::max(std::size_t(1) << 15, size / (8 * GetNumberOfThreads(numberOfThreads)) + 1) };
+}
+
+/** Calls work(begin, end) for large blocks of the numbers below size. */
 template <typename Work>
 void ForAll(std::size_t size, int numberOfThreads, const Work& work)
 {
-  const std::size_t part =
-    std::max(std::size_t(1) << 15, size / (8 * GetNumberOfThreads(numberOfThreads)) + 1);
-  ParallelLoop(size, { numberOfThreads, part }, {}, "",
+  ParallelLoop(size, MakeLargeBlocks(size, numberOfThreads), {}, "",
     [&work](std::size_t begin, std::size_t end, std::size_t) { work(begin, end); });
 }
 

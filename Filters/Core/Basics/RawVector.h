@@ -80,7 +80,8 @@ using RawVector = std::vector<T, RawAllocator<T>>;
  * the vector ends. Their values are lost.
  */
 template <typename T>
-void ReleaseMemory(RawVector<T>& items, std::size_t begin, std::size_t end)
+void ReleaseMemory([[maybe_unused]] RawVector<T>& items, [[maybe_unused]] std::size_t begin,
+  [[maybe_unused]] std::size_t end)
 {
 #ifdef __linux__
   if (items.size() < RawAllocator<T>::LargePage / sizeof(T))
@@ -98,10 +99,6 @@ void ReleaseMemory(RawVector<T>& items, std::size_t begin, std::size_t end)
   {
     madvise(first + before, size - before - after, MADV_DONTNEED);
   }
-#else
-  static_cast<void>(items);
-  static_cast<void>(begin);
-  static_cast<void>(end);
 #endif
 }
 } // namespace cdm

@@ -18,8 +18,6 @@ constexpr unsigned char Turns[12][4] = { { 0, 1, 2, 3 }, { 0, 2, 3, 1 }, { 0, 3,
   { 1, 0, 3, 2 }, { 1, 3, 2, 0 }, { 1, 2, 0, 3 }, { 2, 0, 1, 3 }, { 2, 1, 3, 0 }, { 2, 3, 0, 1 },
   { 3, 0, 2, 1 }, { 3, 2, 1, 0 }, { 3, 1, 0, 2 } };
 constexpr unsigned char NotMeshed = 12;
-/** Items that a thread moves at once. */
-constexpr std::size_t SmallestBlock = std::size_t(1) << 15;
 
 /**
  * The permutation that puts the lowest vertex first and the second lowest after it, by which vertices
@@ -119,9 +117,7 @@ void MoveToPlaces(RawVector<TetrahedronIds>& items, RawVector<Id>& places, int n
   RawVector<TetrahedronIds>& moved)
 {
   const auto half = static_cast<Id>(moved.size() / 2);
-  const std::size_t blockSize =
-    std::max(SmallestBlock, items.size() / (8 * GetNumberOfThreads(numberOfThreads)) + 1);
-  const ParallelLoopOptions options{ numberOfThreads, blockSize };
+  const ParallelLoopOptions options = MakeLargeBlocks(items.size(), numberOfThreads);
   std::vector<std::size_t> ends(GetNumberOfBlocks(items.size(), options));
   ParallelLoop(items.size(), options, {}, "",
     [&](std::size_t begin, std::size_t end, std::size_t block)
@@ -154,7 +150,31 @@ void MoveToPlaces(RawVector<TetrahedronIds>& items, RawVector<Id>& places, int n
   items = RawVector<TetrahedronIds>();
 }
 
-/** The neighbors of the tetrahedra, by the new places and turns of all. */
+/**
+ * Sorts the tetrahedra of each vertex, and lists them by their points and regions.
+ * @param starts where the tetrahedra of each vertex begin
+ * @param regions by old indices; then the new index of each, NoId if it has none
+ */
+void SortStars(const std::vector<Id>& starts, const std::vector<Id>& points, int numberOfThreads,
+  RawVector<Id>& regions, TetMesh& mesh)
+{
+  mesh.Regions.resize(mesh.Tetrahedra.size());
+  ForEach(points.size(), numberOfThreads,
+    [&](std::size_t vertex)
+    {
+      SortStar(mesh.Tetrahedra.data() + starts[vertex], starts[vertex + 1] - starts[vertex]);
+      for (Id place = starts[vertex]; place < starts[vertex + 1]; ++place)
+      {
+        const TetrahedronIds item = mesh.Tetrahedra[place];
+        mesh.Tetrahedra[place] = { points[vertex], points[item[0]], points[item[1]],
+          points[item[2]] };
+        mesh.Regions[place] = regions[item[3]];
+        regions[item[3]] = place;
+      }
+    });
+}
+
+/** Replaces the neighbors of tetrahedra by their new facet ids, from the places and turns of all. */
 void RenumberNeighbors(const RawVector<Id>& places, const RawVector<unsigned char>& turns,
   int numberOfThreads, RawVector<TetrahedronIds>& neighbors)
 {
@@ -228,21 +248,7 @@ void CollectTetrahedra(DelaunayTetrahedralization& all, RawVector<Id>& regions,
     });
   mesh.Tetrahedra.resize(static_cast<std::size_t>(starts.back()));
   MoveToPlaces(all.Tetrahedra, places, numberOfThreads, mesh.Tetrahedra);
-  mesh.Regions.resize(mesh.Tetrahedra.size());
-  ForEach(points.size(), numberOfThreads,
-    [&](std::size_t vertex)
-    {
-      SortStar(mesh.Tetrahedra.data() + starts[vertex], starts[vertex + 1] - starts[vertex]);
-      for (Id place = starts[vertex]; place < starts[vertex + 1]; ++place)
-      {
-        const TetrahedronIds item = mesh.Tetrahedra[place];
-        mesh.Tetrahedra[place] = { points[vertex], points[item[0]], points[item[1]],
-          points[item[2]] };
-        mesh.Regions[place] = regions[item[3]];
-        // From here on regions holds the new index.
-        regions[item[3]] = place;
-      }
-    });
+  SortStars(starts, points, numberOfThreads, regions, mesh);
   places = RawVector<Id>();
   RenumberNeighbors(regions, turns, numberOfThreads, all.Neighbors);
   turns = RawVector<unsigned char>();
