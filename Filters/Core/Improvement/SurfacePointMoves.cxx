@@ -43,35 +43,6 @@ constexpr SearchEffort SharpEffort{ 1, 1 };
 constexpr std::size_t FewestSlivers = 300;
 constexpr double LeastRatio = 0.02;
 
-/** Opposite ways in a plane, or along a line. */
-std::vector<Vec3> MakeDirections(const Vec3& axis, bool isLine)
-{
-  if (isLine)
-  {
-    return { axis, -1.0 * axis };
-  }
-  // The axis along which the plane has no component stays exact.
-  Vec3 least;
-  least[std::abs(axis.X) <= std::abs(axis.Y) && std::abs(axis.X) <= std::abs(axis.Z) ? 0
-      : std::abs(axis.Y) <= std::abs(axis.Z)                                         ? 1
-                                                                                     : 2] = 1.0;
-  Vec3 u = Cross(axis, least);
-  u = (1.0 / Norm(u)) * u;
-  const Vec3 v = Cross(axis, u);
-  std::vector<Vec3> directions;
-  for (int i = -1; i <= 1; ++i)
-  {
-    for (int j = -1; j <= 1; ++j)
-    {
-      if (i != 0 || j != 0)
-      {
-        directions.push_back(static_cast<double>(i) * u + static_cast<double>(j) * v);
-      }
-    }
-  }
-  return directions;
-}
-
 /** Unit vectors along a coordinate axis are exact: a factor of 1 / norm would be rounded. */
 Vec3 GetUnitVector(const Vec3& v)
 {

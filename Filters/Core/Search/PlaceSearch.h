@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace cdm
@@ -59,6 +60,35 @@ inline std::vector<Vec3> MakeCubeDirections()
     {
       const std::array<int, 3> cell{ i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1 };
       directions.push_back({ double(cell[0]), double(cell[1]), double(cell[2]) });
+    }
+  }
+  return directions;
+}
+
+/** Opposite ways in the plane normal to a unit vector, or along it. */
+inline std::vector<Vec3> MakeDirections(const Vec3& axis, bool isLine)
+{
+  if (isLine)
+  {
+    return { axis, -1.0 * axis };
+  }
+  // The axis along which the plane has no component stays exact.
+  Vec3 least;
+  least[std::abs(axis.X) <= std::abs(axis.Y) && std::abs(axis.X) <= std::abs(axis.Z) ? 0
+      : std::abs(axis.Y) <= std::abs(axis.Z)                                         ? 1
+                                                                                     : 2] = 1.0;
+  Vec3 u = Cross(axis, least);
+  u = (1.0 / Norm(u)) * u;
+  const Vec3 v = Cross(axis, u);
+  std::vector<Vec3> directions;
+  for (int i = -1; i <= 1; ++i)
+  {
+    for (int j = -1; j <= 1; ++j)
+    {
+      if (i != 0 || j != 0)
+      {
+        directions.push_back(static_cast<double>(i) * u + static_cast<double>(j) * v);
+      }
     }
   }
   return directions;

@@ -71,6 +71,8 @@ private:
   void FlipEdge(const EdgeIds& edge);
   bool Smooth(const ExecutionContext& context);
   bool EnlargeAngles(const ExecutionContext& context);
+  void EnlargeAngle(Id point);
+  std::vector<Vec3> FindDirections(Id point) const;
   bool FindBetterPlace(Id point, Vec3& place) const;
   bool Move(Id point, const Vec3& place);
   double GetWorstAngleCosine(
