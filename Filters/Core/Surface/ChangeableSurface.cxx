@@ -494,32 +494,32 @@ bool ChangeableSurface::KeepsSpaces(const SurfaceChange& change) const
 
 bool ChangeableSurface::KeepsBound(const SurfaceChange& change)
 {
-  this->AddedEdges.clear();
+  this->ChainChange = {};
+  this->ChainChange.Removed = change.RemovedEdges;
   for (const EdgeIds& edge : change.AddedEdges)
   {
-    this->AddedEdges.push_back(
+    this->ChainChange.Added.push_back(
       MakeSegment(this->Points, edge, this->Chains[change.RemovedEdges.front()]));
   }
-  this->AddedTriangles.clear();
-  std::vector<Id> neighbors;
+  this->FacetChange = {};
+  this->FacetChange.Removed = change.Removed;
   for (const NewTriangle& added : change.Added)
   {
-    this->AddedTriangles.push_back({ this->GetCorners(added.Points), this->Facets[added.Source] });
+    this->FacetChange.Added.push_back(
+      { this->GetCorners(added.Points), this->Facets[added.Source] });
     for (const Id point : added.Points)
     {
-      neighbors.insert(neighbors.end(), this->Uses[point].begin(), this->Uses[point].end());
+      this->FacetChange.Neighbors.insert(
+        this->FacetChange.Neighbors.end(), this->Uses[point].begin(), this->Uses[point].end());
     }
   }
-  const auto isNear = [](const DeviationBound& bound)
-  { return [&bound](const BoundSimplex& simplex) { return bound.IsNear(simplex); }; };
-  this->EdgeProofs.clear();
-  this->TriangleProofs.clear();
-  return std::all_of(this->AddedEdges.begin(), this->AddedEdges.end(), isNear(this->ChainBound)) &&
-    std::all_of(
-      this->AddedTriangles.begin(), this->AddedTriangles.end(), isNear(this->FacetBound)) &&
-    this->ChainBound.FindWitnesses(change.RemovedEdges, this->AddedEdges, {}, this->EdgeProofs) &&
-    this->FacetBound.FindWitnesses(
-      change.Removed, this->AddedTriangles, neighbors, this->TriangleProofs);
+  if (!this->ChainBound.Prove(this->ChainChange, this->ChainProof))
+  {
+    return false;
+  }
+  // Facets end at chains.
+  this->FacetChange.BorderShift = this->ChainProof.IsShift ? this->ChainProof.Shift : Infinity;
+  return this->FacetBound.Prove(this->FacetChange, this->FacetProof);
 }
 
 void ChangeableSurface::Commit(const SurfaceChange& change)
@@ -574,7 +574,7 @@ void ChangeableSurface::Commit(const SurfaceChange& change)
     }
     ids.push_back(t);
   }
-  this->FacetBound.Replace(change.Removed, this->AddedTriangles, ids, this->TriangleProofs);
+  this->FacetBound.Replace(this->FacetChange, ids, this->FacetProof);
   this->CommitEdges(change);
 }
 
@@ -608,6 +608,6 @@ void ChangeableSurface::CommitEdges(const SurfaceChange& change)
       this->EdgesAt[point].push_back(ids.back());
     }
   }
-  this->ChainBound.Replace(change.RemovedEdges, this->AddedEdges, ids, this->EdgeProofs);
+  this->ChainBound.Replace(this->ChainChange, ids, this->ChainProof);
 }
 } // namespace cdm

@@ -144,11 +144,11 @@ private:
   BoxOctree Boxes;
   DeviationBound FacetBound;
   DeviationBound ChainBound;
-  /** New simplices of a change, and the proofs that KeepsBound() has found. */
-  std::vector<BoundSimplex> AddedTriangles;
-  std::vector<BoundSimplex> AddedEdges;
-  std::vector<DeviationBound::Proof> TriangleProofs;
-  std::vector<DeviationBound::Proof> EdgeProofs;
+  /** What KeepsBound() has proven last. */
+  BoundChange FacetChange;
+  BoundChange ChainChange;
+  DeviationBound::ChangeProof FacetProof;
+  DeviationBound::ChangeProof ChainProof;
 };
 } // namespace cdm
 

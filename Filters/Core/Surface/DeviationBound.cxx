@@ -13,20 +13,16 @@ namespace
 {
 /** Room for rounding, as a ratio of the bound. */
 constexpr double Slack = 1e-9;
+/** By how much simplices may shift altogether, see DeviationBound::Prove(), as a ratio of the bound. */
+constexpr double AllShiftsRatio = 1e-4;
+/** The same for one replacement: more is no rounding. */
+constexpr double ShiftRatio = 1e-9;
 /** Pieces are not subdivided below this ratio of the bound. */
 constexpr double SmallestPieceRatio = 1.0 / 16.0;
 /** How far a corner may be from a plane that does not cut it off, as a ratio of the piece. */
 constexpr double CutTolerance = 1e-9;
 /** Room for rounding where a piece is cut to a box, as a ratio of the bound. */
 constexpr double ClipMargin = 1e-2;
-
-Vec3 FindNearestOnSegment(const Vec3& a, const Vec3& b, const Vec3& position)
-{
-  const Vec3 edge = b - a;
-  const double square = SquaredNorm(edge);
-  const double along = square > 0.0 ? Dot(position - a, edge) / square : 0.0;
-  return along <= 0.0 ? a : along >= 1.0 ? b : a + along * edge;
-}
 
 double GetSquaredDistance(const std::array<Vec3, 3>& corners, const Vec3& position)
 {
@@ -39,7 +35,7 @@ struct Piece
   static constexpr int Capacity = 16;
 
   explicit Piece(const std::array<Vec3, 3>& corners)
-    : Corners{ corners[0], corners[1], corners[2] }, Count(corners[1] == corners[2] ? 2 : 3)
+    : Corners{ corners[0], corners[1], corners[2] }, Count(IsSegment(corners) ? 2 : 3)
   {
   }
   Piece() = default;
@@ -310,46 +306,9 @@ bool AddWitnesses(const Piece& piece, Id group, const std::vector<BoundSimplex>&
 }
 } // namespace
 
-// By the regions of Voronoi of its corners, edges and inside: C. Ericson, "Real-Time Collision
-// Detection", 2005, 5.1.5.
-Vec3 FindNearestPoint(const std::array<Vec3, 3>& corners, const Vec3& position)
-{
-  const auto& [a, b, c] = corners;
-  if (b == c)
-  {
-    return FindNearestOnSegment(a, b, position);
-  }
-  const Vec3 ab = b - a;
-  const Vec3 ac = c - a;
-  const Vec3 ap = position - a;
-  const double abp = Dot(ab, ap);
-  const double acp = Dot(ac, ap);
-  if (abp <= 0.0 && acp <= 0.0)
-  {
-    return a;
-  }
-  const double abab = SquaredNorm(ab);
-  const double abac = Dot(ab, ac);
-  const double acac = SquaredNorm(ac);
-  const double weightB = acac * abp - abac * acp;
-  const double weightC = abab * acp - abac * abp;
-  const double sum = abab * acac - abac * abac;
-  if (sum > 0.0 && weightB > 0.0 && weightC > 0.0 && weightB + weightC < sum)
-  {
-    return a + (weightB / sum) * ab + (weightC / sum) * ac;
-  }
-  Vec3 nearest = FindNearestOnSegment(a, b, position);
-  for (const Vec3& other :
-    { FindNearestOnSegment(b, c, position), FindNearestOnSegment(c, a, position) })
-  {
-    nearest = SquaredNorm(other - position) < SquaredNorm(nearest - position) ? other : nearest;
-  }
-  return nearest;
-}
-
 DeviationBound::DeviationBound(std::vector<BoundSimplex> original, double bound)
-  : Original(std::move(original)), Current(this->Original), Bound(bound * (1.0 - Slack)),
-    Tree(GetBoxes(this->Original))
+  : Original(std::move(original)), Current(this->Original),
+    Bound(bound * (1.0 - Slack - AllShiftsRatio)), Tree(GetBoxes(this->Original))
 {
   for (Id i = 0; i < static_cast<Id>(this->Original.size()); ++i)
   {
@@ -408,30 +367,125 @@ bool DeviationBound::FindNearest(
   return simplex != NoId;
 }
 
-bool DeviationBound::FindWitnesses(const std::vector<Id>& removed,
-  const std::vector<BoundSimplex>& added, const std::vector<Id>& neighbors,
-  std::vector<Proof>& proofs) const
+bool DeviationBound::Prove(const BoundChange& change, ChangeProof& proof) const
 {
-  // What is farther from the simplices that go is within the bound of those that stay.
-  const double reach = (1.0 + ClipMargin) * this->Bound;
-  Box lost;
+  proof.Originals.clear();
+  proof.Shift = 0.0;
+  std::vector<Id> groups;
+  for (const BoundSimplex& added : change.Added)
+  {
+    groups.push_back(added.Group);
+  }
+  SortUnique(groups);
+  std::vector<Id> shifted;
+  for (const Id group : groups)
+  {
+    const double shift = this->GetGroupShift(change, group);
+    if (shift < Infinity)
+    {
+      shifted.push_back(group);
+      proof.Shift = std::max(proof.Shift, shift);
+    }
+  }
+  proof.IsShift = shifted.size() == groups.size();
+  return std::all_of(change.Added.begin(), change.Added.end(),
+           [&](const BoundSimplex& added)
+           { return Contains(shifted, added.Group) || this->IsNear(added); }) &&
+    this->FindWitnesses(change, shifted, proof.Originals);
+}
+
+/** By how much a change shifts what simplices of a group cover; infinity if that has to be searched. */
+double DeviationBound::GetGroupShift(const BoundChange& change, Id group) const
+{
+  std::vector<BoundSimplex> removed;
+  std::vector<BoundSimplex> added;
+  for (const Id id : change.Removed)
+  {
+    if (this->Current[id].Group == group)
+    {
+      removed.push_back(this->Current[id]);
+    }
+  }
+  std::copy_if(change.Added.begin(), change.Added.end(), std::back_inserter(added),
+    [group](const BoundSimplex& simplex) { return simplex.Group == group; });
+  const double shift = change.BorderShift + GetShift(removed, added);
+  return shift <= ShiftRatio * this->Bound &&
+      this->AllShifts + shift <= AllShiftsRatio * this->Bound
+    ? shift
+    : Infinity;
+}
+
+/** Original simplices that lose a witness. */
+std::vector<Id> DeviationBound::FindAffected(const std::vector<Id>& removed) const
+{
   std::vector<Id> affected;
   for (const Id id : removed)
   {
-    lost.Add(GetBox(this->Current[id].Corners, reach));
     affected.insert(affected.end(), this->Proven[id].begin(), this->Proven[id].end());
   }
   SortUnique(affected);
   // What takes longest comes last: most changes that are refused are so before.
   std::stable_sort(affected.begin(), affected.end(),
     [this](Id a, Id b) { return this->Witnesses[a].size() < this->Witnesses[b].size(); });
-  std::vector<BoundSimplex> offered = added;
+  return affected;
+}
+
+bool DeviationBound::FindWitnesses(
+  const BoundChange& change, const std::vector<Id>& shifted, std::vector<Proof>& proofs) const
+{
+  const std::vector<Id> affected = this->FindAffected(change.Removed);
+  std::vector<Id> searched;
+  for (const Id original : affected)
+  {
+    const BoundSimplex& simplex = this->Original[original];
+    if (!Contains(shifted, simplex.Group))
+    {
+      searched.push_back(original);
+      continue;
+    }
+    // What the simplices that go cover is covered by the new ones.
+    Proof proof = this->MakeProof(original, change.Removed);
+    const Box box = GetBox(simplex.Corners, (1.0 + ClipMargin) * this->Bound);
+    for (std::size_t i = 0; i < change.Added.size(); ++i)
+    {
+      if (change.Added[i].Group == simplex.Group &&
+        GetBox(change.Added[i].Corners, 0.0).Overlaps(box))
+      {
+        proof.Witnesses.push_back(~static_cast<Id>(i));
+      }
+    }
+    proofs.push_back(std::move(proof));
+  }
+  return searched.empty() || this->SearchWitnesses(change, searched, proofs);
+}
+
+/** The witnesses that are left to an original simplex. */
+DeviationBound::Proof DeviationBound::MakeProof(Id original, const std::vector<Id>& removed) const
+{
+  Proof proof{ original, this->Witnesses[original] };
+  proof.Witnesses.erase(std::remove_if(proof.Witnesses.begin(), proof.Witnesses.end(),
+                          [&removed](Id witness) { return Contains(removed, witness); }),
+    proof.Witnesses.end());
+  return proof;
+}
+
+bool DeviationBound::SearchWitnesses(
+  const BoundChange& change, const std::vector<Id>& affected, std::vector<Proof>& proofs) const
+{
+  // What is farther from the simplices that go is within the bound of those that stay.
+  const double reach = (1.0 + ClipMargin) * this->Bound;
+  Box lost;
+  for (const Id id : change.Removed)
+  {
+    lost.Add(GetBox(this->Current[id].Corners, reach));
+  }
+  std::vector<BoundSimplex> offered = change.Added;
   std::vector<Id> numbers;
-  for (std::size_t i = 0; i < added.size(); ++i)
+  for (std::size_t i = 0; i < change.Added.size(); ++i)
   {
     numbers.push_back(~static_cast<Id>(i));
   }
-  std::vector<Id> others = neighbors;
+  std::vector<Id> others = change.Neighbors;
   for (const Id original : affected)
   {
     others.insert(others.end(), this->Witnesses[original].begin(), this->Witnesses[original].end());
@@ -440,7 +494,7 @@ bool DeviationBound::FindWitnesses(const std::vector<Id>& removed,
   for (const Id other : others)
   {
     const BoundSimplex& current = this->Current[other];
-    if (!Contains(removed, other) && GetBox(current.Corners, reach).Overlaps(lost))
+    if (!Contains(change.Removed, other) && GetBox(current.Corners, reach).Overlaps(lost))
     {
       offered.push_back(current);
       numbers.push_back(other);
@@ -449,10 +503,7 @@ bool DeviationBound::FindWitnesses(const std::vector<Id>& removed,
   ProofSearch search(offered, this->Bound);
   for (const Id original : affected)
   {
-    Proof proof{ original, this->Witnesses[original] };
-    proof.Witnesses.erase(std::remove_if(proof.Witnesses.begin(), proof.Witnesses.end(),
-                            [&removed](Id witness) { return Contains(removed, witness); }),
-      proof.Witnesses.end());
+    Proof proof = this->MakeProof(original, change.Removed);
     const BoundSimplex& simplex = this->Original[original];
     Piece piece(simplex.Corners);
     if (ClipToBox(piece, lost) &&
@@ -465,19 +516,20 @@ bool DeviationBound::FindWitnesses(const std::vector<Id>& removed,
   return true;
 }
 
-void DeviationBound::Replace(const std::vector<Id>& removed, const std::vector<BoundSimplex>& added,
-  const std::vector<Id>& ids, const std::vector<Proof>& proofs)
+void DeviationBound::Replace(
+  const BoundChange& change, const std::vector<Id>& ids, const ChangeProof& changeProof)
 {
+  this->AllShifts += changeProof.Shift;
   const auto drop = [](std::vector<Id>& from, Id id)
   { from.erase(std::remove(from.begin(), from.end(), id), from.end()); };
-  for (const Proof& proof : proofs)
+  for (const Proof& proof : changeProof.Originals)
   {
     for (const Id witness : this->Witnesses[proof.Original])
     {
       drop(this->Proven[witness], proof.Original);
     }
   }
-  for (const Id id : removed)
+  for (const Id id : change.Removed)
   {
     this->Proven[id].clear();
   }
@@ -488,9 +540,9 @@ void DeviationBound::Replace(const std::vector<Id>& removed, const std::vector<B
       this->Current.resize(ids[i] + 1);
       this->Proven.resize(this->Current.size());
     }
-    this->Current[ids[i]] = added[i];
+    this->Current[ids[i]] = change.Added[i];
   }
-  for (const Proof& proof : proofs)
+  for (const Proof& proof : changeProof.Originals)
   {
     std::vector<Id>& witnesses = this->Witnesses[proof.Original];
     witnesses = proof.Witnesses;

@@ -14,7 +14,9 @@
  *  2. from the original to the current in the same way. The current simplices that prove an original
  *     one are its witnesses: when some of them go, what lies near these is proven again, with those
  *     that are left, the new simplices and their neighbors.
- * Pieces are not cut below a sixteenth of the bound: what is not proven then is refused.
+ * Pieces are not cut below a sixteenth of the bound: what is not proven then is refused. Nothing is
+ * cut where simplices lie in a plane or on a line, and cover the same part of it as those that go:
+ * they prove what these did, and more is not searched than which of them are close (BoundSimplex.h).
  *
  * Guarantees: after any number of replacements the Hausdorff distance of each group of the current
  * simplices from the same group of the original is at most the bound, but for rounding.
@@ -29,25 +31,24 @@
 #ifndef cdmDeviationBound_h
 #define cdmDeviationBound_h
 
-#include "Core/Basics/Types.h"
-#include "Core/Basics/Vec3.h"
 #include "Core/Search/BoxTree.h"
+#include "Core/Surface/BoundSimplex.h"
 
-#include <array>
 #include <vector>
 
 namespace cdm
 {
-/** A triangle, or a segment, whose last corner is repeated. */
-struct BoundSimplex
+/** Simplices that take the place of others. */
+struct BoundChange
 {
-  std::array<Vec3, 3> Corners;
-  /** The facet or chain that it belongs to. */
-  Id Group = NoId;
+  /** Numbers of those that go. */
+  std::vector<Id> Removed;
+  std::vector<BoundSimplex> Added;
+  /** Current simplices that may help to prove it. */
+  std::vector<Id> Neighbors;
+  /** How far the border of those that go moves, if they lie in a plane. Infinity: not known. */
+  double BorderShift = 0.0;
 };
-
-/** The point of a simplex that is nearest to a position. */
-Vec3 FindNearestPoint(const std::array<Vec3, 3>& corners, const Vec3& position);
 
 class DeviationBound
 {
@@ -56,9 +57,6 @@ public:
   DeviationBound(std::vector<BoundSimplex> original, double bound);
 
   double GetBound() const { return this->Bound; }
-
-  /** Whether all points of a simplex lie within the bound of the original of its group. */
-  bool IsNear(const BoundSimplex& simplex) const;
 
   /**
    * The nearest point of the original of a group, and its simplex; false if there is none within
@@ -73,24 +71,46 @@ public:
     std::vector<Id> Witnesses;
   };
 
+  /** What Replace() has to know of a change. */
+  struct ChangeProof
+  {
+    std::vector<Proof> Originals;
+    /** By how much new simplices are farther from the original than those that go, where they shift. */
+    double Shift = 0.0;
+    /** Whether all of them do. */
+    bool IsShift = false;
+  };
+
   /**
-   * Proves the original simplices that lose a witness, where they may need it. neighbors: current
-   * simplices that may help. False if that fails.
+   * Whether a change keeps all within the bound.
+   *
+   * Simplices of a group shift if they cover the same part of a plane or line as those that go, but
+   * for rounding (GetShift()). Nothing has to be searched for these. What all shifts may add up to
+   * is taken off the bound; once it is used up, everything is searched.
    */
-  bool FindWitnesses(const std::vector<Id>& removed, const std::vector<BoundSimplex>& added,
-    const std::vector<Id>& neighbors, std::vector<Proof>& proofs) const;
+  bool Prove(const BoundChange& change, ChangeProof& proof) const;
 
   /**
    * ids: the numbers of the new simplices, which may be those of the ones that go, or any that are
    * free.
    */
-  void Replace(const std::vector<Id>& removed, const std::vector<BoundSimplex>& added,
-    const std::vector<Id>& ids, const std::vector<Proof>& proofs);
+  void Replace(
+    const BoundChange& change, const std::vector<Id>& ids, const ChangeProof& changeProof);
 
 private:
+  double GetGroupShift(const BoundChange& change, Id group) const;
+  bool IsNear(const BoundSimplex& simplex) const;
+  std::vector<Id> FindAffected(const std::vector<Id>& removed) const;
+  Proof MakeProof(Id original, const std::vector<Id>& removed) const;
+  bool FindWitnesses(
+    const BoundChange& change, const std::vector<Id>& shifted, std::vector<Proof>& proofs) const;
+  bool SearchWitnesses(
+    const BoundChange& change, const std::vector<Id>& affected, std::vector<Proof>& proofs) const;
+
   std::vector<BoundSimplex> Original;
   std::vector<BoundSimplex> Current;
   double Bound;
+  double AllShifts = 0.0;
   BoxTree Tree;
   /** For each original simplex its witnesses, and the other way around. */
   std::vector<std::vector<Id>> Witnesses;
