@@ -131,7 +131,8 @@ TEST(DeviationBound, ShiftsAreProvenWithoutSearch)
   std::uniform_real_distribution<double> offset(-0.25, 0.25);
   const std::vector<Vec3> ring = MakeRing(random);
   const auto original = MakeFan(ring, {});
-  DeviationBound bound(original, 0.01);
+  ThreadTeam threads(2);
+  DeviationBound bound(original, 0.01, threads);
   BoundChange change;
   std::vector<Id> ids;
   for (Id i = 0; i < Corners; ++i)

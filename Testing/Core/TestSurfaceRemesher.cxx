@@ -340,8 +340,8 @@ void Check(const TriangleMesh& input, const SurfaceRemesherOutput& output, doubl
   }
 }
 
-SurfaceRemesherOutput Remesh(
-  const TriangleMesh& surface, double length, double deviation, const std::vector<Id>& facets = {})
+SurfaceRemesherOutput Remesh(const TriangleMesh& surface, double length, double deviation,
+  const std::vector<Id>& facets = {}, int numberOfThreads = 1)
 {
   SurfaceRemesherInput input;
   input.Surface = &surface;
@@ -350,7 +350,8 @@ SurfaceRemesherOutput Remesh(
   options.EdgeLength = length;
   options.MaximumDeviation = deviation;
   SurfaceRemesherOutput output;
-  const Status status = RemeshSurface(input, options, {}, output);
+  const ExecutionContext context(numberOfThreads);
+  const Status status = RemeshSurface(input, options, context, output);
   EXPECT_TRUE(status.IsOk()) << status.Message;
   return output;
 }
@@ -616,6 +617,24 @@ TEST(SurfaceRemesher, DoesNotDependOnTheScale)
     for (std::size_t i = 0; i < first.Surface.Points.size(); ++i)
     {
       EXPECT_EQ(output.Surface.Points[i], scale * first.Surface.Points[i]);
+    }
+  }
+}
+
+TEST(SurfaceRemesher, IsTheSameForAnyNumberOfThreads)
+{
+  std::mt19937 generator(3);
+  const TriangleMesh bumpy = MakeBumpySphere(12, 0.01, generator);
+  const TriangleMesh plane = MakeTwoRegions(4, 0.0);
+  for (const TriangleMesh* surface : { &bumpy, &plane })
+  {
+    const SurfaceRemesherOutput first = Remesh(*surface, 0.2, 0.02);
+    for (const int threads : { 2, 5 })
+    {
+      const SurfaceRemesherOutput output = Remesh(*surface, 0.2, 0.02, {}, threads);
+      EXPECT_EQ(output.Surface.Points, first.Surface.Points);
+      EXPECT_EQ(output.Surface.Triangles, first.Surface.Triangles);
+      EXPECT_EQ(output.Surface.SourceCells, first.Surface.SourceCells);
     }
   }
 }

@@ -79,12 +79,12 @@ Id GetApex(const TriangleIds& ids, const EdgeIds& edge)
 } // namespace
 
 ChangeableSurface::ChangeableSurface(const TriangleMesh& surface, const std::vector<Id>& facets,
-  const std::vector<StructuralEdge>& edges, double bound)
+  const std::vector<StructuralEdge>& edges, double bound, ThreadTeam& threads)
   : Points(surface.Points), Triangles(surface.Triangles), Facets(facets),
     Uses(surface.Points.size()), EdgesAt(surface.Points.size()),
     Boxes(GetBounds(surface.Points), static_cast<Id>(surface.Triangles.size())),
-    FacetBound(MakeTriangles(surface, facets), bound),
-    ChainBound(MakeSegments(surface.Points, edges), bound)
+    FacetBound(MakeTriangles(surface, facets), bound, threads),
+    ChainBound(MakeSegments(surface.Points, edges), bound, threads)
 {
   const SurfaceSides sides = FindSurfaceSides(surface);
   for (Id t = 0; t < this->GetNumberOfTriangles(); ++t)

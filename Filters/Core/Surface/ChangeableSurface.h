@@ -57,9 +57,9 @@ struct SurfaceChange
 class ChangeableSurface
 {
 public:
-  /** facets: one for each triangle; bound: of the distance from the surface, > 0. */
+  /** facets: one for each triangle; bound: of the distance from the surface, > 0; threads: for it. */
   ChangeableSurface(const TriangleMesh& surface, const std::vector<Id>& facets,
-    const std::vector<StructuralEdge>& edges, double bound);
+    const std::vector<StructuralEdge>& edges, double bound, ThreadTeam& threads);
 
   const std::vector<Vec3>& GetPoints() const { return this->Points; }
   Id GetNumberOfTriangles() const { return static_cast<Id>(this->Triangles.size()); }

@@ -5,6 +5,7 @@
 #include "Core/Geometry/Box.h"
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 namespace cdm
@@ -147,8 +148,9 @@ std::vector<Box> GetBoxes(const std::vector<BoundSimplex>& simplices)
 class ProofSearch
 {
 public:
-  ProofSearch(const std::vector<BoundSimplex>& simplices, double bound)
-    : Simplices(simplices), Boxes(GetBoxes(simplices)), Bound(bound)
+  ProofSearch(
+    const std::vector<BoundSimplex>& simplices, const std::vector<Box>& boxes, double bound)
+    : Simplices(simplices), Boxes(boxes), Bound(bound)
   {
   }
 
@@ -173,7 +175,7 @@ private:
   bool CutAt(const Piece& piece, Id candidate, double tolerance, std::array<Piece, 2>& parts) const;
 
   const std::vector<BoundSimplex>& Simplices;
-  const std::vector<Box> Boxes;
+  const std::vector<Box>& Boxes;
   const double Bound;
 };
 
@@ -276,38 +278,22 @@ bool ProofSearch::Prove(const Piece& piece, const std::vector<Id>& candidates, I
     this->Prove(parts[0], near, nearest) && this->Prove(parts[1], near, nearest);
 }
 
-/**
- * Proves a piece of a group, and adds the simplices that it takes to its witnesses. numbers: of the
- * offered simplices, which are those of the search.
- */
-bool AddWitnesses(const Piece& piece, Id group, const std::vector<BoundSimplex>& offered,
-  const std::vector<Id>& numbers, ProofSearch& search, std::vector<Id>& witnesses)
-{
-  std::vector<Id> candidates;
-  for (Id i = 0; i < static_cast<Id>(offered.size()); ++i)
-  {
-    if (offered[i].Group == group)
-    {
-      candidates.push_back(i);
-    }
-  }
-  if (!search.Prove(piece, candidates))
-  {
-    return false;
-  }
-  for (const Id i : candidates)
-  {
-    if (search.Used[i] && !Contains(witnesses, numbers[i]))
-    {
-      witnesses.push_back(numbers[i]);
-    }
-  }
-  return true;
-}
 } // namespace
 
-DeviationBound::DeviationBound(std::vector<BoundSimplex> original, double bound)
-  : Original(std::move(original)), Current(this->Original),
+/** Current and new simplices that may prove the original ones that lose a witness. */
+struct DeviationBound::Offer
+{
+  std::vector<BoundSimplex> Simplices;
+  std::vector<Box> Boxes;
+  /** As in Proof::Witnesses. */
+  std::vector<Id> Numbers;
+  /** What lies outside has lost nothing. */
+  Box Lost;
+};
+
+DeviationBound::DeviationBound(
+  std::vector<BoundSimplex> original, double bound, ThreadTeam& threads)
+  : Original(std::move(original)), Current(this->Original), Threads(threads),
     Bound(bound * (1.0 - Slack - AllShiftsRatio)), Tree(GetBoxes(this->Original))
 {
   for (Id i = 0; i < static_cast<Id>(this->Original.size()); ++i)
@@ -330,7 +316,8 @@ bool DeviationBound::IsNear(const BoundSimplex& simplex) const
         candidates.push_back(this->Original[id]);
       }
     });
-  return ProofSearch(candidates, this->Bound).Prove(Piece(simplex.Corners), all);
+  const std::vector<Box> boxes = GetBoxes(candidates);
+  return ProofSearch(candidates, boxes, this->Bound).Prove(Piece(simplex.Corners), all);
 }
 
 bool DeviationBound::FindNearest(
@@ -388,10 +375,59 @@ bool DeviationBound::Prove(const BoundChange& change, ChangeProof& proof) const
     }
   }
   proof.IsShift = shifted.size() == groups.size();
-  return std::all_of(change.Added.begin(), change.Added.end(),
-           [&](const BoundSimplex& added)
-           { return Contains(shifted, added.Group) || this->IsNear(added); }) &&
-    this->FindWitnesses(change, shifted, proof.Originals);
+  std::vector<Id> searched;
+  for (const Id original : this->FindAffected(change.Removed))
+  {
+    if (Contains(shifted, this->Original[original].Group))
+    {
+      proof.Originals.push_back(this->MakeShiftProof(original, change));
+    }
+    else
+    {
+      searched.push_back(original);
+    }
+  }
+  std::vector<Id> added;
+  for (Id i = 0; i < static_cast<Id>(change.Added.size()); ++i)
+  {
+    if (!Contains(shifted, change.Added[i].Group))
+    {
+      added.push_back(i);
+    }
+  }
+  return this->Search(change, added, searched, proof.Originals);
+}
+
+/**
+ * Searches proofs for some of the new simplices, and for original ones. One at a time takes some ten
+ * to a hundred microseconds.
+ */
+bool DeviationBound::Search(const BoundChange& change, const std::vector<Id>& added,
+  const std::vector<Id>& affected, std::vector<Proof>& proofs) const
+{
+  const Offer offer = affected.empty() ? Offer() : this->MakeOffer(change, affected);
+  std::vector<Proof> found(affected.size());
+  std::atomic<bool> isProven{ true };
+  this->Threads.RunBlocks(this->Threads.GetNumberOfThreads(), added.size() + affected.size(), 1,
+    [&](std::size_t i, std::size_t, int)
+    {
+      const auto prove = [&]
+      {
+        if (i < added.size())
+        {
+          return this->IsNear(change.Added[added[i]]);
+        }
+        Proof& proof = found[i - added.size()];
+        proof = this->MakeProof(affected[i - added.size()], change.Removed);
+        return this->FindWitnesses(offer, proof);
+      };
+      if (isProven && !prove())
+      {
+        isProven = false;
+      }
+    });
+  std::move(found.begin(), found.end(), std::back_inserter(proofs));
+  return isProven;
 }
 
 /** By how much a change shifts what simplices of a group cover; infinity if that has to be searched. */
@@ -430,33 +466,21 @@ std::vector<Id> DeviationBound::FindAffected(const std::vector<Id>& removed) con
   return affected;
 }
 
-bool DeviationBound::FindWitnesses(
-  const BoundChange& change, const std::vector<Id>& shifted, std::vector<Proof>& proofs) const
+/** What the simplices that go cover is covered by the new ones. */
+DeviationBound::Proof DeviationBound::MakeShiftProof(Id original, const BoundChange& change) const
 {
-  const std::vector<Id> affected = this->FindAffected(change.Removed);
-  std::vector<Id> searched;
-  for (const Id original : affected)
+  const BoundSimplex& simplex = this->Original[original];
+  Proof proof = this->MakeProof(original, change.Removed);
+  const Box box = GetBox(simplex.Corners, (1.0 + ClipMargin) * this->Bound);
+  for (std::size_t i = 0; i < change.Added.size(); ++i)
   {
-    const BoundSimplex& simplex = this->Original[original];
-    if (!Contains(shifted, simplex.Group))
+    if (change.Added[i].Group == simplex.Group &&
+      GetBox(change.Added[i].Corners, 0.0).Overlaps(box))
     {
-      searched.push_back(original);
-      continue;
+      proof.Witnesses.push_back(~static_cast<Id>(i));
     }
-    // What the simplices that go cover is covered by the new ones.
-    Proof proof = this->MakeProof(original, change.Removed);
-    const Box box = GetBox(simplex.Corners, (1.0 + ClipMargin) * this->Bound);
-    for (std::size_t i = 0; i < change.Added.size(); ++i)
-    {
-      if (change.Added[i].Group == simplex.Group &&
-        GetBox(change.Added[i].Corners, 0.0).Overlaps(box))
-      {
-        proof.Witnesses.push_back(~static_cast<Id>(i));
-      }
-    }
-    proofs.push_back(std::move(proof));
   }
-  return searched.empty() || this->SearchWitnesses(change, searched, proofs);
+  return proof;
 }
 
 /** The witnesses that are left to an original simplex. */
@@ -469,21 +493,20 @@ DeviationBound::Proof DeviationBound::MakeProof(Id original, const std::vector<I
   return proof;
 }
 
-bool DeviationBound::SearchWitnesses(
-  const BoundChange& change, const std::vector<Id>& affected, std::vector<Proof>& proofs) const
+DeviationBound::Offer DeviationBound::MakeOffer(
+  const BoundChange& change, const std::vector<Id>& affected) const
 {
   // What is farther from the simplices that go is within the bound of those that stay.
   const double reach = (1.0 + ClipMargin) * this->Bound;
-  Box lost;
+  Offer offer;
   for (const Id id : change.Removed)
   {
-    lost.Add(GetBox(this->Current[id].Corners, reach));
+    offer.Lost.Add(GetBox(this->Current[id].Corners, reach));
   }
-  std::vector<BoundSimplex> offered = change.Added;
-  std::vector<Id> numbers;
+  offer.Simplices = change.Added;
   for (std::size_t i = 0; i < change.Added.size(); ++i)
   {
-    numbers.push_back(~static_cast<Id>(i));
+    offer.Numbers.push_back(~static_cast<Id>(i));
   }
   std::vector<Id> others = change.Neighbors;
   for (const Id original : affected)
@@ -494,24 +517,44 @@ bool DeviationBound::SearchWitnesses(
   for (const Id other : others)
   {
     const BoundSimplex& current = this->Current[other];
-    if (!Contains(change.Removed, other) && GetBox(current.Corners, reach).Overlaps(lost))
+    if (!Contains(change.Removed, other) && GetBox(current.Corners, reach).Overlaps(offer.Lost))
     {
-      offered.push_back(current);
-      numbers.push_back(other);
+      offer.Simplices.push_back(current);
+      offer.Numbers.push_back(other);
     }
   }
-  ProofSearch search(offered, this->Bound);
-  for (const Id original : affected)
+  offer.Boxes = GetBoxes(offer.Simplices);
+  return offer;
+}
+
+/** Adds the simplices that it takes to what is left of the witnesses. */
+bool DeviationBound::FindWitnesses(const Offer& offer, Proof& proof) const
+{
+  const BoundSimplex& simplex = this->Original[proof.Original];
+  Piece piece(simplex.Corners);
+  if (!ClipToBox(piece, offer.Lost))
   {
-    Proof proof = this->MakeProof(original, change.Removed);
-    const BoundSimplex& simplex = this->Original[original];
-    Piece piece(simplex.Corners);
-    if (ClipToBox(piece, lost) &&
-      !AddWitnesses(piece, simplex.Group, offered, numbers, search, proof.Witnesses))
+    return true;
+  }
+  std::vector<Id> candidates;
+  for (Id i = 0; i < static_cast<Id>(offer.Simplices.size()); ++i)
+  {
+    if (offer.Simplices[i].Group == simplex.Group)
     {
-      return false;
+      candidates.push_back(i);
     }
-    proofs.push_back(std::move(proof));
+  }
+  ProofSearch search(offer.Simplices, offer.Boxes, this->Bound);
+  if (!search.Prove(piece, candidates))
+  {
+    return false;
+  }
+  for (const Id i : candidates)
+  {
+    if (search.Used[i] && !Contains(proof.Witnesses, offer.Numbers[i]))
+    {
+      proof.Witnesses.push_back(offer.Numbers[i]);
+    }
   }
   return true;
 }

@@ -20,6 +20,7 @@
  *
  * Guarantees: after any number of replacements the Hausdorff distance of each group of the current
  * simplices from the same group of the original is at most the bound, but for rounding.
+ * Deterministic: the same for any number of threads.
  * Cost: a replacement proves what is around it, in about as many pieces as there are pairs of
  * simplices that lie above each other there, however large the original ones are. About 300 bytes
  * per simplex.
@@ -31,6 +32,7 @@
 #ifndef cdmDeviationBound_h
 #define cdmDeviationBound_h
 
+#include "Core/Basics/ThreadTeam.h"
 #include "Core/Search/BoxTree.h"
 #include "Core/Surface/BoundSimplex.h"
 
@@ -53,8 +55,8 @@ struct BoundChange
 class DeviationBound
 {
 public:
-  /** Current simplex i is original simplex i. bound: > 0, model units. */
-  DeviationBound(std::vector<BoundSimplex> original, double bound);
+  /** Current simplex i is original simplex i. bound: > 0, model units. threads: for the proofs. */
+  DeviationBound(std::vector<BoundSimplex> original, double bound, ThreadTeam& threads);
 
   double GetBound() const { return this->Bound; }
 
@@ -98,17 +100,21 @@ public:
     const BoundChange& change, const std::vector<Id>& ids, const ChangeProof& changeProof);
 
 private:
+  struct Offer;
+
   double GetGroupShift(const BoundChange& change, Id group) const;
   bool IsNear(const BoundSimplex& simplex) const;
   std::vector<Id> FindAffected(const std::vector<Id>& removed) const;
   Proof MakeProof(Id original, const std::vector<Id>& removed) const;
-  bool FindWitnesses(
-    const BoundChange& change, const std::vector<Id>& shifted, std::vector<Proof>& proofs) const;
-  bool SearchWitnesses(
-    const BoundChange& change, const std::vector<Id>& affected, std::vector<Proof>& proofs) const;
+  Proof MakeShiftProof(Id original, const BoundChange& change) const;
+  bool Search(const BoundChange& change, const std::vector<Id>& added,
+    const std::vector<Id>& affected, std::vector<Proof>& proofs) const;
+  Offer MakeOffer(const BoundChange& change, const std::vector<Id>& affected) const;
+  bool FindWitnesses(const Offer& offer, Proof& proof) const;
 
   std::vector<BoundSimplex> Original;
   std::vector<BoundSimplex> Current;
+  ThreadTeam& Threads;
   double Bound;
   double AllShifts = 0.0;
   BoxTree Tree;

@@ -77,9 +77,9 @@ double GetWantedLength(
 
 RemeshingPasses::RemeshingPasses(const SurfaceRemesherInput& input,
   const SurfaceRemesherOptions& options, std::vector<double> lengths, const std::vector<Id>& facets,
-  const std::vector<StructuralEdge>& edges)
+  const std::vector<StructuralEdge>& edges, ThreadTeam& threads)
   : Input(input), Options(options),
-    Surface(*input.Surface, facets, edges, options.MaximumDeviation),
+    Surface(*input.Surface, facets, edges, options.MaximumDeviation, threads),
     WantedLengths(std::move(lengths))
 {
   this->FindFixedPoints();

@@ -19,13 +19,13 @@ namespace cdm
 double GetWantedLength(
   const SurfaceRemesherInput& input, const SurfaceRemesherOptions& options, const Vec3& position);
 
-/** Input and options have to outlive the object. */
+/** Input, options and threads have to outlive the object. */
 class RemeshingPasses
 {
 public:
   RemeshingPasses(const SurfaceRemesherInput& input, const SurfaceRemesherOptions& options,
     std::vector<double> lengths, const std::vector<Id>& facets,
-    const std::vector<StructuralEdge>& edges);
+    const std::vector<StructuralEdge>& edges, ThreadTeam& threads);
 
   /** Collapses the short edges of strips, which moves no point. False if aborted. */
   bool CollapseStrips(const ExecutionContext& context);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <utility>
 
 namespace cdm
@@ -54,9 +55,10 @@ struct SurfaceParts
  * pipe of 1,000 facets. What is left has points of the input only.
  */
 Status RemoveStrips(const SurfaceRemesherInput& input, const SurfaceRemesherOptions& options,
-  const ExecutionContext& context, SurfaceParts& parts, SurfaceRemesherOutput& left)
+  const ExecutionContext& context, ThreadTeam& threads, SurfaceParts& parts,
+  SurfaceRemesherOutput& left)
 {
-  RemeshingPasses remesher(input, options, parts.Lengths, parts.Facets, parts.Edges);
+  RemeshingPasses remesher(input, options, parts.Lengths, parts.Facets, parts.Edges, threads);
   if (!remesher.CollapseStrips(context))
   {
     return Status::Aborted();
@@ -83,12 +85,13 @@ Status RemoveStrips(const SurfaceRemesherInput& input, const SurfaceRemesherOpti
 
 /** All steps for a surface of strips. */
 Status RemeshStrips(const SurfaceRemesherInput& input, const SurfaceRemesherOptions& options,
-  const ExecutionContext& context, SurfaceParts& parts, SurfaceRemesherOutput& output)
+  const ExecutionContext& context, ThreadTeam& threads, SurfaceParts& parts,
+  SurfaceRemesherOutput& output)
 {
   SurfaceRemesherOptions stepOptions = options;
   stepOptions.MaximumDeviation = StripsRatio * options.MaximumDeviation;
   SurfaceRemesherOutput left;
-  Status status = RemoveStrips(input, stepOptions, context.Part(0.0, 0.1), parts, left);
+  Status status = RemoveStrips(input, stepOptions, context.Part(0.0, 0.1), threads, parts, left);
   if (!status.IsOk())
   {
     return status;
@@ -96,7 +99,8 @@ Status RemeshStrips(const SurfaceRemesherInput& input, const SurfaceRemesherOpti
   SurfaceRemesherInput leftInput = input;
   leftInput.Surface = &left.Surface;
   stepOptions.MaximumDeviation = (1.0 - StripsRatio) * options.MaximumDeviation;
-  RemeshingPasses remesher(leftInput, stepOptions, parts.Lengths, parts.Facets, parts.Edges);
+  RemeshingPasses remesher(
+    leftInput, stepOptions, parts.Lengths, parts.Facets, parts.Edges, threads);
   for (const Id corner : parts.Corners)
   {
     remesher.FixPoint(corner);
@@ -149,11 +153,14 @@ Status RunRemeshSurface(const SurfaceRemesherInput& input, const SurfaceRemesher
   parts.Facets =
     NumberFacets(SortEdgeUses(input.Surface->Triangles, input.Surface->Points.size()), parts.Edges);
   const ExecutionContext rest = context.Part(0.05, 1.0);
+  const std::shared_ptr<ThreadTeam> team =
+    context.GetThreads() ? context.GetThreads() : std::make_shared<ThreadTeam>(1);
   if (IsOfStrips(*input.Surface, parts.Lengths))
   {
-    return RemeshStrips(input, options, rest, parts, output);
+    return RemeshStrips(input, options, rest, *team, parts, output);
   }
-  RemeshingPasses remesher(input, options, std::move(parts.Lengths), parts.Facets, parts.Edges);
+  RemeshingPasses remesher(
+    input, options, std::move(parts.Lengths), parts.Facets, parts.Edges, *team);
   if (!remesher.Run(rest))
   {
     return Status::Aborted();

@@ -27,11 +27,12 @@
  * Inputs: the invariants of TriangleMesh.h. Guarantees: these invariants are kept, and so are
  * topology, orientation, labels, and the positions of corners; each facet and each chain lies
  * within the bound of its original, and its original within the bound of it (proven, but for
- * rounding); triangles take their labels and source cell from one of the same facet. Deterministic;
- * does not depend on scale and position but for rounding.
+ * rounding); triangles take their labels and source cell from one of the same facet. Deterministic,
+ * the same for any number of threads; does not depend on scale and position but for rounding.
  * Failure: InvalidOption for a length or bound that is not positive; as of ExtractStructuralEdges.
  * The output is then empty, as after an abort.
- * Cost: O(n log n) for surfaces that get coarser; about a millisecond for a removed point.
+ * Cost: O(n log n) for surfaces that get coarser; about a millisecond for a removed point. Threads
+ * share what it takes to prove one change, which is half of all.
  * References: M. Botsch, L. Kobbelt, "A remeshing approach to multiresolution modeling", 2004,
  * doi:10.1145/1057432.1057457 (the operations, their order and thresholds); T. K. Dey,
  * H. Edelsbrunner, S. Guha, D. V. Nekhayev, "Topology preserving edge contraction", 1999 (the link
