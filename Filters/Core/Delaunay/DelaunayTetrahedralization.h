@@ -2,8 +2,7 @@
 /**
  * @file DelaunayTetrahedralization.h
  * @brief The Delaunay tetrahedralization of the convex hull of points. The advancing front reads
- *   the
- * fourth point of every facet from it.
+ *   the fourth point of every facet from it.
  *
  * Method:
  *  1. vertices are the points in the order of a Hilbert curve. Those of a block of a rectilinear

@@ -2,8 +2,7 @@
 /**
  * @file BoxOctree.h
  * @brief Finds those of many boxes that overlap a given one; boxes may come and go (in BoxTree.h
- *   they
- * may not).
+ *   they may not).
  *
  * A loose octree: a box lies in the cell of its center, on the deepest level where it is not larger
  * than the cell; so it reaches no further than half a cell beyond it. Boxes are closed: touching

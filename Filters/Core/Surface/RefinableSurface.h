@@ -2,8 +2,7 @@
 /**
  * @file RefinableSurface.h
  * @brief A surface with adjacency whose smooth edges can be flipped and whose edges and triangles
- *   can
- * be split.
+ *   can be split.
  *
  * Two triangles with equal orientation meet across each smooth edge. Structural edges are made of
  * segments, each of which knows all triangles at it. In this file a facet is a surface facet: a set
