@@ -150,7 +150,7 @@ TEST(DeviationBound, ShiftsAreProvenWithoutSearch)
     for (const DeviationBound::Proof& single : proof.Originals)
     {
       std::vector<BoundSimplex> witnesses;
-      for (const Id witness : single.Witnesses)
+      for (const Id witness : single.NewWitnesses)
       {
         ASSERT_LT(witness, 0);
         witnesses.push_back(change.Added[~witness]);

@@ -285,7 +285,7 @@ struct DeviationBound::Offer
 {
   std::vector<BoundSimplex> Simplices;
   std::vector<Box> Boxes;
-  /** As in Proof::Witnesses. */
+  /** As in Proof::NewWitnesses. */
   std::vector<Id> Numbers;
   /** What lies outside has lost nothing. */
   Box Lost;
@@ -418,7 +418,7 @@ bool DeviationBound::Search(const BoundChange& change, const std::vector<Id>& ad
           return this->IsNear(change.Added[added[i]]);
         }
         Proof& proof = found[i - added.size()];
-        proof = this->MakeProof(affected[i - added.size()], change.Removed);
+        proof.Original = affected[i - added.size()];
         return this->FindWitnesses(offer, proof);
       };
       if (isProven && !prove())
@@ -470,26 +470,16 @@ std::vector<Id> DeviationBound::FindAffected(const std::vector<Id>& removed) con
 DeviationBound::Proof DeviationBound::MakeShiftProof(Id original, const BoundChange& change) const
 {
   const BoundSimplex& simplex = this->Original[original];
-  Proof proof = this->MakeProof(original, change.Removed);
+  Proof proof{ original, {} };
   const Box box = GetBox(simplex.Corners, (1.0 + ClipMargin) * this->Bound);
   for (std::size_t i = 0; i < change.Added.size(); ++i)
   {
     if (change.Added[i].Group == simplex.Group &&
       GetBox(change.Added[i].Corners, 0.0).Overlaps(box))
     {
-      proof.Witnesses.push_back(~static_cast<Id>(i));
+      proof.NewWitnesses.push_back(~static_cast<Id>(i));
     }
   }
-  return proof;
-}
-
-/** The witnesses that are left to an original simplex. */
-DeviationBound::Proof DeviationBound::MakeProof(Id original, const std::vector<Id>& removed) const
-{
-  Proof proof{ original, this->Witnesses[original] };
-  proof.Witnesses.erase(std::remove_if(proof.Witnesses.begin(), proof.Witnesses.end(),
-                          [&removed](Id witness) { return Contains(removed, witness); }),
-    proof.Witnesses.end());
   return proof;
 }
 
@@ -527,7 +517,7 @@ DeviationBound::Offer DeviationBound::MakeOffer(
   return offer;
 }
 
-/** Adds the simplices that it takes to what is left of the witnesses. */
+/** Finds the simplices that it takes beside the witnesses that are left. */
 bool DeviationBound::FindWitnesses(const Offer& offer, Proof& proof) const
 {
   const BoundSimplex& simplex = this->Original[proof.Original];
@@ -551,9 +541,9 @@ bool DeviationBound::FindWitnesses(const Offer& offer, Proof& proof) const
   }
   for (const Id i : candidates)
   {
-    if (search.Used[i] && !Contains(proof.Witnesses, offer.Numbers[i]))
+    if (search.Used[i] && !Contains(this->Witnesses[proof.Original], offer.Numbers[i]))
     {
-      proof.Witnesses.push_back(offer.Numbers[i]);
+      proof.NewWitnesses.push_back(offer.Numbers[i]);
     }
   }
   return true;
@@ -563,14 +553,13 @@ void DeviationBound::Replace(
   const BoundChange& change, const std::vector<Id>& ids, const ChangeProof& changeProof)
 {
   this->AllShifts += changeProof.Shift;
-  const auto drop = [](std::vector<Id>& from, Id id)
-  { from.erase(std::remove(from.begin(), from.end(), id), from.end()); };
+  // Originals of large facets have thousands of witnesses: those that stay are not touched.
   for (const Proof& proof : changeProof.Originals)
   {
-    for (const Id witness : this->Witnesses[proof.Original])
-    {
-      drop(this->Proven[witness], proof.Original);
-    }
+    std::vector<Id>& witnesses = this->Witnesses[proof.Original];
+    witnesses.erase(std::remove_if(witnesses.begin(), witnesses.end(),
+                      [&](Id witness) { return Contains(change.Removed, witness); }),
+      witnesses.end());
   }
   for (const Id id : change.Removed)
   {
@@ -587,11 +576,10 @@ void DeviationBound::Replace(
   }
   for (const Proof& proof : changeProof.Originals)
   {
-    std::vector<Id>& witnesses = this->Witnesses[proof.Original];
-    witnesses = proof.Witnesses;
-    for (Id& witness : witnesses)
+    for (const Id number : proof.NewWitnesses)
     {
-      witness = witness < 0 ? ids[~witness] : witness;
+      const Id witness = number < 0 ? ids[~number] : number;
+      this->Witnesses[proof.Original].push_back(witness);
       this->Proven[witness].push_back(proof.Original);
     }
   }

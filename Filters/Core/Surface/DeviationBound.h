@@ -66,11 +66,14 @@ public:
    */
   bool FindNearest(const Vec3& position, Id group, double reach, Vec3& nearest, Id& simplex) const;
 
-  /** New witnesses of an original simplex: current ones, or new ones by ~place in their list. */
+  /**
+   * An original simplex that loses witnesses, and what it gets: current simplices, or new ones by
+   * ~place in their list.
+   */
   struct Proof
   {
-    Id Original;
-    std::vector<Id> Witnesses;
+    Id Original = NoId;
+    std::vector<Id> NewWitnesses;
   };
 
   /** What Replace() has to know of a change. */
@@ -105,7 +108,6 @@ private:
   double GetGroupShift(const BoundChange& change, Id group) const;
   bool IsNear(const BoundSimplex& simplex) const;
   std::vector<Id> FindAffected(const std::vector<Id>& removed) const;
-  Proof MakeProof(Id original, const std::vector<Id>& removed) const;
   Proof MakeShiftProof(Id original, const BoundChange& change) const;
   bool Search(const BoundChange& change, const std::vector<Id>& added,
     const std::vector<Id>& affected, std::vector<Proof>& proofs) const;
