@@ -56,6 +56,20 @@ MeshCertificate MeshAndCheck(const DelaunaySurfaceRefinerOutput& refined,
   return report;
 }
 
+double GetShortestEdge(const TriangleMesh& surface)
+{
+  double shortest = Infinity;
+  for (const TriangleIds& ids : surface.Triangles)
+  {
+    for (int i = 0; i < 3; ++i)
+    {
+      shortest =
+        std::min(shortest, Distance(surface.Points[ids[i]], surface.Points[ids[(i + 1) % 3]]));
+    }
+  }
+  return shortest;
+}
+
 PolygonSoup MakeBox(const Vec3& size)
 {
   return CellComplex(size).GetSoup();
@@ -497,18 +511,26 @@ TEST(DelaunaySurfaceRefiner, RoundedFacetsAreNotMatchedTwice)
     RoundToSinglePrecision(rings.Points);
     options.MaximumEdgeLength = 0.15 + 0.65 * random(generator);
     SCOPED_TRACE(std::to_string(i));
-    const TriangleMesh refined = Refine(rings, options).Surface;
-    double shortest = Infinity;
-    for (const TriangleIds& ids : refined.Triangles)
-    {
-      for (int j = 0; j < 3; ++j)
-      {
-        shortest =
-          std::min(shortest, Distance(refined.Points[ids[j]], refined.Points[ids[(j + 1) % 3]]));
-      }
-    }
-    EXPECT_GT(shortest, 1e-5);
+    EXPECT_GT(GetShortestEdge(Refine(rings, options).Surface), 1e-5);
   }
+}
+
+// Triangles around corners of a remeshed model, with edges of 0.03 or more. Where a point has its match
+// at the end of an edge, for another reason the edge was split as far from that end as the point is from
+// the edge: close to the other end, a corner, and so on with an edge of 1.6e-5 in the end.
+TEST(DelaunaySurfaceRefiner, DoesNotComeEverCloserToACorner)
+{
+  TriangleMesh surface;
+  surface.Points = { { 0.4, 0.0, -0.1 }, { 0.0, 0.0, 0.0 }, { 0.0, 0.0, -0.04 },
+    { 0.01, 0.0, -0.07 }, { 0.03, 0.0, -0.1 }, { 0.05, 0.0, -0.13 }, { 0.07, 0.0, -0.16 },
+    { 0.1, 0.0, -0.18 }, { -0.44, 0.0, 0.12 }, { 0.24, 0.0, -0.2 }, { 0.29, -0.02, -0.18 },
+    { 0.14, -0.1, 0.19 }, { 0.14, 0.0, -0.19 }, { 0.18, 0.0, -0.21 }, { 0.2, -1.2, -0.2 },
+    { 0.01, -1.46, -0.02 }, { 0.401, -0.829, 0.045 } };
+  surface.Triangles = { { 11, 1, 8 }, { 10, 9, 13 }, { 5, 15, 6 }, { 7, 15, 12 }, { 10, 14, 0 },
+    { 14, 10, 13 }, { 3, 15, 4 }, { 1, 15, 2 }, { 11, 16, 1 } };
+  DelaunaySurfaceRefinerOptions options;
+  options.Criterion = SurfaceCriterion::SmallestSphere;
+  EXPECT_GT(GetShortestEdge(Refine(surface, options).Surface), 1e-4);
 }
 
 /**

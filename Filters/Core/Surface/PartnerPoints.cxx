@@ -229,7 +229,9 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id encroaching) const
       const double longest = isOnSphere ? height
         : rest > 0.0                    ? 0.5 * height * (height / rest)
                                         : Infinity;
-      const double shorter = std::max(height, std::min(0.5 * length, longest));
+      // And the other piece is no shorter: it may end at a corner, where edges would be split ever
+      // closer to it, by the same factor each time.
+      const double shorter = std::min(0.5 * length, std::max(height, longest));
       way = way < 0.5 * length ? shorter : length - shorter;
     }
     const double margin = isThin ? 0.0
