@@ -277,7 +277,6 @@ bool ProofSearch::Prove(const Piece& piece, const std::vector<Id>& candidates, I
            Cut(piece, center, (1.0 / radius) * farthest, tolerance, parts)) &&
     this->Prove(parts[0], near, nearest) && this->Prove(parts[1], near, nearest);
 }
-
 } // namespace
 
 /** Current and new simplices that may prove the original ones that lose a witness. */
@@ -398,10 +397,7 @@ bool DeviationBound::Prove(const BoundChange& change, ChangeProof& proof) const
   return this->Search(change, added, searched, proof.Originals);
 }
 
-/**
- * Searches proofs for some of the new simplices, and for original ones. One at a time takes some ten
- * to a hundred microseconds.
- */
+/** Searches proofs for some of the new simplices, and for original ones. */
 bool DeviationBound::Search(const BoundChange& change, const std::vector<Id>& added,
   const std::vector<Id>& affected, std::vector<Proof>& proofs) const
 {
