@@ -15,7 +15,7 @@ namespace
 {
 constexpr int Corners = 7;
 
-/** Points around the origin, whose triangles with any point near it are not turned over. */
+/** Points around the origin: no triangle of them with a point near the origin is turned over. */
 std::vector<Vec3> MakeRing(std::mt19937& random)
 {
   std::uniform_real_distribution<double> radius(0.7, 1.0);
@@ -29,7 +29,7 @@ std::vector<Vec3> MakeRing(std::mt19937& random)
   return ring;
 }
 
-/** Turned and away from the origin. */
+/** Moves a position of the ring to a plane that is turned, and away from the origin. */
 Vec3 Place(const Vec3& position)
 {
   const Vec3 u{ 2.0 / 3.0, -2.0 / 3.0, 1.0 / 3.0 };

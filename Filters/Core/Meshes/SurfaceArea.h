@@ -11,11 +11,14 @@
 
 namespace cdm
 {
-/** Twice the area as a vector: it points to the front of the triangle. */
+/** Twice the area of a triangle as a vector, which points to the front of the triangle. */
+inline Vec3 GetAreaVector(const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  return Cross(b - a, c - a);
+}
 inline Vec3 GetAreaVector(const TriangleMesh& surface, const TriangleIds& ids)
 {
-  const Vec3& a = surface.Points[ids[0]];
-  return Cross(surface.Points[ids[1]] - a, surface.Points[ids[2]] - a);
+  return GetAreaVector(surface.Points[ids[0]], surface.Points[ids[1]], surface.Points[ids[2]]);
 }
 
 /** The sum over all triangles, each counted once, in square model units. */

@@ -65,7 +65,7 @@ inline std::vector<Vec3> MakeCubeDirections()
   return directions;
 }
 
-/** Opposite ways in the plane normal to a unit vector, or along it. */
+/** Directions in the plane normal to a unit vector, or along it: each of them and its opposite. */
 inline std::vector<Vec3> MakeDirections(const Vec3& axis, bool isLine)
 {
   if (isLine)

@@ -2,6 +2,8 @@
 #include "Core/Surface/BoundSimplex.h"
 
 #include "Core/Geometry/Box.h"
+#include "Core/Meshes/SurfaceArea.h"
+#include "Core/Surface/StructuralEdges.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +13,7 @@ namespace cdm
 {
 namespace
 {
-/** Errors of heights above a plane or line, of the largest coordinate. */
+/** A height above a plane or line has an error of so many times the largest coordinate. */
 constexpr double Rounding = 8.0 * std::numeric_limits<double>::epsilon();
 
 Vec3 FindNearestOnSegment(const Vec3& a, const Vec3& b, const Vec3& position)
@@ -22,12 +24,6 @@ Vec3 FindNearestOnSegment(const Vec3& a, const Vec3& b, const Vec3& position)
   return along <= 0.0 ? a : along >= 1.0 ? b : a + along * edge;
 }
 
-Vec3 GetAreaVector(const BoundSimplex& triangle)
-{
-  const auto& [a, b, c] = triangle.Corners;
-  return Cross(b - a, c - a);
-}
-
 /** Height above a plane of the farthest corner; infinity if a triangle is turned over. */
 double GetThickness(
   const std::vector<BoundSimplex>& triangles, const Vec3& origin, const Vec3& normal)
@@ -35,7 +31,8 @@ double GetThickness(
   double thickness = 0.0;
   for (const BoundSimplex& triangle : triangles)
   {
-    if (!(Dot(GetAreaVector(triangle), normal) > 0.0))
+    const auto& [a, b, c] = triangle.Corners;
+    if (!(Dot(GetAreaVector(a, b, c), normal) > 0.0))
     {
       return Infinity;
     }
@@ -104,7 +101,8 @@ double GetTriangleShift(
   Vec3 normal;
   for (const BoundSimplex& triangle : removed)
   {
-    normal = normal + GetAreaVector(triangle);
+    const auto& [a, b, c] = triangle.Corners;
+    normal = normal + GetAreaVector(a, b, c);
   }
   const double length = Norm(normal);
   if (!(length > 0.0))
@@ -117,8 +115,8 @@ double GetTriangleShift(
 }
 } // namespace
 
-// By the regions of Voronoi of its corners, edges and inside: C. Ericson, "Real-Time Collision
-// Detection", 2005, 5.1.5.
+// The position lies in the Voronoi region of a corner, of an edge or of the inside of the triangle.
+// Reference: C. Ericson, "Real-Time Collision Detection", 2005, 5.1.5.
 Vec3 FindNearestPoint(const std::array<Vec3, 3>& corners, const Vec3& position)
 {
   const auto& [a, b, c] = corners;
@@ -160,18 +158,17 @@ double GetShift(const std::vector<BoundSimplex>& removed, const std::vector<Boun
   {
     return removed.empty() && added.empty() ? 0.0 : Infinity;
   }
-  double largest = 0.0;
+  Box box;
   for (const auto* simplices : { &removed, &added })
   {
     for (const BoundSimplex& simplex : *simplices)
     {
-      for (const Vec3& corner : simplex.Corners)
-      {
-        largest = std::max({ largest, std::abs(corner.X), std::abs(corner.Y), std::abs(corner.Z) });
-      }
+      box.Add(simplex.Corners[0]);
+      box.Add(simplex.Corners[1]);
+      box.Add(simplex.Corners[2]);
     }
   }
-  return Rounding * largest +
+  return Rounding * GetLargestCoordinate({ box.Low, box.High }) +
     (IsSegment(removed.front().Corners) ? GetSegmentShift(removed, added)
                                         : GetTriangleShift(removed, added));
 }

@@ -3,6 +3,7 @@
 
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Predicates.h"
+#include "Core/Meshes/SurfaceArea.h"
 #include "Core/Meshes/SurfaceSides.h"
 #include "Core/Meshes/TriangleIntersection.h"
 
@@ -177,7 +178,7 @@ Id ChangeableSurface::FindOriginalTriangle(Id point, double reach, Vec3& nearest
 Vec3 ChangeableSurface::GetNormal(const TriangleIds& ids) const
 {
   const Vec3 normal =
-    Cross(this->Points[ids[1]] - this->Points[ids[0]], this->Points[ids[2]] - this->Points[ids[0]]);
+    GetAreaVector(this->Points[ids[0]], this->Points[ids[1]], this->Points[ids[2]]);
   const double length = Norm(normal);
   return length > 0.0 ? (1.0 / length) * normal : normal;
 }

@@ -14,9 +14,9 @@ namespace
 {
 /** Room for rounding, as a ratio of the bound. */
 constexpr double Slack = 1e-9;
-/** By how much simplices may shift altogether, see DeviationBound::Prove(), as a ratio of the bound. */
+/** All shifts together may be so large, as a ratio of the bound; see DeviationBound::Prove(). */
 constexpr double AllShiftsRatio = 1e-4;
-/** The same for one replacement: more is no rounding. */
+/** One shift may be so large, as a ratio of the bound: more is no rounding. */
 constexpr double ShiftRatio = 1e-9;
 /** Pieces are not subdivided below this ratio of the bound. */
 constexpr double SmallestPieceRatio = 1.0 / 16.0;
@@ -198,7 +198,7 @@ bool ProofSearch::CutAt(
   const Piece& piece, Id candidate, double tolerance, std::array<Piece, 2>& parts) const
 {
   const auto& [a, b, c] = this->Simplices[candidate].Corners;
-  if (b == c)
+  if (IsSegment(this->Simplices[candidate].Corners))
   {
     const Vec3 direction = (1.0 / Distance(a, b)) * (b - a);
     return Cut(piece, a, direction, tolerance, parts) || Cut(piece, b, direction, tolerance, parts);
@@ -284,9 +284,9 @@ struct DeviationBound::Offer
 {
   std::vector<BoundSimplex> Simplices;
   std::vector<Box> Boxes;
-  /** As in Proof::NewWitnesses. */
+  /** Each simplex has the number of a current one, or ~place in the list of new ones. */
   std::vector<Id> Numbers;
-  /** What lies outside has lost nothing. */
+  /** Original simplices have lost nothing outside of this box. */
   Box Lost;
 };
 
@@ -374,12 +374,13 @@ bool DeviationBound::Prove(const BoundChange& change, ChangeProof& proof) const
     }
   }
   proof.IsShift = shifted.size() == groups.size();
+  const std::vector<Box> boxes = GetBoxes(change.Added);
   std::vector<Id> searched;
   for (const Id original : this->FindAffected(change.Removed))
   {
     if (Contains(shifted, this->Original[original].Group))
     {
-      proof.Originals.push_back(this->MakeShiftProof(original, change));
+      proof.Originals.push_back(this->MakeShiftProof(original, change, boxes));
     }
     else
     {
@@ -426,7 +427,7 @@ bool DeviationBound::Search(const BoundChange& change, const std::vector<Id>& ad
   return isProven;
 }
 
-/** By how much a change shifts what simplices of a group cover; infinity if that has to be searched. */
+/** The shift of the simplices of a group; infinity if proofs have to be searched for them. */
 double DeviationBound::GetGroupShift(const BoundChange& change, Id group) const
 {
   std::vector<BoundSimplex> removed;
@@ -462,16 +463,20 @@ std::vector<Id> DeviationBound::FindAffected(const std::vector<Id>& removed) con
   return affected;
 }
 
-/** What the simplices that go cover is covered by the new ones. */
-DeviationBound::Proof DeviationBound::MakeShiftProof(Id original, const BoundChange& change) const
+/**
+ * New simplices that shift cover what those that go have covered: those that are close to the original
+ * one are its new witnesses.
+ * @param boxes of the new simplices
+ */
+DeviationBound::Proof DeviationBound::MakeShiftProof(
+  Id original, const BoundChange& change, const std::vector<Box>& boxes) const
 {
   const BoundSimplex& simplex = this->Original[original];
   Proof proof{ original, {} };
   const Box box = GetBox(simplex.Corners, (1.0 + ClipMargin) * this->Bound);
   for (std::size_t i = 0; i < change.Added.size(); ++i)
   {
-    if (change.Added[i].Group == simplex.Group &&
-      GetBox(change.Added[i].Corners, 0.0).Overlaps(box))
+    if (change.Added[i].Group == simplex.Group && boxes[i].Overlaps(box))
     {
       proof.NewWitnesses.push_back(~static_cast<Id>(i));
     }
@@ -513,7 +518,7 @@ DeviationBound::Offer DeviationBound::MakeOffer(
   return offer;
 }
 
-/** Finds the simplices that it takes beside the witnesses that are left. */
+/** Finds simplices that prove an original one together with the witnesses that it has left. */
 bool DeviationBound::FindWitnesses(const Offer& offer, Proof& proof) const
 {
   const BoundSimplex& simplex = this->Original[proof.Original];

@@ -80,9 +80,9 @@ public:
   struct ChangeProof
   {
     std::vector<Proof> Originals;
-    /** By how much new simplices are farther from the original than those that go, where they shift. */
+    /** The largest shift: new simplices are so much farther from the original than those that go. */
     double Shift = 0.0;
-    /** Whether all of them do. */
+    /** Whether all new simplices shift. */
     bool IsShift = false;
   };
 
@@ -108,7 +108,7 @@ private:
   double GetGroupShift(const BoundChange& change, Id group) const;
   bool IsNear(const BoundSimplex& simplex) const;
   std::vector<Id> FindAffected(const std::vector<Id>& removed) const;
-  Proof MakeShiftProof(Id original, const BoundChange& change) const;
+  Proof MakeShiftProof(Id original, const BoundChange& change, const std::vector<Box>& boxes) const;
   bool Search(const BoundChange& change, const std::vector<Id>& added,
     const std::vector<Id>& affected, std::vector<Proof>& proofs) const;
   Offer MakeOffer(const BoundChange& change, const std::vector<Id>& affected) const;

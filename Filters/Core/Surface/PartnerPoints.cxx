@@ -229,8 +229,8 @@ Vec3 PartnerPoints::PlaceOnSegment(Id segment, Id encroaching) const
       const double longest = isOnSphere ? height
         : rest > 0.0                    ? 0.5 * height * (height / rest)
                                         : Infinity;
-      // And the other piece is no shorter: it may end at a corner, where edges would be split ever
-      // closer to it, by the same factor each time.
+      // The piece at the other end is no shorter either. It may end at a corner, where edges would be
+      // split ever closer to it, by the same factor each time.
       const double shorter = std::min(0.5 * length, std::max(height, longest));
       way = way < 0.5 * length ? shorter : length - shorter;
     }
