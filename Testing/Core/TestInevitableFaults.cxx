@@ -100,7 +100,7 @@ class Excuses
 {
 public:
   explicit Excuses(const TriangleMesh& surface)
-    : Plane(surface, 1e-4), Sides(surface, 45.0),
+    : Plane(surface, 1e-4), Sides(surface, 1.0),
       Triangles(ListTrianglesAtPoints(surface.Triangles, surface.Points.size()))
   {
     this->Plane.VisitEdges(

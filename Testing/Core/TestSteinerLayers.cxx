@@ -91,6 +91,42 @@ PolygonSoup MakeWedge(double angle)
   return soup;
 }
 
+/** Adds the twelve points and twenty triangles of an icosahedron around the origin. */
+void AddIcosahedron(double radius, PolygonSoup& soup)
+{
+  const Id first = static_cast<Id>(soup.Points.size());
+  const double golden = 0.5 * (1.0 + std::sqrt(5.0));
+  const double scale = radius / std::sqrt(1.0 + golden * golden);
+  const double length = 2.0 * scale;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      Vec3 point;
+      point[axis] = i % 2 == 0 ? scale : -scale;
+      point[(axis + 1) % 3] = i / 2 == 0 ? golden * scale : -golden * scale;
+      soup.Points.push_back(point);
+    }
+  }
+  const auto isEdge = [&](Id a, Id b)
+  { return Distance(soup.Points[a], soup.Points[b]) < 1.01 * length; };
+  const Id end = static_cast<Id>(soup.Points.size());
+  for (Id a = first; a < end; ++a)
+  {
+    for (Id b = a + 1; b < end; ++b)
+    {
+      for (Id c = b + 1; c < end; ++c)
+      {
+        if (isEdge(a, b) && isEdge(b, c) && isEdge(c, a))
+        {
+          soup.Connectivity.insert(soup.Connectivity.end(), { a, b, c });
+          soup.Offsets.push_back(static_cast<Id>(soup.Connectivity.size()));
+        }
+      }
+    }
+  }
+}
+
 /** The least number of tetrahedra on a way from one side of a facet to the other along z. */
 Id CountAcross(const TetMesh& mesh, const std::vector<double>& heights)
 {
@@ -252,6 +288,18 @@ TEST(SteinerLayers, PlatesAndLayersAreFilledUpToTheirAspectRatios)
   options.LayerAspectRatio = 35.0;
   ExpectNoFaults(refine(plate));
   ExpectNoFaults(refine(layer));
+}
+
+TEST(SteinerLayers, ShellsAreFilledByTheSizeOfTheirFacets)
+{
+  // The facets are thirteen times as wide as the shell is thick, the whole sphere is forty times.
+  PolygonSoup soup;
+  AddIcosahedron(1.0, soup);
+  AddIcosahedron(0.9, soup);
+  const SteinerPointRefinerOutput output = Refine(soup, SteinerPointRefinerOptions());
+  ExpectNoFaults(output.Report);
+  std::printf("%zu tetrahedra\n", output.Mesh.Tetrahedra.size());
+  EXPECT_LT(output.Mesh.Tetrahedra.size(), 16000u);
 }
 
 TEST(SteinerLayers, PlaneAnglesExcuseNoSlivers)

@@ -69,14 +69,21 @@ TEST(ThinLayers, AsOftenAsWideAsThickAsAskedFor)
   }
 }
 
-TEST(ThinLayers, NarrowFacetsThatBendALittleAreOneSide)
+TEST(ThinLayers, EachFacetIsASideOfItsOwn)
 {
   // Each facet is a hundredth of the circumference wide, and twelve times the thickness.
-  const TriangleMesh thin = MakeTubeSurface(100, 0.005);
-  EXPECT_TRUE(IsAcross(thin, { 0, 2, 3, 6 }, 0));
-  // The inside of the tube bends by 60 degrees.
+  const TriangleMesh narrow = MakeTubeSurface(100, 0.005);
+  EXPECT_FALSE(IsAcross(narrow, { 0, 2, 3, 6 }, 0));
+  // As wide as a sixth of it.
   const TriangleMesh hexagonal = MakeTubeSurface(6, 0.005);
   EXPECT_TRUE(IsAcross(hexagonal, { 0, 2, 3, 6 }, 0));
   const TriangleMesh thick = MakeTubeSurface(6, 0.2);
   EXPECT_FALSE(IsAcross(thick, { 0, 2, 3, 6 }, 0));
+}
+
+TEST(ThinLayers, FacetsThatBendByLessThanADegreeAreOneSide)
+{
+  // Facets that bend by half a degree, twice as wide as the wall is thick.
+  const TriangleMesh thin = MakeTubeSurface(720, 0.005);
+  EXPECT_TRUE(IsAcross(thin, { 0, 2, 3, 6 }, 0));
 }

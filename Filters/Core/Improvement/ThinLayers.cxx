@@ -19,8 +19,8 @@ namespace
 constexpr double UsualAspectRatio = 20.0;
 /** ... and with the outside on both sides. */
 constexpr double PlateAspectRatio = 100.0;
-/** Cosine of 45 degrees, the largest angle between normals of neighboring triangles of one side. */
-constexpr double SmoothCosine = 0.7071067811865476;
+/** Cosine of a degree, the largest angle between normals of neighboring triangles of one side. */
+constexpr double SmoothCosine = 0.9998476951563913;
 /**
  * Cosine of the angles between the sides of a layer, and of a side's normal and an upright edge.
  */
@@ -184,8 +184,14 @@ bool ThinLayers::IsAcross(const TetrahedronIds& ids, Id region) const
         for (Id u : this->PointTriangles[ids[edge[1]]])
         {
           const Face* const second = this->GetFace(u, region);
-          if (second != nullptr && Dot(first->Normal, second->Normal) <= -AcrossCosine &&
-            this->IsThin(*first, *second, height))
+          if (second == nullptr || Dot(first->Normal, second->Normal) > -AcrossCosine)
+          {
+            continue;
+          }
+          // Where a curved sheet bends, the far point is closer to the plane of the next facet than
+          // the sheet is thick.
+          const double thickness = std::max(height, Dot(second->Normal, direction));
+          if (this->IsThin(*first, *second, thickness))
           {
             return true;
           }

@@ -14,11 +14,16 @@
  * there it is a hundred.
  *
  * Method: the boundary of each region is divided into sides: triangles connected across edges that
- * bend by less than 45 degrees. A side is as wide as a square with the same ratio of area to
+ * bend by less than a degree. A side is as wide as a square with the same ratio of area to
  * perimeter, or with the same area if that is narrower. A tetrahedron is across a layer if all its
  * points lie on the boundary and two of them lie on sides that face each other. The distance of
  * these sides has to be small for the size of the tetrahedron, and the width of either side at least
  * so many times the distance.
+ *
+ * So what counts is the size of a facet, not that of the sheet. While facets that bend by less than
+ * 45 degrees were one side, curved sheets were layers as wide as all of their facets. They were
+ * filled all the same, from the edges between facets on, and kept flat tetrahedra in between: 375 of
+ * 45,752 between two icosahedra of radius 1 and 0.95, where there are none of 45,835 now.
  *
  * Cost: O(n log n) to build; O(1) for a tetrahedron. About 100 bytes per triangle.
  */

@@ -300,9 +300,10 @@ def mesh(
     maximum_volume : float, default: 0
         Of a tetrahedron, with Steiner points. Cubic model units; 0: no limit.
     layer_aspect_ratio : float, default: 0
-        Layers that are at least so many times as wide as thick may have flat tetrahedra from side to
-        side; all others are filled with well shaped ones, with Steiner points. At least 1; 0: 20 where
-        another region is beside the layer, and 100 for plates, with the outside on both sides.
+        Layers whose facets are at least so many times as wide as the layer is thick may have flat
+        tetrahedra from side to side; all others are filled with well shaped ones, with Steiner points.
+        At least 1; 0: 20 where another region is beside the layer, and 100 for plates, with the outside
+        on both sides.
     tetrahedra_across_layers : int, default: 1
         At least so many lie one after another from side to side of each layer, and of each other part
         whose sides face each other, with Steiner points. Thin layers, by layer_aspect_ratio, are left
