@@ -124,7 +124,7 @@ def RunVia(folder):
         return numpy.minimum(SMALLEST + 0.35 * numpy.minimum(wall, bottom), 0.3)
 
     for name, limit, length, sizing in (
-            ("via", 7324, 0.17, None),
+            ("via", 7324, 0.18, None),
             ("via_refined", 75720, 0.0, gallery.MakeSizing(device, GetLength))):
         mesh = gallery.MakeMesh(device, length, sizing)
         wrong += gallery.Report("Via, edges of one length" if sizing is None else
