@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/SliverPerturbation.h"
 
-#include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Improvement/LookAhead.h"
 #include "Core/Improvement/SliverChanges.h"
 #include "Core/Improvement/SliverList.h"
 
 #include <algorithm>
+#include <unordered_set>
 #include <utility>
 
 namespace cdm
@@ -161,35 +161,47 @@ ExecutionContext GetPass(const ExecutionContext& context, int pass, int numberOf
     static_cast<double>(pass) / numberOfPasses, static_cast<double>(pass + 1) / numberOfPasses);
 }
 
-/** Requests a split of the boundary that is in the way of a sliver. */
-void RequestSplit(Id sliver, RefinedMesh& mesh)
+/** Slivers without a common point: of those that have one, the first. */
+class ApartSlivers
+{
+public:
+  bool IsApart(const TetrahedronIds& ids) const
+  {
+    return std::none_of(
+      ids.begin(), ids.end(), [this](Id id) { return this->Points.count(id) > 0; });
+  }
+  void Add(const TetrahedronIds& ids) { this->Points.insert(ids.begin(), ids.end()); }
+
+private:
+  std::unordered_set<Id> Points;
+};
+
+/** Requests a split of the boundary that is in the way of a sliver. False if there is none. */
+bool RequestSplit(Id sliver, RefinedMesh& mesh)
 {
   if (mesh.GetRequests().AddEdgeOfTwoTriangles(
         mesh.GetMesh().Tetrahedra[sliver], mesh.GetShape().PointTriangles))
   {
-    return;
+    return true;
   }
   const auto [a, b, c, d] = mesh.GetTetrahedra().GetCorners(sliver);
   const Vec3 center = GetCircumcenter(a, b, c, d);
-  if (IsFinite(center))
-  {
-    mesh.RequestEncroached(center, true);
-  }
+  return IsFinite(center) && mesh.RequestEncroached(center, true);
 }
 
 /**
  * Requests a split of a boundary triangle beside slivers, which may still help where no edge or
- * triangle is in the way: one for all that have a point in common.
+ * triangle is in the way.
  */
 void RequestSplitsBeside(const std::vector<TetrahedronIds>& slivers, RefinedMesh& mesh)
 {
-  std::vector<Id> near;
+  ApartSlivers requested;
   for (const TetrahedronIds& ids : slivers)
   {
-    if (std::none_of(ids.begin(), ids.end(), [&near](Id id) { return Contains(near, id); }))
+    if (requested.IsApart(ids))
     {
       mesh.GetRequests().AddLargestTriangle(ids, mesh.GetShape().PointTriangles);
-      near.insert(near.end(), ids.begin(), ids.end());
+      requested.Add(ids);
     }
   }
 }
@@ -205,6 +217,7 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
   bool mayInsert = false;
   bool isLast = false;
   std::vector<TetrahedronIds> unmet;
+  ApartSlivers requested;
   for (int pass = 0; pass < MaximumSliverPasses; ++pass)
   {
     perturbation.Start(FindSlivers(aim.Target, aim.Place, mesh), mayInsert ? target : 0.0);
@@ -216,7 +229,11 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
       if (isBad && !isMended && isLast && means == SliverMeans::Requests)
       {
         unmet.push_back(mesh.GetMesh().Tetrahedra[sliver.Tetrahedron]);
-        RequestSplit(sliver.Tetrahedron, mesh);
+        // What the split changes may mend the others at its sliver's points.
+        if (requested.IsApart(unmet.back()) && RequestSplit(sliver.Tetrahedron, mesh))
+        {
+          requested.Add(unmet.back());
+        }
       }
     };
     if (!perturbation.Run(
