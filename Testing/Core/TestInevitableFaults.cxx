@@ -139,7 +139,14 @@ public:
         return true;
       }
     }
-    return false;
+    // Hardly any tetrahedron is excused by a shadow alone.
+    return std::any_of(std::begin(TetrahedronEdges), std::end(TetrahedronEdges),
+      [&](const int(&edge)[2])
+      {
+        const Id p = ids[edge[0]];
+        const Id q = ids[edge[1]];
+        return this->IsInShadow(p, q) || this->IsInShadow(q, p);
+      });
   }
 
 private:
@@ -184,11 +191,38 @@ private:
             GetAngle(points[p] - points[c], points[q] - points[c]) < 30.0;
         });
   }
-  bool HaveCommonFacet(Id p, Id q) const
+  bool HaveCommonFacet(Id p, Id q) const { return this->CountCommonFacets(p, q) > 0; }
+  std::ptrdiff_t CountCommonFacets(Id p, Id q) const
   {
     const std::set<Id>& facets = this->Plane.Points[q];
-    return std::any_of(this->Plane.Points[p].begin(), this->Plane.Points[p].end(),
+    return std::count_if(this->Plane.Points[p].begin(), this->Plane.Points[p].end(),
       [&](Id facet) { return facets.count(facet) > 0; });
+  }
+  /**
+   * From a corner, q is seen in a facet at the edge of p, no farther from it than another edge that
+   * makes less than 30 degrees with it: in the shadow of that edge (SharpAngles.h).
+   */
+  bool IsInShadow(Id p, Id q) const
+  {
+    const std::vector<Vec3>& points = this->Plane.Surface.Points;
+    return std::any_of(this->Corners.begin(), this->Corners.end(),
+      [&](Id c)
+      {
+        if (c == p || c == q || this->CountCommonFacets(p, c) < 2 || !this->HaveCommonFacet(q, c) ||
+          !this->HaveCommonFacet(p, q))
+        {
+          return false;
+        }
+        const Vec3 along = points[p] - points[c];
+        const double shadow = GetAngle(along, points[q] - points[c]);
+        return std::any_of(this->Ends.begin(), this->Ends.end(),
+          [&](Id e)
+          {
+            const double angle = GetAngle(along, points[e] - points[c]);
+            return e != c && this->CountCommonFacets(e, c) >= 2 && angle < 30.0 &&
+              shadow < (1.0 + 1e-9) * angle;
+          });
+      });
   }
 
   /** The side at q is a twentieth of its size above that at p, or less, and they look at each other. */
