@@ -106,8 +106,9 @@ public:
   /**
    * Layers whose facets are at least so many times as wide as the layer is thick are thin: tetrahedra
    * across them may be flat, as well shaped ones would have to be as small as the layer is thick. All
-   * other layers are filled with well shaped ones. Facets that bend by less than a degree are one. Ratio; default 0: 20 where another region is beside the
-   * layer, and 100 for plates, with the outside on both sides; otherwise at least 1.
+   * other layers are filled with well shaped ones. Facets that bend by less than a degree are one.
+   * Ratio; default 0: 20 where another region is beside the layer, and 100 for plates, with the
+   * outside on both sides; otherwise at least 1.
    */
   vtkSetInRangeMacro(LayerAspectRatio, double, 0.0, VTK_DOUBLE_MAX, "ratio of width to thickness");
   vtkGetMacro(LayerAspectRatio, double);

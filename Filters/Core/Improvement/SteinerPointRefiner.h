@@ -77,8 +77,8 @@ struct SteinerPointRefinerOptions
   double DihedralAngleTarget = 15.0;
   /**
    * Layers whose facets are at least so many times as wide as the layer is thick are not filled with
-   * well shaped tetrahedra, see ThinLayers.h. 0: 20 beside another region, 100 where there is none; or at least
-   * 1.
+   * well shaped tetrahedra, see ThinLayers.h. 0: 20 beside another region, 100 where there is none;
+   * or at least 1.
    */
   double LayerAspectRatio = 0.0;
   /**
