@@ -74,7 +74,7 @@ TEST(ThinLayers, EachFacetIsASideOfItsOwn)
   // Each facet is a hundredth of the circumference wide, and twelve times the thickness.
   const TriangleMesh narrow = MakeTubeSurface(100, 0.005);
   EXPECT_FALSE(IsAcross(narrow, { 0, 2, 3, 6 }, 0));
-  // As wide as a sixth of it.
+  // Each facet of a hexagonal tube is a sixth of the circumference wide, 200 times the thickness.
   const TriangleMesh hexagonal = MakeTubeSurface(6, 0.005);
   EXPECT_TRUE(IsAcross(hexagonal, { 0, 2, 3, 6 }, 0));
   const TriangleMesh thick = MakeTubeSurface(6, 0.2);
@@ -83,7 +83,7 @@ TEST(ThinLayers, EachFacetIsASideOfItsOwn)
 
 TEST(ThinLayers, FacetsThatBendByLessThanADegreeAreOneSide)
 {
-  // Facets that bend by half a degree, twice as wide as the wall is thick.
+  // The facets bend by half a degree; each is not even twice as wide as the wall is thick.
   const TriangleMesh thin = MakeTubeSurface(720, 0.005);
   EXPECT_TRUE(IsAcross(thin, { 0, 2, 3, 6 }, 0));
 }

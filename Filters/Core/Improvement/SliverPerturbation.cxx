@@ -161,7 +161,7 @@ ExecutionContext GetPass(const ExecutionContext& context, int pass, int numberOf
     static_cast<double>(pass) / numberOfPasses, static_cast<double>(pass + 1) / numberOfPasses);
 }
 
-/** Slivers without a common point: of those that have one, the first. */
+/** A list of slivers no two of which have a common point. */
 class ApartSlivers
 {
 public:
@@ -176,7 +176,7 @@ private:
   std::unordered_set<Id> Points;
 };
 
-/** Requests a split of the boundary that is in the way of a sliver. False if there is none. */
+/** Requests a split of what is in the way of a sliver. False if no part of the boundary is. */
 bool RequestSplit(Id sliver, RefinedMesh& mesh)
 {
   if (mesh.GetRequests().AddEdgeOfTwoTriangles(
@@ -229,7 +229,7 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
       if (isBad && !isMended && isLast && means == SliverMeans::Requests)
       {
         unmet.push_back(mesh.GetMesh().Tetrahedra[sliver.Tetrahedron]);
-        // What the split changes may mend the others at its sliver's points.
+        // A split may mend the other slivers at the points of the one that it is for.
         if (requested.IsApart(unmet.back()) && RequestSplit(sliver.Tetrahedron, mesh))
         {
           requested.Add(unmet.back());

@@ -8,8 +8,7 @@
  * last a split of the boundary is requested, in each round for one of all slivers with a common
  * point. Each change increases the smallest angle of the tetrahedra that it replaces, and breaks no
  * limit that all of them kept. Tetrahedra across input angles that are sharp for slivers
- * (SharpAngles.h) do not count as such, but must not get worse;
- * PerturbSharp() treats them last.
+ * (SharpAngles.h) do not count as such, but must not get worse; PerturbSharp() treats them last.
  *
  * Threads look ahead: they search the changes of the next slivers at the same time. A change is made
  * in its turn, if no tetrahedron that its search has seen was replaced meanwhile; otherwise it is

@@ -140,9 +140,9 @@ const ThinLayers::Face* ThinLayers::GetFace(Id triangle, Id region) const
                                : nullptr;
 }
 
-bool ThinLayers::AreOpposite(Id first, Id second) const
+bool ThinLayers::AreOpposite(const Face& first, const Face& second)
 {
-  return Dot(this->Faces[first].Normal, this->Faces[second].Normal) <= -AcrossCosine;
+  return Dot(first.Normal, second.Normal) <= -AcrossCosine;
 }
 
 bool ThinLayers::IsThin(const Face& first, const Face& second, double thickness) const
@@ -184,7 +184,7 @@ bool ThinLayers::IsAcross(const TetrahedronIds& ids, Id region) const
         for (Id u : this->PointTriangles[ids[edge[1]]])
         {
           const Face* const second = this->GetFace(u, region);
-          if (second == nullptr || Dot(first->Normal, second->Normal) > -AcrossCosine)
+          if (second == nullptr || !AreOpposite(*first, *second))
           {
             continue;
           }

@@ -62,7 +62,10 @@ public:
    * Whether two faces look at each other, or away from each other, but for 32 degrees. The face 2 t
    * is triangle t as seen from behind, and 2 t + 1 as seen from its front.
    */
-  bool AreOpposite(Id first, Id second) const;
+  bool AreOpposite(Id first, Id second) const
+  {
+    return AreOpposite(this->Faces[first], this->Faces[second]);
+  }
   /** Whether a layer between two faces is thin if it is so thick. */
   bool IsThin(Id first, Id second, double thickness) const
   {
@@ -82,6 +85,7 @@ private:
   };
   void MeasureWidths();
   const Face* GetFace(Id triangle, Id region) const;
+  static bool AreOpposite(const Face& first, const Face& second);
   bool IsThin(const Face& first, const Face& second, double thickness) const;
 
   const TriangleMesh& Surface;
