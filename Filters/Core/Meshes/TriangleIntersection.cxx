@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Meshes/TriangleIntersection.h"
 
+#include "Core/Basics/ParallelLoop.h"
 #include "Core/Geometry/Predicates.h"
 #include "Core/Search/BoxTree.h"
 
@@ -12,6 +13,13 @@ namespace cdm
 {
 namespace
 {
+/**
+ * Pairs of triangles whose boxes overlap are tested when there are so many, and so many at a time by
+ * a thread.
+ */
+constexpr std::size_t PairsBetweenTests = 1 << 15;
+constexpr std::size_t PairsAtOnce = 1024;
+
 using Corners = std::array<Vec3, 3>;
 
 Corners GetCorners(const std::vector<Vec3>& points, const TriangleIds& t)
@@ -452,22 +460,50 @@ bool FindIntersectingPairs(const std::vector<Vec3>& points,
   const ExecutionContext& context, std::vector<TrianglePair>& pairs)
 {
   pairs.clear();
-  const BoxTree tree(MakeBoxes(points, triangles));
+  const BoxTree tree(MakeBoxes(points, triangles), context.GetNumberOfThreads());
   const auto isActive = [&active](Id t) { return active.empty() || active[t]; };
+  std::vector<TrianglePair> candidates;
+  std::vector<char> intersect;
+  const auto test = [&]
+  {
+    intersect.resize(candidates.size());
+    ParallelLoop(candidates.size(), { context.GetNumberOfThreads(), PairsAtOnce }, {}, "",
+      [&](std::size_t begin, std::size_t end, std::size_t)
+      {
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          const auto [s, t] = candidates[i];
+          intersect[i] = static_cast<char>(
+            ClassifyTriangles(points, triangles[s], triangles[t]) == TriangleContact::Intersection);
+        }
+      });
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+    {
+      if (intersect[i] != 0)
+      {
+        pairs.push_back(candidates[i]);
+      }
+    }
+    candidates.clear();
+  };
   const auto add = [&](Id s, Id t)
   {
-    if ((isActive(s) || isActive(t)) &&
-      ClassifyTriangles(points, triangles[s], triangles[t]) == TriangleContact::Intersection)
+    if (isActive(s) || isActive(t))
     {
-      pairs.push_back({ std::min(s, t), std::max(s, t) });
+      candidates.push_back({ std::min(s, t), std::max(s, t) });
     }
   };
   const auto mayGoOn = [&](double progress)
   {
+    if (candidates.size() >= PairsBetweenTests)
+    {
+      test();
+    }
     return pairs.size() < MaximumNumberOfPairs &&
       context.Continue(progress, "Looking for self-intersections");
   };
   const bool isDone = tree.VisitPairs(add, mayGoOn);
+  test();
   std::sort(pairs.begin(), pairs.end());
   return isDone || pairs.size() >= MaximumNumberOfPairs;
 }

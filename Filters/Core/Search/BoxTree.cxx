@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Search/BoxTree.h"
 
+#include "Core/Basics/ParallelLoop.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -9,9 +11,17 @@ namespace cdm
 namespace
 {
 constexpr Id LeafSize = 4;
-}
+/** A range of so many boxes, some half a millisecond, is worth another thread. */
+constexpr Id FewestForThread = 4096;
 
-BoxTree::BoxTree(const std::vector<Box>& boxes) : Order(boxes.size())
+/** The number of nodes of a tree of so many boxes. */
+Id CountNodes(Id count)
+{
+  return count > LeafSize ? 1 + CountNodes(count / 2) + CountNodes(count - count / 2) : 1;
+}
+} // namespace
+
+BoxTree::BoxTree(const std::vector<Box>& boxes, int numberOfThreads) : Order(boxes.size())
 {
   std::iota(this->Order.begin(), this->Order.end(), 0);
   if (!this->Order.empty())
@@ -23,8 +33,9 @@ BoxTree::BoxTree(const std::vector<Box>& boxes) : Order(boxes.size())
       // Halves first: the sum of large coordinates may overflow.
       centers.push_back(0.5 * box.Low + 0.5 * box.High);
     }
-    this->Nodes.reserve(this->Order.size());
-    this->Build(boxes, centers, 0, static_cast<Id>(this->Order.size()));
+    const Id count = static_cast<Id>(this->Order.size());
+    this->Nodes.resize(CountNodes(count));
+    this->Build(boxes, centers, 0, count, 0, static_cast<int>(GetNumberOfThreads(numberOfThreads)));
   }
   this->Boxes.reserve(boxes.size());
   for (const Id id : this->Order)
@@ -33,12 +44,10 @@ BoxTree::BoxTree(const std::vector<Box>& boxes) : Order(boxes.size())
   }
 }
 
-void BoxTree::Build(
-  const std::vector<Box>& boxes, const std::vector<Vec3>& centers, Id begin, Id end)
+void BoxTree::Build(const std::vector<Box>& boxes, const std::vector<Vec3>& centers, Id begin,
+  Id end, Id index, int numberOfThreads)
 {
-  const std::size_t index = this->Nodes.size();
-  this->Nodes.emplace_back();
-  Node node;
+  Node& node = this->Nodes[index];
   node.Begin = begin;
   node.End = end;
   for (Id i = begin; i < end; ++i)
@@ -58,10 +67,21 @@ void BoxTree::Build(
         const double right = centers[b][axis];
         return left != right ? left < right : a < b;
       });
-    this->Build(boxes, centers, begin, middle);
-    node.Right = static_cast<Id>(this->Nodes.size());
-    this->Build(boxes, centers, middle, end);
+    node.Right = index + 1 + CountNodes(middle - begin);
+    const int parts = end - begin < FewestForThread ? 1 : std::min(2, numberOfThreads);
+    const auto buildChild = [&](bool isRight, int threads)
+    {
+      this->Build(boxes, centers, isRight ? middle : begin, isRight ? end : middle,
+        isRight ? node.Right : index + 1, threads);
+    };
+    if (parts < 2)
+    {
+      buildChild(false, 1);
+      buildChild(true, 1);
+      return;
+    }
+    RunOnThreads(
+      2, [&](int part) { buildChild(part == 1, (numberOfThreads + (part == 0 ? 1 : 0)) / 2); });
   }
-  this->Nodes[index] = node;
 }
 } // namespace cdm
