@@ -161,14 +161,17 @@ ExecutionContext GetPass(const ExecutionContext& context, int pass, int numberOf
     static_cast<double>(pass) / numberOfPasses, static_cast<double>(pass + 1) / numberOfPasses);
 }
 
-/** A list of slivers no two of which have a common point. */
+/**
+ * A list of slivers each of which has at most one point in common with all others. 60 random complexes
+ * take 695,651 tetrahedra so; 705,392 if they have no point in common, and 700,167 if all are listed.
+ */
 class ApartSlivers
 {
 public:
   bool IsApart(const TetrahedronIds& ids) const
   {
-    return std::none_of(
-      ids.begin(), ids.end(), [this](Id id) { return this->Points.count(id) > 0; });
+    return std::count_if(
+             ids.begin(), ids.end(), [this](Id id) { return this->Points.count(id) > 0; }) < 2;
   }
   void Add(const TetrahedronIds& ids) { this->Points.insert(ids.begin(), ids.end()); }
 
@@ -229,7 +232,7 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
       if (isBad && !isMended && isLast && means == SliverMeans::Requests)
       {
         unmet.push_back(mesh.GetMesh().Tetrahedra[sliver.Tetrahedron]);
-        // A split may mend the other slivers at the points of the one that it is for.
+        // A split may mend the other slivers at the edges of this one.
         if (requested.IsApart(unmet.back()) && RequestSplit(sliver.Tetrahedron, mesh))
         {
           requested.Add(unmet.back());

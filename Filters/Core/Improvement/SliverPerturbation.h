@@ -6,7 +6,7 @@
  * Method: slivers are taken one by one, the worst first. A free point of the sliver is moved, or
  * left out if that is better; if that does not help, a new point is inserted (SliverChanges.h). At
  * last a split of the boundary is requested, in each round for one of all slivers with a common
- * point. Each change increases the smallest angle of the tetrahedra that it replaces, and breaks no
+ * edge. Each change increases the smallest angle of the tetrahedra that it replaces, and breaks no
  * limit that all of them kept. Tetrahedra across input angles that are sharp for slivers
  * (SharpAngles.h) do not count as such, but must not get worse; PerturbSharp() treats them last.
  *
