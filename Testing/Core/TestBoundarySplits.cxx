@@ -187,8 +187,10 @@ public:
     const std::unique_ptr<BoundaryShape> expected = this->MakeShape();
     const TetMesh& mesh = this->Mesh->GetMesh();
     NegativeCouplings couplings;
-    EXPECT_EQ(this->Couplings.Update(*this->Mesh, this->Surface, this->Shape->PointTriangles),
-      couplings.Update(*this->Mesh, this->Surface, expected->PointTriangles));
+    ThreadTeam alone(1);
+    EXPECT_EQ(
+      this->Couplings.Update(*this->Mesh, this->Surface, this->Shape->PointTriangles, this->Team),
+      couplings.Update(*this->Mesh, this->Surface, expected->PointTriangles, alone));
     for (Id p = 0; p < static_cast<Id>(this->Surface.Points.size()); ++p)
     {
       const IdLists::Range known = this->Shape->PointTriangles[p];
@@ -229,7 +231,7 @@ public:
   std::int64_t CountCouplingVisits()
   {
     const std::int64_t before = this->Couplings.GetNumberOfVisits();
-    this->Couplings.Update(*this->Mesh, this->Surface, this->Shape->PointTriangles);
+    this->Couplings.Update(*this->Mesh, this->Surface, this->Shape->PointTriangles, this->Team);
     return this->Couplings.GetNumberOfVisits() - before;
   }
 
@@ -306,6 +308,7 @@ private:
   std::unique_ptr<BoundaryShape> Shape;
   NegativeCouplings Couplings;
   bool IsThreaded = false;
+  ThreadTeam Team{ 2 };
 };
 
 /** Three boxes side by side and on top of each other: many points on one sphere. */

@@ -61,8 +61,9 @@ std::vector<EdgeIds> FindOneByOne(const TetMesh& mesh, const TriangleMesh& bound
 
 std::vector<EdgeIds> FindAll(const TetMesh& mesh, const TriangleMesh& boundary)
 {
+  ThreadTeam team(2);
   return NegativeCouplings().Update(DynamicTetrahedralization(mesh), boundary,
-    ListTrianglesAtPoints(boundary.Triangles, boundary.Points.size()));
+    ListTrianglesAtPoints(boundary.Triangles, boundary.Points.size()), team);
 }
 
 /** Two of its edges, opposite to each other, have points in their smallest spheres, no facet has. */

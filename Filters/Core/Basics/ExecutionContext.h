@@ -78,6 +78,11 @@ public:
    * is the only one.
    */
   const std::shared_ptr<ThreadTeam>& GetThreads() const { return this->Threads; }
+  /** The same, but without threads a new team of the calling one. */
+  std::shared_ptr<ThreadTeam> GetTeam() const
+  {
+    return this->Threads ? this->Threads : std::make_shared<ThreadTeam>(1);
+  }
 
   const Deadline& GetDeadline() const { return this->TimeLimit; }
   /** Whether the time limit is over, if there is one. */

@@ -32,6 +32,13 @@ inline std::size_t GetNumberOfThreads(int option)
                     : std::max(1U, std::thread::hardware_concurrency());
 }
 
+/**
+ * What different threads write to lies so many bytes apart: processors fetch lines of memory in
+ * pairs, and each of them waits for the other one's where they share one. Searches side by side in a
+ * list took a third longer.
+ */
+constexpr std::size_t SeparateLines = 128;
+
 class ThreadTeam
 {
 public:

@@ -30,7 +30,8 @@ std::uint32_t CavitySearch::StartSearch()
     {
       mark = mark >= FirstHidden ? mark : 0;
     }
-    this->Search = 2;
+    this->FirstOfRecord = 2;
+    this->Search = 4;
   }
   return this->Search;
 }
@@ -42,12 +43,7 @@ void CavitySearch::StartRecord()
     return;
   }
   this->Visited.clear();
-  this->VisitMarks.resize(this->Mesh.Tetrahedra.size(), 0);
-  if (++this->Record == 0)
-  {
-    std::fill(this->VisitMarks.begin(), this->VisitMarks.end(), 0);
-    this->Record = 1;
-  }
+  this->FirstOfRecord = this->StartSearch();
 }
 
 bool CavitySearch::FindStar(Id point, std::vector<Id>& star)
@@ -55,10 +51,10 @@ bool CavitySearch::FindStar(Id point, std::vector<Id>& star)
   const std::uint32_t search = this->StartSearch();
   bool isInside = true;
   star.assign(1, this->PointTetrahedra[point]);
+  this->Visit(star[0]);
   this->Marks[star[0]] = search;
   for (std::size_t i = 0; i < star.size(); ++i)
   {
-    this->Visit(star[i]);
     for (int facet = 0; facet < 4; ++facet)
     {
       if (this->Mesh.Tetrahedra[star[i]][facet] == point)
@@ -73,6 +69,7 @@ bool CavitySearch::FindStar(Id point, std::vector<Id>& star)
       const Id neighbor = this->Mesh.Neighbors[star[i]][facet] / 4;
       if (this->Marks[neighbor] != search)
       {
+        this->Visit(neighbor);
         this->Marks[neighbor] = search;
         star.push_back(neighbor);
       }
@@ -206,7 +203,7 @@ void CavitySearch::TakeBack()
 {
   for (const Id t : this->Star)
   {
-    this->Marks[t] = 0;
+    this->Marks[t] = this->FirstOfRecord;
   }
   this->CellNeighbors.clear();
 }

@@ -13,12 +13,12 @@
  * numbered after the tetrahedra of the mesh, and hide those around the point.
  *
  * Guarantees: what a search finds is what the changed mesh would have, in the same order. See
- * DynamicTetrahedralization.h for what the mesh has to be. Cost: 4 bytes for each tetrahedron, 8 if
- * visits are recorded.
+ * DynamicTetrahedralization.h for what the mesh has to be. Cost: 4 bytes for each tetrahedron.
  */
 #ifndef cdmCavitySearch_h
 #define cdmCavitySearch_h
 
+#include "Core/Basics/ThreadTeam.h"
 #include "Core/Delaunay/CavityFilling.h"
 #include "Core/Meshes/TetMesh.h"
 
@@ -40,7 +40,7 @@ struct PointCavity
   std::vector<Id> Outer;
 };
 
-class CavitySearch
+class alignas(SeparateLines) CavitySearch
 {
 public:
   /**
@@ -115,8 +115,8 @@ public:
   /** Forgets the visits so far. */
   void StartRecord();
   /**
-   * The tetrahedra that were visited since then. If none of them has been replaced meanwhile, the
-   * same searches would find the same.
+   * The tetrahedra that were visited since then, some maybe twice. If none of them has been replaced
+   * meanwhile, the same searches would find the same.
    */
   const std::vector<Id>& GetVisited() const { return this->Visited; }
 
@@ -133,6 +133,7 @@ private:
   /** Stamp of a new search; marks of older ones do not count. */
   std::uint32_t StartSearch();
   bool IsVisible(const PointCavity& cavity, const Vec3& position) const;
+  /** Notes a tetrahedron if visits are recorded; before it is marked. */
   void Visit(Id tetrahedron);
 
   const TetMesh& Mesh;
@@ -151,10 +152,12 @@ private:
   /** Facet ids of the cells' neighbors, and the facet id that replaces each tetrahedron's. */
   std::vector<std::array<Id, 4>> CellNeighbors;
   std::vector<Id> Substitutes;
-  /** Which tetrahedra have been visited, and the record that their marks are from. */
+  /**
+   * The tetrahedra that have been visited since the record was started. Their marks are not smaller
+   * than this one, which is of no search.
+   */
   std::vector<Id> Visited;
-  std::vector<std::uint32_t> VisitMarks;
-  std::uint32_t Record = 0;
+  std::uint32_t FirstOfRecord = 0;
 };
 
 inline Id CavitySearch::GetNeighbor(Id tetrahedron, int facet) const
@@ -175,9 +178,9 @@ inline Id CavitySearch::GetNeighbor(Id tetrahedron, int facet) const
 inline void CavitySearch::Visit(Id tetrahedron)
 {
   if (this->IsRecording && tetrahedron < this->GetFirstCell() &&
-    this->VisitMarks[tetrahedron] != this->Record)
+    this->Marks[tetrahedron] < this->FirstOfRecord)
   {
-    this->VisitMarks[tetrahedron] = this->Record;
+    this->Marks[tetrahedron] = this->FirstOfRecord;
     this->Visited.push_back(tetrahedron);
   }
 }

@@ -84,7 +84,7 @@ BoundarySplits::BoundarySplits(DynamicTetrahedralization& mesh, Id firstInside,
 Status BoundarySplits::FollowPoints(const ChangedPoints& changed, const ExecutionContext& context)
 {
   const std::vector<Vec3>& points = this->Refinement.GetPoints();
-  std::vector<std::pair<Id, Vec3>> moves;
+  SurfaceRefinement::PointChanges changes;
   this->Moved.clear();
   for (Id point : changed.OnSurface)
   {
@@ -92,7 +92,7 @@ Status BoundarySplits::FollowPoints(const ChangedPoints& changed, const Executio
     const Id known = this->RefinementSurfacePoints[point];
     if (points[known] != position)
     {
-      moves.emplace_back(known, position);
+      changes.MovedOnSurface.emplace_back(known, position);
     }
     if (this->Mesh.GetPoint(point) != position)
     {
@@ -106,20 +106,21 @@ Status BoundarySplits::FollowPoints(const ChangedPoints& changed, const Executio
     const bool isThere = this->Mesh.GetTetrahedronAt(p) != NoId;
     if (known != NoId && !isThere)
     {
-      this->Refinement.RemoveMeshPoint(known);
+      changes.Removed.push_back(known);
       known = NoId;
     }
     else if (known == NoId && isThere)
     {
-      known = this->Refinement.AddMeshPoint(this->Mesh.GetPoint(p));
+      known = static_cast<Id>(points.size() + changes.Added.size());
+      changes.Added.push_back(this->Mesh.GetPoint(p));
       this->SurfacePoints.push_back(NoId);
     }
     else if (isThere && points[known] != this->Mesh.GetPoint(p))
     {
-      moves.emplace_back(known, this->Mesh.GetPoint(p));
+      changes.Moved.emplace_back(known, this->Mesh.GetPoint(p));
     }
   }
-  this->Refinement.MovePoints(moves);
+  this->Refinement.ChangePoints(changes, *context.GetTeam());
   return this->Refinement.Refine(context);
 }
 

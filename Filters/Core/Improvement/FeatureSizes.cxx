@@ -44,9 +44,10 @@ std::vector<EdgeIds> ListPoints(const std::vector<StructuralEdge>& edges)
 
 FeatureSizes::FeatureSizes(const std::vector<Vec3>& points,
   const std::vector<TriangleIds>& triangles, const std::vector<Id>& facets,
-  const std::vector<StructuralEdge>& edges)
+  const std::vector<StructuralEdge>& edges, int numberOfThreads)
   : Points(points), Edges(ListPoints(edges)), Triangles(triangles), Facets(facets),
-    Contacts(static_cast<Id>(points.size()), triangles, facets), Tree(this->MakeBoxes())
+    Contacts(static_cast<Id>(points.size()), triangles, facets),
+    Tree(this->MakeBoxes(), numberOfThreads)
 {
 }
 

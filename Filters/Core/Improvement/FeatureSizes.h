@@ -29,9 +29,13 @@ namespace cdm
 class FeatureSizes
 {
 public:
-  /** @param facets the surface facet of each triangle, as from NumberFacets() */
+  /**
+   * @param facets the surface facet of each triangle, as from NumberFacets()
+   * @param numberOfThreads that build the search
+   */
   FeatureSizes(const std::vector<Vec3>& points, const std::vector<TriangleIds>& triangles,
-    const std::vector<Id>& facets, const std::vector<StructuralEdge>& edges);
+    const std::vector<Id>& facets, const std::vector<StructuralEdge>& edges,
+    int numberOfThreads = 1);
 
   /**
    * The local feature size at a position, at most the limit. Features closer than a hundredth of

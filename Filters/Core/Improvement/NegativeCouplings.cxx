@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/NegativeCouplings.h"
 
+#include "Core/Basics/ParallelSort.h"
 #include "Core/Basics/SortedIds.h"
 #include "Core/Meshes/VoronoiMeasures.h"
 
@@ -12,6 +13,10 @@ namespace cdm
 {
 namespace
 {
+/** A thread looks at so many tetrahedra, or tests so many edges, at a time. */
+constexpr std::size_t TetrahedraAtOnce = 8192;
+constexpr std::size_t EdgesAtOnce = 64;
+
 /** Calls visit(i, edge) for each edge i of a tetrahedron between two points of the boundary. */
 template <typename Visitor>
 void ForEachBoundaryPair(const TetrahedronIds& ids, Id numberOfPoints, Visitor&& visit)
@@ -28,12 +33,12 @@ void ForEachBoundaryPair(const TetrahedronIds& ids, Id numberOfPoints, Visitor&&
 }
 
 /**
- * Calls visit(tetrahedron, i, edge) for edge i of each tetrahedron that may be one of the given
- * edges of the boundary.
+ * Calls visit(tetrahedron, i, edge, found) on threads for edge i of each tetrahedron that may be one
+ * of the given edges of the boundary. Returns what these calls have added to found, sorted.
  */
-template <typename Visitor>
-void ForEachCandidate(
-  const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfPoints, Visitor&& visit)
+template <typename Item, typename Visitor>
+std::vector<Item> CollectAtCandidates(const TetMesh& mesh, const std::vector<EdgeIds>& edges,
+  Id numberOfPoints, ThreadTeam& team, const Visitor& visit)
 {
   std::vector<char> isEnd(numberOfPoints, 0);
   for (const EdgeIds& edge : edges)
@@ -42,22 +47,35 @@ void ForEachCandidate(
     isEnd[edge[1]] = 1;
   }
   const auto isMarked = [&](Id id) { return id < numberOfPoints && isEnd[id] != 0; };
-  for (std::size_t t = 0; t < mesh.Tetrahedra.size() && !edges.empty(); ++t)
+  const int threads = team.GetNumberOfThreads();
+  std::vector<std::vector<Item>> found(static_cast<std::size_t>(threads));
+  const auto search = [&](std::size_t begin, std::size_t end, int thread)
   {
-    const TetrahedronIds& ids = mesh.Tetrahedra[t];
-    if (ids[0] == NoId || std::count_if(ids.begin(), ids.end(), isMarked) < 2)
+    for (std::size_t t = begin; t < end; ++t)
     {
-      continue;
-    }
-    ForEachBoundaryPair(ids, numberOfPoints,
-      [&](int i, const EdgeIds& edge)
+      const TetrahedronIds& ids = mesh.Tetrahedra[t];
+      if (ids[0] == NoId || std::count_if(ids.begin(), ids.end(), isMarked) < 2)
       {
-        if (isEnd[edge[0]] != 0 && isEnd[edge[1]] != 0)
+        continue;
+      }
+      ForEachBoundaryPair(ids, numberOfPoints,
+        [&](int i, const EdgeIds& edge)
         {
-          visit(static_cast<Id>(t), i, edge);
-        }
-      });
+          if (isEnd[edge[0]] != 0 && isEnd[edge[1]] != 0)
+          {
+            visit(static_cast<Id>(t), i, edge, found[static_cast<std::size_t>(thread)]);
+          }
+        });
+    }
+  };
+  team.RunBlocks(threads, edges.empty() ? 0 : mesh.Tetrahedra.size(), TetrahedraAtOnce, search);
+  std::vector<Item> all;
+  for (const std::vector<Item>& part : found)
+  {
+    all.insert(all.end(), part.begin(), part.end());
   }
+  std::sort(all.begin(), all.end());
+  return all;
 }
 
 /** Whether one of the other two points of the tetrahedron lies in the smallest sphere of an edge. */
@@ -73,18 +91,17 @@ bool IsSphereFilled(const TetMesh& mesh, Id tetrahedron, int edge)
 
 /** Finds those of the edges whose smallest spheres are not empty, ascending. */
 std::vector<EdgeIds> FindFilledEdges(
-  const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfPoints)
+  const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfPoints, ThreadTeam& team)
 {
-  std::vector<EdgeIds> filled;
-  ForEachCandidate(mesh, edges, numberOfPoints,
-    [&](Id tetrahedron, int i, const EdgeIds& edge)
+  std::vector<EdgeIds> filled = CollectAtCandidates<EdgeIds>(mesh, edges, numberOfPoints, team,
+    [&](Id tetrahedron, int i, const EdgeIds& edge, std::vector<EdgeIds>& found)
     {
       if (IsSphereFilled(mesh, tetrahedron, i))
       {
-        filled.push_back(edge);
+        found.push_back(edge);
       }
     });
-  SortUnique(filled);
+  filled.erase(std::unique(filled.begin(), filled.end()), filled.end());
   std::vector<EdgeIds> found;
   std::set_intersection(
     filled.begin(), filled.end(), edges.begin(), edges.end(), std::back_inserter(found));
@@ -117,33 +134,42 @@ bool HasNegative(
 
 /** Finds those of the edges that have a negative coupling, ascending. */
 std::vector<EdgeIds> FindNegative(
-  const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfPoints)
+  const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfPoints, ThreadTeam& team)
 {
   // The tetrahedra at each edge, as in SimplexIncidence.
-  std::vector<std::pair<EdgeIds, Id>> simplices;
-  ForEachCandidate(mesh, edges, numberOfPoints,
-    [&](Id tetrahedron, int i, const EdgeIds& edge)
-    {
-      if (std::binary_search(edges.begin(), edges.end(), edge))
+  using Simplex = std::pair<EdgeIds, Id>;
+  const std::vector<Simplex> simplices =
+    CollectAtCandidates<Simplex>(mesh, edges, numberOfPoints, team,
+      [&](Id tetrahedron, int i, const EdgeIds& edge, std::vector<Simplex>& found)
       {
-        simplices.emplace_back(edge, 6 * tetrahedron + i);
-      }
-    });
-  std::sort(simplices.begin(), simplices.end());
-
-  std::vector<EdgeIds> negative;
-  std::vector<SimplexIncidence::Record> records;
-  for (std::size_t first = 0, last = 0; first < simplices.size(); first = last)
+        if (std::binary_search(edges.begin(), edges.end(), edge))
+        {
+          found.emplace_back(edge, 6 * tetrahedron + i);
+        }
+      });
+  std::vector<char> isNegative(edges.size(), 0);
+  const auto test = [&](std::size_t begin, std::size_t end, int)
   {
-    const EdgeIds& edge = simplices[first].first;
-    records.clear();
-    for (; last < simplices.size() && simplices[last].first == edge; ++last)
+    std::vector<SimplexIncidence::Record> records;
+    auto simplex =
+      std::lower_bound(simplices.begin(), simplices.end(), Simplex(edges[begin], NoId));
+    for (std::size_t i = begin; i < end; ++i)
     {
-      records.push_back({ edge[1], NoId, simplices[last].second });
+      records.clear();
+      for (; simplex != simplices.end() && simplex->first == edges[i]; ++simplex)
+      {
+        records.push_back({ edges[i][1], NoId, simplex->second });
+      }
+      isNegative[i] = HasNegativeCouplingInAnyRegion(mesh, edges[i], records) ? 1 : 0;
     }
-    if (HasNegativeCouplingInAnyRegion(mesh, edge, records))
+  };
+  team.RunBlocks(team.GetNumberOfThreads(), edges.size(), EdgesAtOnce, test);
+  std::vector<EdgeIds> negative;
+  for (std::size_t i = 0; i < edges.size(); ++i)
+  {
+    if (isNegative[i] != 0)
     {
-      negative.push_back(edge);
+      negative.push_back(edges[i]);
     }
   }
   return negative;
@@ -266,7 +292,7 @@ void NegativeCouplings::NoteTriangles(
  * edges of the boundary, and returns true.
  */
 bool NegativeCouplings::CollectChanged(
-  const DynamicTetrahedralization& mesh, const TriangleMesh& boundary)
+  const DynamicTetrahedralization& mesh, const TriangleMesh& boundary, int numberOfThreads)
 {
   const std::int64_t numberOfNew = mesh.CountMade() - this->NumberMade;
   const bool areAll =
@@ -295,7 +321,7 @@ bool NegativeCouplings::CollectChanged(
   this->NumberMade = mesh.CountMade();
   this->NextStamp = mesh.GetNextStamp();
   // Each edge becomes one candidate: the first one, which has a tetrahedron if any of them has.
-  std::sort(this->Changed.begin(), this->Changed.end(),
+  ParallelSort(this->Changed, numberOfThreads, {}, "",
     [](const Candidate& a, const Candidate& b)
     { return a.Edge != b.Edge ? a.Edge < b.Edge : a.Simplex > b.Simplex; });
   this->Changed.erase(std::unique(this->Changed.begin(), this->Changed.end(),
@@ -304,10 +330,30 @@ bool NegativeCouplings::CollectChanged(
   return areAll;
 }
 
-const std::vector<EdgeIds>& NegativeCouplings::Update(const DynamicTetrahedralization& mesh,
-  const TriangleMesh& boundary, const IdLists& pointTriangles)
+/** Called on several threads at once. */
+NegativeCouplings::Answer NegativeCouplings::Test(const Candidate& candidate,
+  const DynamicTetrahedralization& mesh, const TriangleMesh& boundary,
+  const IdLists& pointTriangles, bool areAll)
 {
-  const bool areAll = this->CollectChanged(mesh, boundary);
+  const EdgeIds edge = UnpackIds(candidate.Edge);
+  const std::ptrdiff_t triangles = CountTriangles(boundary, pointTriangles, edge);
+  if (triangles == 0)
+  {
+    return { Finding::NotNegative, 0 };
+  }
+  const Id simplex =
+    candidate.Simplex != NoId || areAll ? candidate.Simplex : FindSimplex(mesh, edge);
+  const Around around = simplex != NoId ? WalkAround(mesh.GetMesh(), simplex) : Around();
+  const Finding finding = around.NumberOfFacets != triangles ? Finding::Unknown
+    : HasNegative(mesh.GetMesh(), edge, around.Records)      ? Finding::Negative
+                                                             : Finding::NotNegative;
+  return { finding, static_cast<std::uint32_t>(around.Records.size()) };
+}
+
+const std::vector<EdgeIds>& NegativeCouplings::Update(const DynamicTetrahedralization& mesh,
+  const TriangleMesh& boundary, const IdLists& pointTriangles, ThreadTeam& team)
+{
+  const bool areAll = this->CollectChanged(mesh, boundary, team.GetNumberOfThreads());
   std::vector<EdgeIds> found;
   for (const EdgeIds& edge : this->Negative)
   {
@@ -319,45 +365,42 @@ const std::vector<EdgeIds>& NegativeCouplings::Update(const DynamicTetrahedraliz
       found.push_back(edge);
     }
   }
+  this->Answers.resize(this->Changed.size());
+  team.RunBlocks(team.GetNumberOfThreads(), this->Changed.size(), EdgesAtOnce,
+    [&](std::size_t begin, std::size_t end, int)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        this->Answers[i] = Test(this->Changed[i], mesh, boundary, pointTriangles, areAll);
+      }
+    });
   // Edges at which bodies touch have tetrahedra beyond the outside, which no walk finds.
   std::vector<EdgeIds> others;
-  for (const Candidate& candidate : this->Changed)
+  for (std::size_t i = 0; i < this->Changed.size(); ++i)
   {
-    const EdgeIds edge = UnpackIds(candidate.Edge);
-    const std::ptrdiff_t triangles = CountTriangles(boundary, pointTriangles, edge);
-    Around around;
-    const Id simplex = candidate.Simplex != NoId || triangles == 0 || areAll
-      ? candidate.Simplex
-      : FindSimplex(mesh, edge);
-    if (triangles > 0 && simplex != NoId)
+    const Answer& answer = this->Answers[i];
+    this->NumberOfVisits += answer.NumberOfVisits;
+    if (answer.What != Finding::NotNegative)
     {
-      around = WalkAround(mesh.GetMesh(), simplex);
-      this->NumberOfVisits += static_cast<std::int64_t>(around.Records.size());
-    }
-    if (around.NumberOfFacets != triangles)
-    {
-      others.push_back(edge);
-    }
-    else if (triangles > 0 && HasNegative(mesh.GetMesh(), edge, around.Records))
-    {
-      found.push_back(edge);
+      (answer.What == Finding::Negative ? found : others)
+        .push_back(UnpackIds(this->Changed[i].Edge));
     }
   }
   this->Changed.clear();
   this->NumberOfVisits += others.empty() ? 0 : 2 * mesh.GetNumberOfTetrahedra();
   const std::vector<EdgeIds> negative =
-    FindNegativeCouplings(mesh.GetMesh(), others, static_cast<Id>(boundary.Points.size()));
+    FindNegativeCouplings(mesh.GetMesh(), others, static_cast<Id>(boundary.Points.size()), team);
   found.insert(found.end(), negative.begin(), negative.end());
   std::sort(found.begin(), found.end());
   this->Negative = std::move(found);
   return this->Negative;
 }
 
-std::vector<EdgeIds> FindNegativeCouplings(
-  const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfBoundaryPoints)
+std::vector<EdgeIds> FindNegativeCouplings(const TetMesh& mesh, const std::vector<EdgeIds>& edges,
+  Id numberOfBoundaryPoints, ThreadTeam& team)
 {
-  const std::vector<EdgeIds> filled = FindFilledEdges(mesh, edges, numberOfBoundaryPoints);
-  return FindNegative(mesh, filled, numberOfBoundaryPoints);
+  const std::vector<EdgeIds> filled = FindFilledEdges(mesh, edges, numberOfBoundaryPoints, team);
+  return FindNegative(mesh, filled, numberOfBoundaryPoints, team);
 }
 
 bool IsBoundaryEdge(

@@ -22,6 +22,7 @@
 #define cdmNegativeCouplings_h
 
 #include "Core/Basics/IdLists.h"
+#include "Core/Basics/ThreadTeam.h"
 #include "Core/Delaunay/DynamicTetrahedralization.h"
 #include "Core/Meshes/TriangleMesh.h"
 
@@ -37,9 +38,10 @@ public:
    * Edges of the boundary whose coupling in a region is negative, ascending.
    * @param mesh has the points of the boundary first; the same mesh each time
    * @param pointTriangles the triangles at each point of the boundary
+   * @param team whose threads share the work
    */
   const std::vector<EdgeIds>& Update(const DynamicTetrahedralization& mesh,
-    const TriangleMesh& boundary, const IdLists& pointTriangles);
+    const TriangleMesh& boundary, const IdLists& pointTriangles, ThreadTeam& team);
 
   /** Notes that triangles of the boundary have changed. */
   void NoteTriangles(const TriangleMesh& boundary, const std::vector<Id>& triangles);
@@ -56,8 +58,24 @@ private:
     /** A tetrahedron at the edge * 6 + its number there, or NoId if none is known. */
     Id Simplex;
   };
+  /** What is known of an edge: Unknown where its tetrahedra have to be looked for among all. */
+  enum class Finding : unsigned char
+  {
+    NotNegative,
+    Negative,
+    Unknown
+  };
+  struct Answer
+  {
+    Finding What = Finding::NotNegative;
+    /** How many tetrahedra have been looked at. */
+    std::uint32_t NumberOfVisits = 0;
+  };
+  static Answer Test(const Candidate& candidate, const DynamicTetrahedralization& mesh,
+    const TriangleMesh& boundary, const IdLists& pointTriangles, bool areAll);
   void Note(const TriangleIds& ids);
-  bool CollectChanged(const DynamicTetrahedralization& mesh, const TriangleMesh& boundary);
+  bool CollectChanged(
+    const DynamicTetrahedralization& mesh, const TriangleMesh& boundary, int numberOfThreads);
 
   std::vector<EdgeIds> Negative;
   /** Edges of triangles that have changed since the last update, then all that may have. */
@@ -66,17 +84,19 @@ private:
   std::int64_t NextStamp = 0;
   /** How many tetrahedra the mesh had made by then. */
   std::int64_t NumberMade = 0;
-  /** Work space, as for VisitAscending(). */
+  /** Work space, as for VisitAscending(), and what was found of each edge. */
   std::vector<std::uint64_t> Marks;
+  std::vector<Answer> Answers;
   std::int64_t NumberOfVisits = 0;
 };
 
 /**
  * Those of some edges of the boundary whose coupling in a region is negative; both lists ascend.
  * @param mesh has the points of the boundary first
+ * @param team whose threads share the work
  */
-std::vector<EdgeIds> FindNegativeCouplings(
-  const TetMesh& mesh, const std::vector<EdgeIds>& edges, Id numberOfBoundaryPoints);
+std::vector<EdgeIds> FindNegativeCouplings(const TetMesh& mesh, const std::vector<EdgeIds>& edges,
+  Id numberOfBoundaryPoints, ThreadTeam& team);
 
 /**
  * Whether two points are joined by an edge of the boundary.

@@ -27,6 +27,8 @@ constexpr double SameCellRatio = 1e-3;
 constexpr int MaximumSteps = 4;
 /** Distance of a sphere's center from the span of the others, in lengths of it, that is enough. */
 constexpr double EnoughMargin = 1.0;
+/** A thread looks at so many tetrahedra at a time. */
+constexpr std::size_t TetrahedraAtOnce = 8192;
 
 /** The circle through three points. */
 class Circle
@@ -63,10 +65,40 @@ private:
    */
   double LargestHeight2;
 };
+
+/** Lists points of the surface that are used, each with a tetrahedron at it, by tetrahedra. */
+std::vector<std::pair<Id, Id>> ListStars(
+  const TetMesh& mesh, const std::vector<char>& isUsed, ThreadTeam& team)
+{
+  const Id numberOfPoints = static_cast<Id>(isUsed.size());
+  const std::size_t count = mesh.Tetrahedra.size();
+  std::vector<std::vector<std::pair<Id, Id>>> parts(count / TetrahedraAtOnce + 1);
+  const auto list = [&](std::size_t begin, std::size_t end, int)
+  {
+    for (std::size_t t = begin; t < end; ++t)
+    {
+      const TetrahedronIds& ids = mesh.Tetrahedra[t];
+      for (int i = 0; i < 4 && ids[0] != NoId; ++i)
+      {
+        if (ids[i] < numberOfPoints && isUsed[ids[i]] != 0)
+        {
+          parts[begin / TetrahedraAtOnce].emplace_back(ids[i], static_cast<Id>(t));
+        }
+      }
+    }
+  };
+  team.RunBlocks(team.GetNumberOfThreads(), count, TetrahedraAtOnce, list);
+  std::vector<std::pair<Id, Id>> pairs;
+  for (const std::vector<std::pair<Id, Id>>& part : parts)
+  {
+    pairs.insert(pairs.end(), part.begin(), part.end());
+  }
+  return pairs;
+}
 } // namespace
 
 PointRounding::PointRounding(const TetMesh& mesh, const TriangleMesh& surface,
-  const std::vector<Id>& flat, const std::vector<Id>& wanted)
+  const std::vector<Id>& flat, const std::vector<Id>& wanted, ThreadTeam& team)
   : Mesh(mesh), Surface(surface), Wanted(wanted), IsFlat(mesh.Tetrahedra.size(), 0)
 {
   const Id numberOfPoints = static_cast<Id>(surface.Points.size());
@@ -82,23 +114,8 @@ PointRounding::PointRounding(const TetMesh& mesh, const TriangleMesh& surface,
       isUsed[point] = 1;
     }
   }
+  this->Stars.Build(numberOfPoints, ListStars(mesh, isUsed, team));
   std::vector<std::pair<Id, Id>> pairs;
-  for (Id t = 0; t < static_cast<Id>(mesh.Tetrahedra.size()); ++t)
-  {
-    if (mesh.Tetrahedra[t][0] == NoId)
-    {
-      continue;
-    }
-    for (Id point : mesh.Tetrahedra[t])
-    {
-      if (point < numberOfPoints && isUsed[point])
-      {
-        pairs.emplace_back(point, t);
-      }
-    }
-  }
-  this->Stars.Build(numberOfPoints, pairs);
-  pairs.clear();
   for (Id t = 0; t < static_cast<Id>(surface.Triangles.size()); ++t)
   {
     for (Id point : surface.Triangles[t])

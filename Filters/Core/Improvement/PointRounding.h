@@ -23,6 +23,7 @@
 #define cdmPointRounding_h
 
 #include "Core/Basics/IdLists.h"
+#include "Core/Basics/ThreadTeam.h"
 #include "Core/Geometry/WideVec3.h"
 #include "Core/Meshes/TetMesh.h"
 #include "Core/Meshes/TriangleMesh.h"
@@ -39,9 +40,10 @@ public:
    * @param mesh has the surface's points first; dead tetrahedra have the vertex NoId
    * @param flat all tetrahedra that are flat but for rounding, of points of the surface
    * @param wanted those of them that are to be removed
+   * @param team whose threads share the work
    */
   PointRounding(const TetMesh& mesh, const TriangleMesh& surface, const std::vector<Id>& flat,
-    const std::vector<Id>& wanted);
+    const std::vector<Id>& wanted, ThreadTeam& team);
 
   /**
    * Moves at most one point of each wanted tetrahedron.

@@ -47,7 +47,7 @@ RefinedMesh::RefinedMesh(TetMesh mesh, const RefinedBoundary& boundary,
   : Mesh(std::move(mesh)), Boundary(boundary), Limits(options.Limits),
     FirstInside(static_cast<Id>(boundary.Surface.Points.size())),
     MaximumNewPoints(options.MaximumNewPoints), TimeLimit(options.TimeLimit),
-    Threads(options.Threads ? options.Threads : std::make_shared<ThreadTeam>(1)), Memory(memory),
+    Threads(options.Threads), Memory(memory),
     Shape(std::make_unique<BoundaryShape>(boundary.Surface, boundary.Edges, boundary.KeptEdges,
       options.SharpPlaneAngle, options.LayerAspectRatio)),
     Requests(boundary.Surface, boundary.KeptEdges,
@@ -158,6 +158,11 @@ void RefinedMesh::SetSurfaceSizes(Id first, const std::vector<double>& sizes)
   {
     this->Points[p].Size = sizes[p];
   }
+}
+
+/** Bounds the sizes of points by those that the last splits have made. */
+void RefinedMesh::BoundSizesAtSplits()
+{
   std::vector<Id> changed;
   for (Id t : this->Splits->GetChanged())
   {
@@ -219,8 +224,8 @@ bool RefinedMesh::RequestEncroached(const Vec3& position, bool isSizeKept)
 
 std::size_t RefinedMesh::RequestNegativeCouplings()
 {
-  const std::vector<EdgeIds>& edges =
-    this->Couplings.Update(this->Mesh, this->Boundary.Surface, this->Shape->PointTriangles);
+  const std::vector<EdgeIds>& edges = this->Couplings.Update(
+    this->Mesh, this->Boundary.Surface, this->Shape->PointTriangles, *this->Threads);
   const std::size_t before = this->Requests.GetNumber();
   for (const EdgeIds& edge : edges)
   {
@@ -257,8 +262,8 @@ void RefinedMesh::ReservePoints()
 }
 
 bool RefinedMesh::SplitBoundary(std::vector<Id> moved, const DelaunaySurfaceRefinerOptions& options,
-  const SizingField& sizing, const std::function<void()>& findSizes,
-  const ExecutionContext& context, Status& status)
+  const SizingField& sizing, const std::function<bool()>& setSizes, const ExecutionContext& context,
+  Status& status)
 {
   this->ReservePoints();
   for (Id p : moved)
@@ -292,8 +297,15 @@ bool RefinedMesh::SplitBoundary(std::vector<Id> moved, const DelaunaySurfaceRefi
   {
     return false;
   }
-  this->Threads->RunBoth(
-    [&] { this->FollowBoundary(changed.OnSurface, sourceTriangles); }, findSizes);
+  const bool haveSizes = setSizes();
+  this->Threads->RunBoth([&] { this->FollowBoundary(changed.OnSurface, sourceTriangles); },
+    [&]
+    {
+      if (haveSizes)
+      {
+        this->BoundSizesAtSplits();
+      }
+    });
   this->Requests.Clear();
   return true;
 }

@@ -79,8 +79,8 @@ struct RefinedMeshOptions
   double LayerAspectRatio = 0.0;
   /** Sizes as in InteriorPoint::Size, one for each point of the surface, or empty. */
   std::vector<double> SurfaceSizes;
-  /** The threads that look ahead; null: the calling thread is the only one. Results are the same. */
-  std::shared_ptr<ThreadTeam> Threads;
+  /** The threads that look ahead. Results are the same for any number. */
+  std::shared_ptr<ThreadTeam> Threads = std::make_shared<ThreadTeam>(1);
 };
 
 struct RefinedMeshReport
@@ -153,14 +153,13 @@ public:
    * itself.
    * @param moved points of the surface that have been moved since the last splits, ascending
    * @param options those that the surface was refined with
-   * @param findSizes called when all requests are done, for what depends on the surface and on the
-   *   tetrahedra only, such as SetSurfaceSizes(): maybe on another thread, while what is known of
-   *   the boundary follows
+   * @param setSizes called when all requests are done: it may call SetSurfaceSizes() for the new
+   *   points, and returns whether points have sizes
    * @return whether all requests are done. If not, surface and mesh still fit each other, the
    *   requests that are left stay, and a new mesh has to be made: this object cannot be used then
    */
   bool SplitBoundary(std::vector<Id> moved, const DelaunaySurfaceRefinerOptions& options,
-    const SizingField& sizing, const std::function<void()>& findSizes,
+    const SizingField& sizing, const std::function<bool()>& setSizes,
     const ExecutionContext& context, Status& status);
   /** Whether the last splits took far more points than they were: see BoundarySplits.h. */
   bool HaveSplitsRunAway() const { return this->Splits && this->Splits->HasRunAway(); }
@@ -260,6 +259,7 @@ private:
   void ReservePoints();
   void FollowBoundary(const std::vector<Id>& moved, const std::vector<Id>& sourceTriangles);
   void BoundSizes(const std::vector<Id>& tetrahedra);
+  void BoundSizesAtSplits();
   bool TouchesOpenFacet(const PointCavity& cavity) const;
   template <typename Property>
   std::vector<Id> FindBelow(double target, TetrahedronWatch& watch, Property&& hasProperty) const;

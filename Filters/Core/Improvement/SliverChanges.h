@@ -71,7 +71,7 @@ struct SliverChange
   std::vector<Id> Immovable;
 };
 
-class SliverChanges
+class alignas(SeparateLines) SliverChanges
 {
 public:
   /**

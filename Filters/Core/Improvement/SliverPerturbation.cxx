@@ -86,7 +86,10 @@ const SliverChange& Perturbation::Find(std::size_t i)
   return this->Ahead.Get(
     i, this->Slivers.size(),
     [this](std::size_t k)
-    { return !IsGone(this->Slivers[k], this->Mesh) && !this->IsHopeless(this->Slivers[k]); },
+    {
+      const Sliver& sliver = this->Slivers[k];
+      return IsGone(sliver, this->Mesh) || this->IsHopeless(sliver) ? NoId : sliver.Tetrahedron;
+    },
     find,
     // A mesh that was not full then may be full now.
     [this](const SliverChange& change)

@@ -60,7 +60,7 @@ private:
   RefinedMesh MakeMesh(const ExecutionContext& context, Parts& parts) const
   {
     RefinedMeshOptions options;
-    options.Threads = context.GetThreads();
+    options.Threads = context.GetTeam();
     return RefinedMesh(parts.Mesh, { parts.Surface, parts.Structural.Edges, parts.IntactEdges },
       parts.Interior, parts.Memory, options);
   }

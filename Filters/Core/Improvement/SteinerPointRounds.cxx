@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/SteinerPointRounds.h"
 
-#include "Core/Basics/ParallelLoop.h"
 #include "Core/Basics/SortedIds.h"
 #include "Core/Delaunay/LocalDelaunay.h"
 #include "Core/Geometry/Measures.h"
@@ -50,6 +49,8 @@ constexpr std::size_t PointsPerChange = 64;
  */
 constexpr std::size_t MostShapePoints = 2000;
 constexpr std::size_t MostShapePointsPerPoint = 10;
+/** A thread looks for the sizes of so many points at a time. */
+constexpr std::size_t SizesAtOnce = 64;
 
 Id GetMaximumNewPoints(
   const SteinerPointRefinerInput& input, const SteinerPointRefinerOptions& options)
@@ -225,7 +226,7 @@ RefinedMeshOptions SteinerPointRounds::GetMeshOptions() const
   }
   options.LayerAspectRatio = this->Options.LayerAspectRatio;
   options.SurfaceSizes = this->SurfaceSizes;
-  options.Threads = this->Context.GetThreads();
+  options.Threads = this->Context.GetTeam();
   options.TimeLimit = this->Context.GetDeadline();
   return options;
 }
@@ -452,8 +453,7 @@ void SteinerPointRounds::TakeMesh(
   AdvancingFrontTetrahedralizerOutput made, const std::vector<InteriorPoint>& interior)
 {
   this->Surface = std::move(made.Boundary);
-  this->CollectSurfaceSizes(
-    MakeAscendingIds(this->Surface.Triangles.size()), this->Context.GetNumberOfThreads());
+  this->CollectSurfaceSizes(MakeAscendingIds(this->Surface.Triangles.size()));
   this->Mesh = std::make_unique<RefinedMesh>(std::move(made.Mesh),
     RefinedBoundary{ this->Surface, this->Edges, this->Edges }, interior, this->Memory,
     this->GetMeshOptions());
@@ -532,18 +532,14 @@ Status SteinerPointRounds::SplitInPlace()
   const std::size_t before = this->Surface.Points.size();
   Status status;
   SortUnique(this->MovedPoints);
-  const auto findSizes = [this]
+  const auto setSizes = [this]
   {
-    if (!this->SurfaceSizes.empty())
-    {
-      // One of the threads does something else meanwhile.
-      const std::size_t first = this->CollectSurfaceSizes(
-        this->Mesh->GetSplitTriangles(), std::max(1, this->Context.GetNumberOfThreads() - 1));
-      this->Mesh->SetSurfaceSizes(static_cast<Id>(first), this->SurfaceSizes);
-    }
+    const std::size_t first = this->CollectSurfaceSizes(this->Mesh->GetSplitTriangles());
+    this->Mesh->SetSurfaceSizes(static_cast<Id>(first), this->SurfaceSizes);
+    return !this->SurfaceSizes.empty();
   };
   const bool isDone = this->Mesh->SplitBoundary(std::move(this->MovedPoints),
-    this->GetSurfaceOptions(), this->Input.Sizing, findSizes, this->GetContext(), status);
+    this->GetSurfaceOptions(), this->Input.Sizing, setSizes, this->GetContext(), status);
   const std::size_t after = this->Surface.Points.size();
   this->Report.BoundaryPoints += static_cast<Id>(after - before);
   if (!status.IsOk())
@@ -568,8 +564,7 @@ Status SteinerPointRounds::SplitInPlace()
  * and facets that come close to each other. Returns the first such point.
  * @param triangles those at new points are among them
  */
-std::size_t SteinerPointRounds::CollectSurfaceSizes(
-  const std::vector<Id>& triangles, int numberOfThreads)
+std::size_t SteinerPointRounds::CollectSurfaceSizes(const std::vector<Id>& triangles)
 {
   const std::size_t first = this->SurfaceSizes.size();
   if (first == 0)
@@ -578,14 +573,15 @@ std::size_t SteinerPointRounds::CollectSurfaceSizes(
   }
   this->SurfaceSizes.resize(this->Surface.Points.size(), -1.0);
   this->SpreadSurfaceSizes(triangles);
-  const auto find = [&](std::size_t begin, std::size_t end, std::size_t)
+  const auto find = [&](std::size_t begin, std::size_t end, int)
   {
     for (std::size_t p = first + begin; p < first + end; ++p)
     {
       this->SurfaceSizes[p] = this->Features->Find(this->Surface.Points[p], this->SurfaceSizes[p]);
     }
   };
-  ParallelLoop(this->SurfaceSizes.size() - first, { numberOfThreads, 64 }, {}, "", find);
+  const std::shared_ptr<ThreadTeam> team = this->Context.GetTeam();
+  team->RunBlocks(team->GetNumberOfThreads(), this->SurfaceSizes.size() - first, SizesAtOnce, find);
   return first;
 }
 
@@ -632,8 +628,8 @@ void SteinerPointRounds::SpreadSurfaceSizes(const std::vector<Id>& triangles)
 
 void SteinerPointRounds::MeasureSizes()
 {
-  this->Features = std::make_unique<FeatureSizes>(
-    this->Surface.Points, this->Surface.Triangles, this->GetFacets(), this->Edges);
+  this->Features = std::make_unique<FeatureSizes>(this->Surface.Points, this->Surface.Triangles,
+    this->GetFacets(), this->Edges, this->Context.GetNumberOfThreads());
   const std::vector<double> sizes = FindShortestEdges(this->Mesh->GetMesh());
   this->SurfaceSizes.assign(
     sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(this->Surface.Points.size()));

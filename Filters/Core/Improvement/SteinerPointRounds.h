@@ -118,7 +118,7 @@ private:
   bool MayShapeSurface() const;
   Id GetMaximumOfShapes() const;
   Status SplitInPlace();
-  std::size_t CollectSurfaceSizes(const std::vector<Id>& triangles, int numberOfThreads);
+  std::size_t CollectSurfaceSizes(const std::vector<Id>& triangles);
   void SpreadSurfaceSizes(const std::vector<Id>& triangles);
   void CollectReport();
 

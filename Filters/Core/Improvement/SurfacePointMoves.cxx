@@ -753,7 +753,9 @@ const SurfaceMove& SliverSurfaceMoves::Find(std::size_t i)
     result = { std::move(move), search.TakeVisited() };
   };
   return this->Ahead.Get(
-    i, this->Slivers.size(), [this](std::size_t k) { return this->IsOpen(this->Slivers[k]); },
+    i, this->Slivers.size(),
+    [this](std::size_t k)
+    { return this->IsOpen(this->Slivers[k]) ? this->Slivers[k].Tetrahedron : NoId; },
     find);
 }
 
@@ -827,7 +829,7 @@ std::vector<Vec3> RoundSurfacePoints(
     [&](Id t) { return !memory.IsUnroundable(getNames(t)); });
   if (!wanted.empty())
   {
-    const PointRounding rounding(mesh.GetMesh(), surface, flat, wanted);
+    const PointRounding rounding(mesh.GetMesh(), surface, flat, wanted, mesh.GetThreads());
     for (Id t : rounding.Move(isFree, positions))
     {
       memory.SetUnroundable(getNames(t));

@@ -51,7 +51,7 @@
 namespace cdm
 {
 /** Searches positions for points of a surface, in a mesh that follows them. */
-class SurfacePointMoves
+class alignas(SeparateLines) SurfacePointMoves
 {
 public:
   struct Rules

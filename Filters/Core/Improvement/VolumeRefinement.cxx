@@ -229,7 +229,9 @@ void LimitRefinement::RunTask(std::size_t i)
     return;
   }
   const Remedy& remedy = this->Ahead.Get(
-    i, this->Batch.size(), [this](std::size_t k) { return !this->Tasks.IsGone(this->Batch[k]); },
+    i, this->Batch.size(),
+    [this](std::size_t k)
+    { return this->Tasks.IsGone(this->Batch[k]) ? NoId : this->Batch[k].Tetrahedron; },
     [this](int thread, std::size_t k, LookAhead<Remedy>::Found& result)
     {
       this->Find(thread, this->Batch[k], result.What);

@@ -372,7 +372,8 @@ bool ConformingMesher::MarkExactTriangles(int round)
   if (this->NeedsCouplings() && !this->Context.IsLate())
   {
     const std::vector<Id> facets = Compose(this->Facets, sources, Id(0));
-    const std::vector<Id> negative = FindNegativeTriangles(this->Output.Mesh, boundary, facets);
+    const std::vector<Id> negative =
+      FindNegativeTriangles(this->Output.Mesh, boundary, facets, *this->Context.GetTeam());
     const auto markSources = [&](const std::vector<Id>& triangles)
     { return this->MarkExact(Compose(boundary.SourceCells, triangles, NoId)); };
     isAny = markSources(negative) || isAny;

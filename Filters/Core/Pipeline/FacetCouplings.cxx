@@ -47,8 +47,8 @@ std::vector<RoundedEdge> FindRoundedEdges(
 }
 } // namespace
 
-std::vector<Id> FindNegativeTriangles(
-  const TetMesh& mesh, const TriangleMesh& boundary, const std::vector<Id>& facets)
+std::vector<Id> FindNegativeTriangles(const TetMesh& mesh, const TriangleMesh& boundary,
+  const std::vector<Id>& facets, ThreadTeam& team)
 {
   const std::vector<RoundedEdge> edges = FindRoundedEdges(boundary, facets);
   std::vector<EdgeIds> points;
@@ -58,7 +58,7 @@ std::vector<Id> FindNegativeTriangles(
     points.push_back(edge.Points);
   }
   const std::vector<EdgeIds> negative =
-    FindNegativeCouplings(mesh, points, static_cast<Id>(mesh.Points.size()));
+    FindNegativeCouplings(mesh, points, static_cast<Id>(mesh.Points.size()), team);
   std::vector<Id> found;
   for (const RoundedEdge& edge : edges)
   {

@@ -19,6 +19,7 @@
 #ifndef cdmFacetCouplings_h
 #define cdmFacetCouplings_h
 
+#include "Core/Basics/ThreadTeam.h"
 #include "Core/Meshes/TetMesh.h"
 #include "Core/Meshes/TriangleMesh.h"
 
@@ -30,9 +31,10 @@ namespace cdm
  * The triangles of the boundary at such edges, ascending.
  * @param boundary on the points of the mesh
  * @param facets of the triangles of the boundary
+ * @param team whose threads share the work
  */
-std::vector<Id> FindNegativeTriangles(
-  const TetMesh& mesh, const TriangleMesh& boundary, const std::vector<Id>& facets);
+std::vector<Id> FindNegativeTriangles(const TetMesh& mesh, const TriangleMesh& boundary,
+  const std::vector<Id>& facets, ThreadTeam& team);
 } // namespace cdm
 
 #endif

@@ -199,38 +199,64 @@ Status SurfaceRefinement::SplitTriangle(Id triangle, const ExecutionContext& con
   return this->Refine(context);
 }
 
-Id SurfaceRefinement::AddMeshPoint(const Vec3& position)
+void SurfaceRefinement::ChangePoints(const PointChanges& changes, ThreadTeam& team)
 {
-  const Id point = static_cast<Id>(this->Points.size());
-  this->Points.push_back(position);
-  if (this->Incidences)
+  const std::size_t firstAdded = this->Points.size();
+  this->Points.insert(this->Points.end(), changes.Added.begin(), changes.Added.end());
+  for (std::size_t i = 0; i < changes.Added.size() && this->Incidences; ++i)
   {
     this->Incidences->AddPoint(NoId, NoId);
   }
-  this->Octree.Insert(point, position);
-  this->TestAgainAround(position);
-  return point;
-}
-
-void SurfaceRefinement::RemoveMeshPoint(Id point)
-{
-  this->Octree.Remove(point, this->Points[point]);
-}
-
-void SurfaceRefinement::MovePoints(const std::vector<std::pair<Id, Vec3>>& moves)
-{
-  // The octree never has two points at one position.
-  std::vector<char> isMoved(this->Points.size(), 0);
+  std::vector<std::pair<Id, Vec3>> moves = changes.MovedOnSurface;
+  moves.insert(moves.end(), changes.Moved.begin(), changes.Moved.end());
+  std::vector<Vec3> before;
+  before.reserve(moves.size());
   for (const auto& [point, position] : moves)
   {
-    isMoved[point] = 1;
-    this->Octree.Remove(point, this->Points[point]);
+    before.push_back(std::exchange(this->Points[point], position));
   }
-  for (const auto& [point, position] : moves)
+  const auto updateOctree = [&]
   {
-    this->Points[point] = position;
-    this->Octree.Insert(point, position);
-    this->TestAgainAround(position);
+    for (Id point : changes.Removed)
+    {
+      this->Octree.Remove(point, this->Points[point]);
+    }
+    // The octree never has two points at one position.
+    for (std::size_t i = 0; i < moves.size(); ++i)
+    {
+      this->Octree.Remove(moves[i].first, before[i]);
+    }
+    for (std::size_t i = 0; i < changes.Added.size(); ++i)
+    {
+      this->Octree.Insert(static_cast<Id>(firstAdded + i), changes.Added[i]);
+    }
+    for (const auto& [point, position] : moves)
+    {
+      this->Octree.Insert(point, position);
+    }
+  };
+  const auto testAgain = [&]
+  {
+    for (const Vec3& position : changes.Added)
+    {
+      this->TestAgainAround(position);
+    }
+    for (const auto& move : moves)
+    {
+      this->TestAgainAround(move.second);
+    }
+    this->TestAgainAt(changes.MovedOnSurface);
+  };
+  team.RunBoth(updateOctree, testAgain);
+}
+
+/** Tests all triangles and edges at points of the surface that have moved. */
+void SurfaceRefinement::TestAgainAt(const std::vector<std::pair<Id, Vec3>>& moves)
+{
+  std::vector<char> isMoved(moves.empty() ? 0 : this->Points.size(), 0);
+  for (const auto& move : moves)
+  {
+    isMoved[move.first] = 1;
   }
   const auto isAnyMoved = [&isMoved](const auto& ids)
   { return std::any_of(ids.begin(), ids.end(), [&](Id id) { return isMoved[id] != 0; }); };
@@ -242,7 +268,9 @@ void SurfaceRefinement::MovePoints(const std::vector<std::pair<Id, Vec3>>& moves
       this->Enqueue(t);
     }
   }
-  for (Id s = 0; s < this->Surface->GetNumberOfSegments() && this->AreEdgesTested(); ++s)
+  const Id segments =
+    this->AreEdgesTested() && !moves.empty() ? this->Surface->GetNumberOfSegments() : 0;
+  for (Id s = 0; s < segments; ++s)
   {
     if (isAnyMoved(this->Surface->GetSegment(s).Points))
     {

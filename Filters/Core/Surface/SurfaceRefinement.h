@@ -19,6 +19,7 @@
 
 #include "Core/Basics/ExecutionContext.h"
 #include "Core/Basics/Status.h"
+#include "Core/Basics/ThreadTeam.h"
 #include "Core/Search/BallIndex.h"
 #include "Core/Search/PointOctree.h"
 #include "Core/Search/PointSearches.h"
@@ -118,11 +119,21 @@ public:
   Status SplitSegment(Id segment, const ExecutionContext& context);
   Status SplitTriangle(Id triangle, const ExecutionContext& context);
 
-  /** Adds a mesh point and returns its id. What it encroaches on is refined next time. */
-  Id AddMeshPoint(const Vec3& position);
-  void RemoveMeshPoint(Id point);
-  /** Moves mesh points, or points of the surface within their facets and along their edges. */
-  void MovePoints(const std::vector<std::pair<Id, Vec3>>& moves);
+  /** Points that have come, gone or moved. */
+  struct PointChanges
+  {
+    /** Mesh points. */
+    std::vector<Id> Removed;
+    std::vector<Vec3> Added;
+    std::vector<std::pair<Id, Vec3>> Moved;
+    /** Points of the surface, within their facets and along their edges. */
+    std::vector<std::pair<Id, Vec3>> MovedOnSurface;
+  };
+  /**
+   * Changes points; those that are added get the next ids. What they encroach on is refined next
+   * time.
+   */
+  void ChangePoints(const PointChanges& changes, ThreadTeam& team);
 
   /**
    * Flips diagonals of exactly cocircular quadrilaterals to the corner with the smallest id, as the
@@ -300,6 +311,7 @@ private:
   Id AddPoint(const Vec3& position, const PointParents& parents, Id facet, Id inputEdge);
   void SetProof(Id t, const SurfaceDelaunayTest::SphereProof& proof);
   void TestAgainAround(const Vec3& position);
+  void TestAgainAt(const std::vector<std::pair<Id, Vec3>>& moves);
   void Touch(Id t);
   void NoteSegment(Id segment);
   Id FindPassingSegment(Id t, const Vec3& position);

@@ -153,8 +153,7 @@ Status RunRemeshSurface(const SurfaceRemesherInput& input, const SurfaceRemesher
   parts.Facets =
     NumberFacets(SortEdgeUses(input.Surface->Triangles, input.Surface->Points.size()), parts.Edges);
   const ExecutionContext rest = context.Part(0.05, 1.0);
-  const std::shared_ptr<ThreadTeam> team =
-    context.GetThreads() ? context.GetThreads() : std::make_shared<ThreadTeam>(1);
+  const std::shared_ptr<ThreadTeam> team = context.GetTeam();
   if (IsOfStrips(*input.Surface, parts.Lengths))
   {
     return RemeshStrips(input, options, rest, *team, parts, output);
