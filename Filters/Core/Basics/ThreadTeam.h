@@ -34,8 +34,8 @@ inline std::size_t GetNumberOfThreads(int option)
 
 /**
  * What different threads write to lies so many bytes apart: processors fetch lines of memory in
- * pairs, and each of them waits for the other one's where they share one. Searches side by side in a
- * list took a third longer.
+ * pairs, and where two share a line each waits for what the other one writes. Searches for slivers
+ * that lay side by side in a list took 8 % longer.
  */
 constexpr std::size_t SeparateLines = 128;
 
