@@ -27,8 +27,8 @@ constexpr double SameCellRatio = 1e-3;
 constexpr int MaximumSteps = 4;
 /** Distance of a sphere's center from the span of the others, in lengths of it, that is enough. */
 constexpr double EnoughMargin = 1.0;
-/** A thread looks at so many tetrahedra at a time. */
-constexpr std::size_t TetrahedraAtOnce = 8192;
+/** A thread lists so many tetrahedra at a time. */
+constexpr std::size_t TetrahedraInPart = 8192;
 
 /** The circle through three points. */
 class Circle
@@ -72,7 +72,7 @@ std::vector<std::pair<Id, Id>> ListStars(
 {
   const Id numberOfPoints = static_cast<Id>(isUsed.size());
   const std::size_t count = mesh.Tetrahedra.size();
-  std::vector<std::vector<std::pair<Id, Id>>> parts(count / TetrahedraAtOnce + 1);
+  std::vector<std::vector<std::pair<Id, Id>>> parts(count / TetrahedraInPart + 1);
   const auto list = [&](std::size_t begin, std::size_t end, int)
   {
     for (std::size_t t = begin; t < end; ++t)
@@ -82,12 +82,12 @@ std::vector<std::pair<Id, Id>> ListStars(
       {
         if (ids[i] < numberOfPoints && isUsed[ids[i]] != 0)
         {
-          parts[begin / TetrahedraAtOnce].emplace_back(ids[i], static_cast<Id>(t));
+          parts[begin / TetrahedraInPart].emplace_back(ids[i], static_cast<Id>(t));
         }
       }
     }
   };
-  team.RunBlocks(team.GetNumberOfThreads(), count, TetrahedraAtOnce, list);
+  team.RunBlocks(team.GetNumberOfThreads(), count, TetrahedraInPart, list);
   std::vector<std::pair<Id, Id>> pairs;
   for (const std::vector<std::pair<Id, Id>>& part : parts)
   {
