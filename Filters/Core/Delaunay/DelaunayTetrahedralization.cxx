@@ -54,11 +54,8 @@ private:
     TryAgain,
     Take
   };
-  /**
-   * The private data of a thread. If two of them shared a line of the cache, or a pair of lines
-   * that is fetched at once, both threads would slow down.
-   */
-  struct alignas(128) Worker
+  /** The private data of a thread. */
+  struct alignas(SeparateLines) Worker
   {
     VertexInsertion::Workspace Space;
     std::vector<Id> Todo;

@@ -66,7 +66,7 @@ public:
 
   /**
    * The change of item i: what was found ahead, or else what is found now. It stays until the next
-   * call, which is for an item that comes later.
+   * call, which is for an item that comes later. Item i has to be worth a search.
    * @param count number of items of the list
    * @param getOpen (i): the tetrahedron of an item, or NoId if it is not worth a search
    * @param find (thread, i, found): finds the change of an item, in the mesh as it is; called on
@@ -117,7 +117,7 @@ private:
   {
     const auto threads = static_cast<std::size_t>(this->Mesh.GetThreads().GetNumberOfThreads());
     return std::clamp(this->Mesh.GetMesh().Tetrahedra.size() / this->TetrahedraPerItem, FewestItems,
-      std::max(FewestItems, MostPerThread * threads));
+      MostPerThread * threads);
   }
 
   /** Forgets what was found; from now on it is about items from one on. */
@@ -153,7 +153,7 @@ private:
     for (std::size_t k = first; k < end && this->Collected.size() < most; ++k)
     {
       const Id tetrahedron = getOpen(this->First + k);
-      if (k > first && tetrahedron == NoId)
+      if (tetrahedron == NoId)
       {
         continue;
       }

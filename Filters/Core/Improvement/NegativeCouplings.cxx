@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/NegativeCouplings.h"
 
+#include "Core/Basics/CollectItems.h"
 #include "Core/Basics/ParallelSort.h"
 #include "Core/Basics/SortedIds.h"
 #include "Core/Meshes/VoronoiMeasures.h"
@@ -47,9 +48,7 @@ std::vector<Item> CollectAtCandidates(const TetMesh& mesh, const std::vector<Edg
     isEnd[edge[1]] = 1;
   }
   const auto isMarked = [&](Id id) { return id < numberOfPoints && isEnd[id] != 0; };
-  const int threads = team.GetNumberOfThreads();
-  std::vector<std::vector<Item>> found(static_cast<std::size_t>(threads));
-  const auto search = [&](std::size_t begin, std::size_t end, int thread)
+  const auto search = [&](std::size_t begin, std::size_t end, std::vector<Item>& found)
   {
     for (std::size_t t = begin; t < end; ++t)
     {
@@ -63,17 +62,13 @@ std::vector<Item> CollectAtCandidates(const TetMesh& mesh, const std::vector<Edg
         {
           if (isEnd[edge[0]] != 0 && isEnd[edge[1]] != 0)
           {
-            visit(static_cast<Id>(t), i, edge, found[static_cast<std::size_t>(thread)]);
+            visit(static_cast<Id>(t), i, edge, found);
           }
         });
     }
   };
-  team.RunBlocks(threads, edges.empty() ? 0 : mesh.Tetrahedra.size(), TetrahedraAtOnce, search);
-  std::vector<Item> all;
-  for (const std::vector<Item>& part : found)
-  {
-    all.insert(all.end(), part.begin(), part.end());
-  }
+  std::vector<Item> all =
+    CollectItems<Item>(team, edges.empty() ? 0 : mesh.Tetrahedra.size(), TetrahedraAtOnce, search);
   std::sort(all.begin(), all.end());
   return all;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Improvement/PointRounding.h"
 
+#include "Core/Basics/CollectItems.h"
 #include "Core/Basics/SortedIds.h"
 #include "Core/Geometry/Measures.h"
 #include "Core/Search/PlaceSearch.h"
@@ -70,10 +71,9 @@ private:
 std::vector<std::pair<Id, Id>> ListStars(
   const TetMesh& mesh, const std::vector<char>& isUsed, ThreadTeam& team)
 {
+  using Pair = std::pair<Id, Id>;
   const Id numberOfPoints = static_cast<Id>(isUsed.size());
-  const std::size_t count = mesh.Tetrahedra.size();
-  std::vector<std::vector<std::pair<Id, Id>>> parts(count / TetrahedraInPart + 1);
-  const auto list = [&](std::size_t begin, std::size_t end, int)
+  const auto list = [&](std::size_t begin, std::size_t end, std::vector<Pair>& pairs)
   {
     for (std::size_t t = begin; t < end; ++t)
     {
@@ -82,18 +82,12 @@ std::vector<std::pair<Id, Id>> ListStars(
       {
         if (ids[i] < numberOfPoints && isUsed[ids[i]] != 0)
         {
-          parts[begin / TetrahedraInPart].emplace_back(ids[i], static_cast<Id>(t));
+          pairs.emplace_back(ids[i], static_cast<Id>(t));
         }
       }
     }
   };
-  team.RunBlocks(team.GetNumberOfThreads(), count, TetrahedraInPart, list);
-  std::vector<std::pair<Id, Id>> pairs;
-  for (const std::vector<std::pair<Id, Id>>& part : parts)
-  {
-    pairs.insert(pairs.end(), part.begin(), part.end());
-  }
-  return pairs;
+  return CollectItems<Pair>(team, mesh.Tetrahedra.size(), TetrahedraInPart, list);
 }
 } // namespace
 

@@ -253,14 +253,18 @@ void SurfaceRefinement::ChangePoints(const PointChanges& changes, ThreadTeam& te
 /** Tests all triangles and edges at points of the surface that have moved. */
 void SurfaceRefinement::TestAgainAt(const std::vector<std::pair<Id, Vec3>>& moves)
 {
-  std::vector<char> isMoved(moves.empty() ? 0 : this->Points.size(), 0);
+  if (moves.empty())
+  {
+    return;
+  }
+  std::vector<char> isMoved(this->Points.size(), 0);
   for (const auto& move : moves)
   {
     isMoved[move.first] = 1;
   }
   const auto isAnyMoved = [&isMoved](const auto& ids)
   { return std::any_of(ids.begin(), ids.end(), [&](Id id) { return isMoved[id] != 0; }); };
-  for (Id t = 0; t < this->Surface->GetNumberOfTriangles() && !moves.empty(); ++t)
+  for (Id t = 0; t < this->Surface->GetNumberOfTriangles(); ++t)
   {
     if (isAnyMoved(this->Surface->GetTriangle(t).Points))
     {
@@ -268,9 +272,7 @@ void SurfaceRefinement::TestAgainAt(const std::vector<std::pair<Id, Vec3>>& move
       this->Enqueue(t);
     }
   }
-  const Id segments =
-    this->AreEdgesTested() && !moves.empty() ? this->Surface->GetNumberOfSegments() : 0;
-  for (Id s = 0; s < segments; ++s)
+  for (Id s = 0; s < this->Surface->GetNumberOfSegments() && this->AreEdgesTested(); ++s)
   {
     if (isAnyMoved(this->Surface->GetSegment(s).Points))
     {
