@@ -42,11 +42,10 @@ std::uint64_t BallIndex::CellPlace::GetHash() const
   return hash ^ (hash >> 32);
 }
 
-/** The slot of a cell, or the free one where it belongs. */
-std::size_t BallIndex::FindSlot(const CellPlace& place) const
+/** The slot of a cell with this hash, or the free one where it belongs. */
+std::size_t BallIndex::FindSlot(const CellPlace& place, std::uint64_t hash) const
 {
   const std::size_t mask = this->Slots.size() - 1;
-  const std::uint64_t hash = place.GetHash();
   const std::uint32_t mark = GetMark(hash);
   std::size_t slot = hash & mask;
   while (this->Slots[slot].Cell != NoId &&
@@ -63,7 +62,8 @@ void BallIndex::Resize(std::size_t numberOfSlots)
   for (std::size_t cell = 0; cell < this->Cells.size(); ++cell)
   {
     const CellPlace& place = this->Cells[cell].Place;
-    this->Slots[this->FindSlot(place)] = { static_cast<Id>(cell), GetMark(place.GetHash()) };
+    const std::uint64_t hash = place.GetHash();
+    this->Slots[this->FindSlot(place, hash)] = { static_cast<Id>(cell), GetMark(hash) };
   }
 }
 
@@ -87,10 +87,11 @@ void BallIndex::Put(const Ball& ball)
       corner = Vec3();
     }
   }
-  Slot& slot = this->Slots[this->FindSlot(where)];
+  const std::uint64_t hash = where.GetHash();
+  Slot& slot = this->Slots[this->FindSlot(where, hash)];
   if (slot.Cell == NoId)
   {
-    slot = { static_cast<Id>(this->Cells.size()), GetMark(where.GetHash()) };
+    slot = { static_cast<Id>(this->Cells.size()), GetMark(hash) };
     this->Cells.emplace_back();
     this->Cells.back().Place = where;
     this->Cells.back().Corner = corner;
@@ -183,10 +184,8 @@ void BallIndex::Remove(Id id)
   this->Places[id].Index = NoId;
 }
 
-void BallIndex::Find(const Cell& cell, const Vec3& point, std::vector<Id>& ids)
+void BallIndex::Find(const Cell& cell, double scale, const Vec3& point, std::vector<Id>& ids)
 {
-  const int level = cell.Place.Level;
-  const double scale = level == InfiniteLevel ? 0.0 : std::ldexp(1.0, -level);
   const Vec3 p = scale * (point - cell.Corner);
   const float x = static_cast<float>(p.X);
   const float y = static_cast<float>(p.Y);
@@ -241,19 +240,11 @@ void BallIndex::Settle()
 void BallIndex::FindSettled(const Vec3& point, std::vector<Id>& ids) const
 {
   ids.clear();
-  const auto visit = [this, &point, &ids](const CellPlace& place)
-  {
-    const Id cell = this->Slots[this->FindSlot(place)].Cell;
-    if (cell != NoId)
-    {
-      BallIndex::Find(this->Cells[cell], point, ids);
-    }
-  };
   for (const auto& [level, count] : this->Levels)
   {
     if (level == InfiniteLevel)
     {
-      visit({ level, { 0, 0, 0 } });
+      this->FindInCells<1>({ { { level, { 0, 0, 0 } } } }, 0.0, point, ids);
       continue;
     }
     // Radii are below half the width: the center lies in the cells nearest to the point.
@@ -266,12 +257,45 @@ void BallIndex::FindSettled(const Vec3& point, std::vector<Id>& ids) const
       isInReach = isInReach && std::abs(index) <= LargestIndex + 1.0;
       first[axis] = isInReach ? static_cast<std::int64_t>(index) : 0;
     }
-    for (int corner = 0; corner < 8 && isInReach; ++corner)
+    if (isInReach)
     {
-      visit({ level,
-        { first[0] + (corner & 1), first[1] + ((corner >> 1) & 1), first[2] + (corner >> 2) } });
+      std::array<CellPlace, 8> places;
+      for (int corner = 0; corner < 8; ++corner)
+      {
+        places[corner] = { level,
+          { first[0] + (corner & 1), first[1] + ((corner >> 1) & 1), first[2] + (corner >> 2) } };
+      }
+      this->FindInCells<8>(places, std::ldexp(1.0, -level), point, ids);
     }
   }
   std::sort(ids.begin(), ids.end());
+}
+
+/**
+ * Finds balls in those of the cells that there are.
+ * @param scale 1 by the width of the cells
+ */
+template <std::size_t Count>
+void BallIndex::FindInCells(const std::array<CellPlace, Count>& places, double scale,
+  const Vec3& point, std::vector<Id>& ids) const
+{
+  // The slots are all read before any of them is looked at: in a large index each is a cache miss,
+  // and a branch would make one wait for the other.
+  std::array<std::uint64_t, Count> hashes;
+  std::array<Id, Count> cells;
+  for (std::size_t i = 0; i < Count; ++i)
+  {
+    hashes[i] = places[i].GetHash();
+    cells[i] = this->Slots[hashes[i] & (this->Slots.size() - 1)].Cell;
+  }
+  for (std::size_t i = 0; i < Count; ++i)
+  {
+    const Id cell =
+      cells[i] == NoId ? NoId : this->Slots[this->FindSlot(places[i], hashes[i])].Cell;
+    if (cell != NoId)
+    {
+      BallIndex::Find(this->Cells[cell], scale, point, ids);
+    }
+  }
 }
 } // namespace cdm

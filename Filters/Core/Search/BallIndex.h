@@ -18,6 +18,7 @@
 #include "Core/Basics/Types.h"
 #include "Core/Basics/Vec3.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -107,9 +108,12 @@ private:
     std::uint32_t Mark = 0;
   };
 
-  static void Find(const Cell& cell, const Vec3& point, std::vector<Id>& ids);
+  static void Find(const Cell& cell, double scale, const Vec3& point, std::vector<Id>& ids);
 
-  std::size_t FindSlot(const CellPlace& place) const;
+  template <std::size_t Count>
+  void FindInCells(const std::array<CellPlace, Count>& places, double scale, const Vec3& point,
+    std::vector<Id>& ids) const;
+  std::size_t FindSlot(const CellPlace& place, std::uint64_t hash) const;
   void Put(const Ball& ball);
   void Resize(std::size_t numberOfSlots);
 
