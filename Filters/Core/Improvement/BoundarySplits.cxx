@@ -331,6 +331,16 @@ void BoundarySplits::CollectTriangles(const SurfaceChange& change)
     std::remove_if(this->Made.begin(), this->Made.end(), isInBoth), this->Made.end());
   this->Vanished.erase(
     std::remove_if(this->Vanished.begin(), this->Vanished.end(), isInBoth), this->Vanished.end());
+  this->MadeFrom.resize(this->Made.size());
+  for (std::size_t i = 0; i < this->Triangles.size(); ++i)
+  {
+    const TriangleIds key = Sorted(this->Triangles[i].Ids);
+    const auto made = std::lower_bound(this->Made.begin(), this->Made.end(), key);
+    if (made != this->Made.end() && *made == key)
+    {
+      this->MadeFrom[made - this->Made.begin()] = i;
+    }
+  }
 }
 
 /**
@@ -482,13 +492,12 @@ bool BoundarySplits::CollectConflicts(const SurfaceChange& change)
 /** The region in front of a new triangle, whose points are given in either orientation. */
 Id BoundarySplits::GetRegionInFront(const TriangleIds& ids) const
 {
-  const TriangleIds key = Sorted(ids);
-  const auto triangle = std::find_if(this->Triangles.begin(), this->Triangles.end(),
-    [&key](const NewTriangle& other) { return Sorted(other.Ids) == key; });
+  const auto made = std::lower_bound(this->Made.begin(), this->Made.end(), Sorted(ids));
+  const NewTriangle& triangle = this->Triangles[this->MadeFrom[made - this->Made.begin()]];
   // Orientations are equal if each point is followed by the same one.
-  const TriangleIds& others = triangle->Ids;
+  const TriangleIds& others = triangle.Ids;
   const auto first = std::find(others.begin(), others.end(), ids[0]) - others.begin();
-  return others[(first + 1) % 3] == ids[1] ? triangle->Labels.Front : triangle->Labels.Back;
+  return others[(first + 1) % 3] == ids[1] ? triangle.Labels.Front : triangle.Labels.Back;
 }
 
 /** Collects the facets around the tetrahedra that are replaced, and the walls within. */
@@ -562,17 +571,14 @@ void BoundarySplits::CollectCavity()
   {
     this->IsInCavity[t] = 0;
   }
-  for (const NewTriangle& triangle : this->Triangles)
+  for (std::size_t k = 0; k < this->Made.size(); ++k)
   {
-    const TriangleIds key = Sorted(triangle.Ids);
-    if (IsInSorted(this->Made, key))
+    const RegionPair& labels = this->Triangles[this->MadeFrom[k]].Labels;
+    for (Id region : { labels.Back, labels.Front })
     {
-      for (Id region : { triangle.Labels.Back, triangle.Labels.Front })
+      if (region >= 0)
       {
-        if (region >= 0)
-        {
-          this->WallRegions.emplace_back(key, region);
-        }
+        this->WallRegions.emplace_back(this->Made[k], region);
       }
     }
   }

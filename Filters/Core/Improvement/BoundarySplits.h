@@ -165,6 +165,8 @@ private:
   /** Points of triangles that are no longer there, and of new ones; each sorted. */
   std::vector<TriangleIds> Vanished;
   std::vector<TriangleIds> Made;
+  /** For each one that was made its index in Triangles. */
+  std::vector<std::size_t> MadeFrom;
   /** Facets of tetrahedra at vanished triangles; the tetrahedra that are replaced. */
   std::vector<Id> Sides;
   std::vector<Id> Tetrahedra;
