@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "ComplexWithPoints.h"
 #include "Core/Improvement/LookAhead.h"
-#include "Core/Repair/BoundaryTriangulator.h"
-#include "Core/Surface/DelaunaySurfaceRefiner.h"
-#include "Core/Volume/AdvancingFrontTetrahedralizer.h"
-#include "RandomComplexes.h"
 
 #include <gtest/gtest.h>
 
@@ -27,52 +24,13 @@ class SearchedComplex
 {
 public:
   explicit SearchedComplex(int numberOfThreads)
+    : Generator(1), Complex(this->Generator, numberOfThreads)
   {
-    std::mt19937_64 generator(1);
-    BoundaryTriangulatorOutput boundary;
-    EXPECT_TRUE(
-      TriangulateBoundary(MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, 4, 0.1), {}, {}, boundary)
-        .IsOk());
-    std::uniform_real_distribution<double> coordinate(-1.0, 2.0);
-    std::vector<Vec3> points(2000);
-    for (Vec3& point : points)
-    {
-      point = { coordinate(generator), coordinate(generator), coordinate(generator) };
-    }
-    DelaunaySurfaceRefinerInput input;
-    input.Surface = &boundary.Surface;
-    input.MeshPoints = &points;
-    DelaunaySurfaceRefinerOptions options;
-    options.Criterion = SurfaceCriterion::SmallestSphere;
-    EXPECT_TRUE(RefineDelaunaySurface(input, options, {}, this->Refined).IsOk());
-    AdvancingFrontTetrahedralizerInput front;
-    front.Surface = &this->Refined.Surface;
-    std::vector<Vec3> kept;
-    for (Id point : this->Refined.KeptMeshPoints)
-    {
-      kept.push_back(points[point]);
-    }
-    front.MeshPoints = &kept;
-    AdvancingFrontTetrahedralizerOutput made;
-    EXPECT_TRUE(TetrahedralizeByAdvancingFront(front, {}, {}, made).IsOk());
-    this->Boundary = std::move(made.Boundary);
-    this->Boundary.Points = this->Refined.Surface.Points;
-    std::vector<InteriorPoint> interior;
-    for (Id source : made.MeshPointSources)
-    {
-      interior.push_back({ kept[source], 0.0, true, source, this->Memory.MakeName() });
-    }
-    RefinedMeshOptions meshOptions;
-    meshOptions.Threads = std::make_shared<ThreadTeam>(numberOfThreads);
-    const std::vector<StructuralEdge>& edges = this->Refined.StructuralEdges;
-    this->Mesh = std::make_unique<RefinedMesh>(std::move(made.Mesh),
-      RefinedBoundary{ this->Boundary, this->Refined.StructuralEdges, edges }, interior,
-      this->Memory, meshOptions);
-    this->Ahead = std::make_unique<LookAhead<Id>>(*this->Mesh, 1, 1);
-    this->Searches.assign(this->Mesh->GetMesh().Tetrahedra.size(), 0);
+    this->Ahead = std::make_unique<LookAhead<Id>>(this->GetMesh(), 1, 1);
+    this->Searches.assign(this->GetMesh().GetMesh().Tetrahedra.size(), 0);
     this->Items.resize(this->Searches.size());
     std::iota(this->Items.begin(), this->Items.end(), 0);
-    std::shuffle(this->Items.begin(), this->Items.end(), generator);
+    std::shuffle(this->Items.begin(), this->Items.end(), this->Generator);
     PointCavity cavity;
     while (!this->FindCavity(this->Replaceable, cavity))
     {
@@ -83,11 +41,11 @@ public:
   std::size_t GetNumberOfItems() const { return this->Searches.size(); }
   const TetrahedronIds& GetIds(std::size_t item) const
   {
-    return this->Mesh->GetMesh().Tetrahedra[this->Items[item]];
+    return this->GetMesh().GetMesh().Tetrahedra[this->Items[item]];
   }
   bool IsOpen(std::size_t item) const
   {
-    return this->Mesh->GetTetrahedra().GetStamp(this->Items[item]) < this->FirstStamp;
+    return this->GetMesh().GetTetrahedra().GetStamp(this->Items[item]) < this->FirstStamp;
   }
   /** How many times each item has been searched. */
   const std::vector<int>& GetSearches() const { return this->Searches; }
@@ -112,27 +70,27 @@ public:
     PointCavity cavity;
     const Id replaced = this->Replaceable;
     ASSERT_TRUE(this->FindCavity(replaced, cavity));
-    this->FirstStamp = this->Mesh->GetTetrahedra().GetNextStamp();
-    this->Mesh->Insert(this->GetInside(replaced), cavity);
+    this->FirstStamp = this->GetMesh().GetTetrahedra().GetNextStamp();
+    this->GetMesh().Insert(this->GetInside(replaced), cavity);
   }
 
 private:
+  RefinedMesh& GetMesh() { return this->Complex.GetMesh(); }
+  const RefinedMesh& GetMesh() const { return this->Complex.GetMesh(); }
   Vec3 GetInside(Id tetrahedron) const
   {
-    const std::array<Vec3, 4> v = this->Mesh->GetTetrahedra().GetCorners(tetrahedron);
+    const std::array<Vec3, 4> v = this->GetMesh().GetTetrahedra().GetCorners(tetrahedron);
     return 0.4 * v[0] + 0.3 * v[1] + 0.2 * v[2] + 0.1 * v[3];
   }
   bool FindCavity(Id tetrahedron, PointCavity& cavity)
   {
-    DynamicTetrahedralization& tetrahedra = this->Mesh->GetTetrahedra();
+    DynamicTetrahedralization& tetrahedra = this->GetMesh().GetTetrahedra();
     return tetrahedra.FindCavity(
       this->GetInside(tetrahedron), tetrahedra.GetNumberOfPoints(), tetrahedron, cavity);
   }
 
-  DelaunaySurfaceRefinerOutput Refined;
-  TriangleMesh Boundary;
-  SliverMemory Memory;
-  std::unique_ptr<RefinedMesh> Mesh;
+  std::mt19937_64 Generator;
+  ComplexWithPoints Complex;
   std::unique_ptr<LookAhead<Id>> Ahead;
   std::vector<int> Searches;
   /** The tetrahedron of each item. */

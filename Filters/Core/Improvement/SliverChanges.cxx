@@ -193,6 +193,31 @@ double SliverChanges::RateCavity() const
   return smallest < Infinity ? DegreesPerRadian * std::atan(std::sqrt(smallest)) : 180.0;
 }
 
+/** Number of tetrahedra below the target that would fill the cavity that was found. */
+Id SliverChanges::CountFlatFound() const
+{
+  return static_cast<Id>(std::count_if(this->Tangents2.begin(), this->Tangents2.end(),
+    [this](double tangent2) { return tangent2 < this->TargetTangent2; }));
+}
+
+/**
+ * Whether the move into the cavity that was found would leave more tetrahedra below the target than
+ * there are now. Cells in place of the point that stay count, those of the cavity do not.
+ */
+bool SliverChanges::MakesFlatter() const
+{
+  const Id firstCell = this->Search.GetFirstCell();
+  Id more = this->CountFlatFound() - this->Before.Flat +
+    static_cast<Id>(std::count(this->Cells.IsFlat.begin(), this->Cells.IsFlat.end(), 1));
+  for (const Id t : this->Found.Tetrahedra)
+  {
+    const bool isFlat = t < firstCell ? this->Mesh.GetAngle(t) < this->Goal.Target
+                                      : this->Cells.IsFlat[t - firstCell] != 0;
+    more -= isFlat ? 1 : 0;
+  }
+  return more > 0;
+}
+
 /** Keeps the cavity that was found: its position is better than all before. */
 double SliverChanges::KeepBest(double angle)
 {
@@ -211,6 +236,7 @@ void SliverChanges::MeasureStar(Id point)
   for (const Id t : this->Search.GetStar())
   {
     this->Before.Broken += this->Mesh.BreaksLimit(t) ? 1 : 0;
+    this->Before.Flat += this->Mesh.GetAngle(t) < this->Goal.Target ? 1 : 0;
     this->IncludeTetrahedron(t, this->Before.Angles);
     for (const Id id : mesh.GetMesh().Tetrahedra[t])
     {
@@ -230,15 +256,18 @@ void SliverChanges::MeasureCells(double floor)
 {
   this->Cells.Angles.clear();
   this->Cells.IsBroken.clear();
+  this->Cells.IsFlat.clear();
   for (const CavityCell& cell : this->Search.GetCells())
   {
     const std::array<Vec3, 4> corners = GetCorners(this->Mesh.GetMesh().Points, cell.Ids);
+    const double angle = GetSmallestDihedralAngle(corners[0], corners[1], corners[2], corners[3]);
     SmallestAngles after;
     this->Include(
-      GetSmallestDihedralAngle(corners[0], corners[1], corners[2], corners[3]),
-      [&] { return this->Mesh.GetShape().Sharp.IsAcross(cell.Ids, SharpAngleUse::Sliver); }, after);
+      angle, [&] { return this->Mesh.GetShape().Sharp.IsAcross(cell.Ids, SharpAngleUse::Sliver); },
+      after);
     this->Cells.Angles.push_back(after.Other < floor ? 0.0 : after.Aimed);
     this->Cells.IsBroken.push_back(this->Mesh.BreaksLimit(cell.Ids, corners) ? 1 : 0);
+    this->Cells.IsFlat.push_back(angle < this->Goal.Target ? 1 : 0);
   }
   this->Cells.Flattest.resize(this->Cells.Angles.size());
   std::iota(this->Cells.Flattest.begin(), this->Cells.Flattest.end(), 0);
@@ -294,6 +323,7 @@ double SliverChanges::RateMove(Id point, const Vec3& position, double floor, dou
   }
   const double angle = this->RateCavity();
   return angle > required && (this->Before.Broken > 0 || broken == 0) &&
+      !(this->Goal.IsSharp() && this->MakesFlatter()) &&
       this->IsAllowed(position, this->Before.Broken > 0)
     ? this->KeepBest(angle)
     : 0.0;
@@ -318,9 +348,11 @@ bool SliverChanges::FindMove(Id point, SliverChange& change)
     best, this->Goal.Effort);
   this->Search.TakeBack();
   const std::vector<char>& isBroken = this->Cells.IsBroken;
+  const std::vector<char>& isFlat = this->Cells.IsFlat;
   if (this->Goal.MayRemove &&
     std::count(isBroken.begin(), isBroken.end(), 1) <= this->Before.Broken &&
-    *std::min_element(this->Cells.Angles.begin(), this->Cells.Angles.end()) > best.Angle)
+    *std::min_element(this->Cells.Angles.begin(), this->Cells.Angles.end()) > best.Angle &&
+    !(this->Goal.IsSharp() && std::count(isFlat.begin(), isFlat.end(), 1) > this->Before.Flat))
   {
     change.What = SliverChange::Kind::Removal;
   }
@@ -350,13 +382,18 @@ double SliverChanges::RateInsertion(Id tetrahedron, const Vec3& position, double
     return 0.0;
   }
   SmallestAngles before;
+  Id flat = 0;
   for (const Id t : this->Found.Tetrahedra)
   {
     this->IncludeTetrahedron(t, before);
+    flat += this->Mesh.GetAngle(t) < this->Goal.Target ? 1 : 0;
   }
   this->SetBounds(this->GetFloor(before), required);
   const double angle = this->RateCavity();
-  return angle > required && this->IsAllowed(position, false) ? this->KeepBest(angle) : 0.0;
+  return angle > required && !(this->Goal.IsSharp() && this->CountFlatFound() > flat) &&
+      this->IsAllowed(position, false)
+    ? this->KeepBest(angle)
+    : 0.0;
 }
 
 void SliverChanges::FindInsertion(Id tetrahedron, SliverChange& change)

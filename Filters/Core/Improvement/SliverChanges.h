@@ -6,7 +6,8 @@
  * Method: a free point of the sliver is left out (CavitySearch.h), and the best of some hundred
  * positions around is looked for (PlaceSearch.h); it stays out if that is better. A position is
  * rated by the smallest dihedral angle of all tetrahedra that the point would make there. If no
- * move helps, a new point is looked for in the same way.
+ * move helps, a new point is looked for in the same way. At sharp angles a change must not leave
+ * more tetrahedra below the target than it takes away, either: what it leaves there stays.
  *
  * Three quarters of the positions are no good for the same reason as one shortly before: the same
  * facet of the cavity makes too flat a tetrahedron, or one that breaks a limit, or the same part of
@@ -102,6 +103,8 @@ private:
     /** Angles of the cells aimed at; the others are either good enough or not, which is 0. */
     std::vector<double> Angles;
     std::vector<char> IsBroken;
+    /** Whether they are below the target, aimed at or not. */
+    std::vector<char> IsFlat;
     /** Cells by their angles. */
     std::vector<Id> Flattest;
   };
@@ -111,6 +114,8 @@ private:
     SmallestAngles Angles;
     /** Number of tetrahedra that break a limit. */
     Id Broken = 0;
+    /** Number of tetrahedra below the target. */
+    Id Flat = 0;
     double Nearest = 0.0;
     Vec3 Mean;
   };
@@ -139,6 +144,8 @@ private:
   void NoteSpoiler(Id facet, bool isByLimit);
   bool FindCavity(const Vec3& position, Id first, Id number);
   double RateCavity() const;
+  Id CountFlatFound() const;
+  bool MakesFlatter() const;
   double KeepBest(double angle);
   void MeasureStar(Id point);
   void MeasureCells(double floor);

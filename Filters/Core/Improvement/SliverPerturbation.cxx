@@ -262,25 +262,29 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
   return Status();
 }
 
-Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh& mesh)
+Status PerturbSharp(
+  double target, SliverMeans means, const ExecutionContext& context, RefinedMesh& mesh)
 {
   // Tetrahedra just above the target stay: to improve them, too, took longer and mended no more.
-  const SliverAim aim{ target, SliverPlace::SharpAngle };
+  const bool isMoving = means == SliverMeans::Moves;
+  const SliverAim aim{ target, SliverPlace::SharpAngle, !isMoving };
   Perturbation perturbation(aim, mesh);
-  bool isWorthwhile = true;
-  for (int pass = 0; pass < MaximumSharpPasses && isWorthwhile; ++pass)
+  double most = Infinity;
+  for (int pass = 0; pass < MaximumSharpPasses; ++pass)
   {
+    std::vector<Sliver> slivers = FindSlivers(aim.Target, aim.Place, mesh);
+    if (static_cast<double>(slivers.size()) >= most)
+    {
+      break;
+    }
+    most = (1.0 - WorthwhileRatio) * static_cast<double>(slivers.size());
     // The first pass only moves points: where that helps few, as in thin layers, new ones do not.
-    perturbation.Start(FindSlivers(aim.Target, aim.Place, mesh), pass > 0 ? target : 0.0);
-    std::size_t mended = 0;
-    const auto visit = [&mended](const Sliver&, bool isMended) { mended += isMended ? 1 : 0; };
-    if (!perturbation.Run(
-          GetPass(context, pass, MaximumSharpPasses), "Moving points at sharp angles", visit))
+    perturbation.Start(std::move(slivers), pass > 0 && !isMoving ? target : 0.0);
+    if (!perturbation.Run(GetPass(context, pass, MaximumSharpPasses),
+          "Moving points at sharp angles", [](const Sliver&, bool) {}))
     {
       return Status::Aborted();
     }
-    isWorthwhile = static_cast<double>(mended) >
-      WorthwhileRatio * static_cast<double>(perturbation.GetNumberOfSlivers());
   }
   return Status();
 }

@@ -43,10 +43,12 @@ Status PerturbSlivers(double target, SliverMeans means, const SearchEffort& effo
   const ExecutionContext& context, RefinedMesh& mesh);
 
 /**
- * Moves points of tetrahedra across sharp angles and inserts points there, if no other tetrahedron
- * gets worse: in several passes, as long as each mends a good part of them.
+ * Perturbs slivers at sharp angles, if no other tetrahedron gets worse: in several passes, as long as
+ * each leaves clearly fewer of them.
+ * @param means requests are not made
  */
-Status PerturbSharp(double target, const ExecutionContext& context, RefinedMesh& mesh);
+Status PerturbSharp(
+  double target, SliverMeans means, const ExecutionContext& context, RefinedMesh& mesh);
 } // namespace cdm
 
 #endif

@@ -171,7 +171,9 @@ Status SliverPointMoves::MoveInside(const ExecutionContext& context)
   RefinedMesh mesh = this->MakeMesh(context, parts);
   status =
     PerturbSlivers(this->Target, SliverMeans::Moves, SliverEffort, context.Part(0.1, 0.9), mesh);
-  status = status.IsOk() ? PerturbSharp(this->Target, context.Part(0.9, 1.0), mesh) : status;
+  status = status.IsOk()
+    ? PerturbSharp(this->Target, SliverMeans::Moves, context.Part(0.9, 1.0), mesh)
+    : status;
   this->PutTogether(parts, mesh.GetMesh());
   this->MovedPoints += mesh.GetReport().MovedPoints;
   return status;

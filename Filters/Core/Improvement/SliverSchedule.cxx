@@ -295,8 +295,8 @@ Status SliverSchedule::PerturbLast()
   if (status.IsOk() && !this->IsSharpPerturbed)
   {
     this->IsSharpPerturbed = true;
-    status =
-      PerturbSharp(this->Options.DihedralAngleTarget, this->Rounds.GetContext(), this->GetMesh());
+    status = PerturbSharp(this->Options.DihedralAngleTarget, SliverMeans::Points,
+      this->Rounds.GetContext(), this->GetMesh());
   }
   return status;
 }

@@ -42,6 +42,9 @@ constexpr SearchEffort SharpEffort{ 1, 1 };
  */
 constexpr std::size_t FewestSlivers = 300;
 constexpr double LeastRatio = 0.02;
+/** Passes there go on as long as one mends more than this part. */
+constexpr int MaximumSharpMoves = 5;
+constexpr double WorthwhileMoves = 0.05;
 
 /** Unit vectors along a coordinate axis are exact: a factor of 1 / norm would be rounded. */
 Vec3 GetUnitVector(const Vec3& v)
@@ -786,8 +789,8 @@ bool SliverSurfaceMoves::Mend(std::size_t i)
 
 void SliverSurfaceMoves::Run()
 {
-  const int maximum = this->IsSharp() ? MaximumSharpPasses : MaximumSliverPasses;
-  const double part = this->IsSharp() ? WorthwhileRatio : 0.0;
+  const int maximum = this->IsSharp() ? MaximumSharpMoves : MaximumSliverPasses;
+  const double part = this->IsSharp() ? WorthwhileMoves : 0.0;
   bool isWorthwhile = true;
   for (int pass = 0; pass < maximum && isWorthwhile; ++pass)
   {
