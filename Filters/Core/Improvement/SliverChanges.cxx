@@ -204,7 +204,7 @@ Id SliverChanges::CountFlatFound() const
  * Whether the move into the cavity that was found would leave more tetrahedra below the target than
  * there are now. Cells in place of the point that stay count, those of the cavity do not.
  */
-bool SliverChanges::MakesFlatter() const
+bool SliverChanges::LeavesMoreFlat() const
 {
   const Id firstCell = this->Search.GetFirstCell();
   Id more = this->CountFlatFound() - this->Before.Flat +
@@ -323,7 +323,7 @@ double SliverChanges::RateMove(Id point, const Vec3& position, double floor, dou
   }
   const double angle = this->RateCavity();
   return angle > required && (this->Before.Broken > 0 || broken == 0) &&
-      !(this->Goal.IsSharp() && this->MakesFlatter()) &&
+      !(this->Goal.IsSharp() && this->LeavesMoreFlat()) &&
       this->IsAllowed(position, this->Before.Broken > 0)
     ? this->KeepBest(angle)
     : 0.0;

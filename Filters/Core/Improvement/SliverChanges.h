@@ -145,7 +145,7 @@ private:
   bool FindCavity(const Vec3& position, Id first, Id number);
   double RateCavity() const;
   Id CountFlatFound() const;
-  bool MakesFlatter() const;
+  bool LeavesMoreFlat() const;
   double KeepBest(double angle);
   void MeasureStar(Id point);
   void MeasureCells(double floor);
