@@ -211,8 +211,7 @@ bool SliverChanges::LeavesMoreFlat() const
     static_cast<Id>(std::count(this->Cells.IsFlat.begin(), this->Cells.IsFlat.end(), 1));
   for (const Id t : this->Found.Tetrahedra)
   {
-    const bool isFlat = t < firstCell ? this->Mesh.GetAngle(t) < this->Goal.Target
-                                      : this->Cells.IsFlat[t - firstCell] != 0;
+    const bool isFlat = t < firstCell ? this->IsFlat(t) : this->Cells.IsFlat[t - firstCell] != 0;
     more -= isFlat ? 1 : 0;
   }
   return more > 0;
@@ -236,7 +235,7 @@ void SliverChanges::MeasureStar(Id point)
   for (const Id t : this->Search.GetStar())
   {
     this->Before.Broken += this->Mesh.BreaksLimit(t) ? 1 : 0;
-    this->Before.Flat += this->Mesh.GetAngle(t) < this->Goal.Target ? 1 : 0;
+    this->Before.Flat += this->IsFlat(t) ? 1 : 0;
     this->IncludeTetrahedron(t, this->Before.Angles);
     for (const Id id : mesh.GetMesh().Tetrahedra[t])
     {
@@ -386,7 +385,7 @@ double SliverChanges::RateInsertion(Id tetrahedron, const Vec3& position, double
   for (const Id t : this->Found.Tetrahedra)
   {
     this->IncludeTetrahedron(t, before);
-    flat += this->Mesh.GetAngle(t) < this->Goal.Target ? 1 : 0;
+    flat += this->IsFlat(t) ? 1 : 0;
   }
   this->SetBounds(this->GetFloor(before), required);
   const double angle = this->RateCavity();

@@ -144,6 +144,7 @@ private:
   void NoteSpoiler(Id facet, bool isByLimit);
   bool FindCavity(const Vec3& position, Id first, Id number);
   double RateCavity() const;
+  bool IsFlat(Id tetrahedron) const { return this->Mesh.GetAngle(tetrahedron) < this->Goal.Target; }
   Id CountFlatFound() const;
   bool LeavesMoreFlat() const;
   double KeepBest(double angle);

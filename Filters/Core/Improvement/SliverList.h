@@ -31,9 +31,6 @@ constexpr double MoveRatio = 1.02;
 constexpr SearchEffort SliverEffort{ 3, 2 };
 /** Passes over the slivers that are left. */
 constexpr int MaximumSliverPasses = 20;
-/** Passes over those at sharp angles go on as long as one leaves fewer of them by more than this. */
-constexpr int MaximumSharpPasses = 8;
-constexpr double WorthwhileRatio = 0.02;
 
 /** Threads search at least so many, each some 100 microseconds. */
 constexpr std::size_t SliversPerThread = 2;

@@ -15,6 +15,9 @@ namespace cdm
 namespace
 {
 constexpr std::size_t SliversBetweenChecks = 16;
+/** Passes over those at sharp angles go on as long as one leaves fewer of them by more than this. */
+constexpr int MaximumSharpPasses = 8;
+constexpr double WorthwhileRatio = 0.02;
 
 /** Mends slivers of a list, one after the other; threads look ahead. */
 class Perturbation
