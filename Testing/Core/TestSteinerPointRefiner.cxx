@@ -31,6 +31,40 @@ TEST(SteinerPointRefiner, BoxesGetNoSliversAtAll)
   }
 }
 
+/** What is known of the boundary and of tetrahedra follows what is made, in any number of rounds. */
+TEST(SteinerPointRefiner, WorkIsInProportionToWhatIsMade)
+{
+  for (const int cuts : { 3, 6, 10 })
+  {
+    SCOPED_TRACE("seed " + std::to_string(cuts));
+    std::mt19937_64 generator(cuts);
+    const SteinerPointRefinerOutput output = Refine(
+      MakeTurnedComplex(generator, { 1.0, 1.0, 1.0 }, cuts, 1.0), SteinerPointRefinerOptions());
+    const RefinementWork& work = output.Report.Work;
+    const auto rounds = static_cast<std::int64_t>(output.Report.Rounds);
+    const auto triangles = static_cast<std::int64_t>(output.Boundary.Triangles.size());
+    const auto tetrahedra = static_cast<std::int64_t>(output.Mesh.Tetrahedra.size());
+    std::cout << cuts << " cuts, " << rounds << " rounds, " << triangles << " triangles, "
+              << tetrahedra << " tetrahedra; made " << work.Triangles << " and " << work.Tetrahedra
+              << ", points before meshes " << work.PointsBeforeMesh << ", in them "
+              << work.PointsInMesh << "; spheres " << work.Spheres << ", sharp angles "
+              << work.SharpAngles << ", layers " << work.Layers << ", sizes " << work.Sizes
+              << ", couplings " << work.Couplings << ", faults " << work.Faults << '\n';
+    EXPECT_EQ(
+      work.PointsBeforeMesh + work.PointsInMesh, static_cast<int>(output.Report.BoundaryPoints));
+    EXPECT_LE(work.Spheres, 2 * work.Triangles);
+    EXPECT_LE(work.SharpAngles, 3 * work.Triangles);
+    EXPECT_LE(work.Layers, 2 * work.Triangles);
+    EXPECT_LE(work.Sizes, 2 * work.Tetrahedra);
+    EXPECT_LE(work.Couplings, 3 * work.Tetrahedra);
+    EXPECT_LE(work.Faults, 4 * work.Tetrahedra);
+    // A fraction of what all rounds have in front of them.
+    EXPECT_GE(rounds, 10);
+    EXPECT_LE(work.Spheres + work.SharpAngles + work.Layers, rounds * triangles);
+    EXPECT_LE(work.Sizes + work.Couplings + work.Faults, rounds * tetrahedra);
+  }
+}
+
 /** It took seven rounds, each of which split the sides once or twice. */
 TEST(SteinerPointRefiner, NarrowTrianglesAreSplitInOneRound)
 {

@@ -143,10 +143,14 @@ TEST(TetrahedronWatch, AsksAgainForWhatItHasToForget)
   TetrahedronWatch watch;
   Update(mesh, watch);
   const std::int64_t stamp = mesh.GetNextStamp();
+  const std::int64_t made = mesh.CountMade();
   ASSERT_TRUE(Insert({ 0.5, 0.5, 0.5 }, mesh));
   Update(mesh, watch);
+  const auto count = static_cast<std::int64_t>(mesh.GetChanged().size());
   const std::int64_t before = watch.GetNumberOfTests();
-  watch.Forget(stamp);
+  const std::int64_t visits = watch.GetNumberOfVisits();
+  watch.Forget(stamp, made);
   EXPECT_EQ(Update(mesh, watch), FindAll(mesh));
-  EXPECT_EQ(watch.GetNumberOfTests() - before, static_cast<std::int64_t>(mesh.GetChanged().size()));
+  EXPECT_EQ(watch.GetNumberOfTests() - before, count);
+  EXPECT_EQ(watch.GetNumberOfVisits() - visits, count);
 }

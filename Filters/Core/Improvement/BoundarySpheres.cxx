@@ -30,6 +30,7 @@ void BoundarySpheres::SetTriangle(Id triangle)
   const std::vector<Vec3>& points = this->Surface.Points;
   const EnclosingBall ball(points[ids[0]], points[ids[1]], points[ids[2]]);
   this->Balls.Set(2 * triangle, ball.GetCenter(), ball.GetRadius());
+  ++this->NumberOfVisits;
 }
 
 void BoundarySpheres::SetEdge(Id edge, Id segment)
@@ -37,6 +38,7 @@ void BoundarySpheres::SetEdge(Id edge, Id segment)
   const EdgeIds& ends = this->Edges[edge].Points;
   const EnclosingBall ball(this->Surface.Points[ends[0]], this->Surface.Points[ends[1]]);
   this->Balls.Set(2 * segment + 1, ball.GetCenter(), ball.GetRadius());
+  ++this->NumberOfVisits;
 }
 
 void BoundarySpheres::Follow(const std::vector<Id>& triangles, const std::vector<Id>& changedEdges,

@@ -19,6 +19,7 @@
 #include "Core/Search/BallIndex.h"
 #include "Core/Surface/StructuralEdges.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace cdm
@@ -58,6 +59,9 @@ public:
   void Follow(const std::vector<Id>& triangles, const std::vector<Id>& changedEdges,
     const std::vector<Id>& segments);
 
+  /** How many spheres have been put into the search so far. */
+  std::int64_t GetNumberOfVisits() const { return this->NumberOfVisits; }
+
 private:
   bool IsOnTriangle(Id triangle, const Vec3& position) const;
   bool IsOnEdge(Id edge, const Vec3& position) const;
@@ -70,6 +74,7 @@ private:
   BallIndex Balls;
   /** The edge of each segment. */
   std::vector<Id> SegmentEdges;
+  std::int64_t NumberOfVisits = 0;
 };
 } // namespace cdm
 

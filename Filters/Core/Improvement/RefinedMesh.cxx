@@ -67,6 +67,8 @@ RefinedMesh::RefinedMesh(TetMesh mesh, const RefinedBoundary& boundary,
       { positions[p], sizes.empty() ? 0.0 : sizes[p], false, NoId, static_cast<Id>(p) });
   }
   this->Points.insert(this->Points.end(), interior.begin(), interior.end());
+  this->Work.Triangles = static_cast<std::int64_t>(boundary.Surface.Triangles.size());
+  this->Work.Tetrahedra = this->Mesh.GetNumberOfTetrahedra();
   std::vector<Id> all(this->Mesh.GetNumberOfTetrahedra());
   std::iota(all.begin(), all.end(), 0);
   this->BoundSizes(all);
@@ -94,6 +96,7 @@ void RefinedMesh::BoundSizes(const std::vector<Id>& tetrahedra)
       changed.emplace(size, point);
     }
   };
+  this->Work.Sizes += static_cast<std::int64_t>(tetrahedra.size());
   for (Id t : tetrahedra)
   {
     const TetrahedronIds& ids = this->GetMesh().Tetrahedra[t];
@@ -113,6 +116,7 @@ void RefinedMesh::BoundSizes(const std::vector<Id>& tetrahedra)
       continue;
     }
     this->Mesh.FindStar(point, star);
+    this->Work.Sizes += static_cast<std::int64_t>(star.size());
     for (Id t : star)
     {
       for (Id other : this->GetMesh().Tetrahedra[t])
@@ -185,6 +189,19 @@ void RefinedMesh::GetInterior(std::vector<InteriorPoint>& interior) const
       interior.push_back(this->Points[p]);
     }
   }
+}
+
+RefinementWork RefinedMesh::GetWork() const
+{
+  RefinementWork work = this->Work;
+  work.Tetrahedra += this->Mesh.CountMade();
+  work.Spheres = this->Shape->Spheres.GetNumberOfVisits();
+  work.SharpAngles = this->Shape->Sharp.GetNumberOfVisits();
+  work.Layers = this->Shape->Layers.GetNumberOfVisits();
+  work.Couplings = this->Couplings.GetNumberOfVisits();
+  work.Faults = this->Flatter.GetNumberOfVisits() + this->Slivers.GetNumberOfVisits() +
+    this->Faulty.GetNumberOfVisits();
+  return work;
 }
 
 TetMesh RefinedMesh::TakeMesh()
@@ -276,9 +293,9 @@ bool RefinedMesh::SplitBoundary(std::vector<Id> moved, const DelaunaySurfaceRefi
   {
     this->Splits = std::make_unique<BoundarySplits>(
       this->Mesh, this->FirstInside, this->Boundary.Surface, this->Boundary.Edges, options, sizing);
+    this->SourceTriangles = ListSourceTriangles(this->Boundary.Surface);
   }
   const Id first = static_cast<Id>(this->Boundary.Surface.Points.size());
-  const std::vector<Id> sourceTriangles = ListSourceTriangles(this->Boundary.Surface);
   status = this->Splits->Run(changed, this->Requests.Triangles, this->Requests.Edges, context);
   const Id end = static_cast<Id>(this->Boundary.Surface.Points.size());
   for (Id p = first; p < end; ++p)
@@ -286,6 +303,7 @@ bool RefinedMesh::SplitBoundary(std::vector<Id> moved, const DelaunaySurfaceRefi
     this->Points[p] = { this->Boundary.Surface.Points[p], 0.0, false, NoId, p };
   }
   this->MaximumNewPoints -= end - first;
+  this->Work.PointsInMesh += end - first;
   for (Id t : this->Splits->GetChanged())
   {
     if (!this->Mesh.IsDead(t))
@@ -298,7 +316,7 @@ bool RefinedMesh::SplitBoundary(std::vector<Id> moved, const DelaunaySurfaceRefi
     return false;
   }
   const bool haveSizes = setSizes();
-  this->Threads->RunBoth([&] { this->FollowBoundary(changed.OnSurface, sourceTriangles); },
+  this->Threads->RunBoth([&] { this->FollowBoundary(changed.OnSurface); },
     [&]
     {
       if (haveSizes)
@@ -310,43 +328,58 @@ bool RefinedMesh::SplitBoundary(std::vector<Id> moved, const DelaunaySurfaceRefi
   return true;
 }
 
-/**
- * Brings what is known of the boundary up to date.
- * @param sourceTriangles ListSourceTriangles() of the surface before
- */
-void RefinedMesh::FollowBoundary(
-  const std::vector<Id>& moved, const std::vector<Id>& sourceTriangles)
+/** The structural edges of some triangles of the surface that end at some points, which ascend. */
+std::vector<Id> RefinedMesh::FindEdgesAt(
+  const std::vector<Id>& points, const std::vector<Id>& triangles) const
+{
+  const std::vector<StructuralEdge>& all = this->Boundary.Edges;
+  const auto isAmong = [&points](Id id)
+  { return std::binary_search(points.begin(), points.end(), id); };
+  std::vector<Id> edges;
+  for (Id t : triangles)
+  {
+    const TriangleIds& ids = this->Boundary.Surface.Triangles[t];
+    for (int i = 0; i < 3; ++i)
+    {
+      const EdgeIds ends = MakeEdge(ids[i], ids[(i + 1) % 3]);
+      const StructuralEdge* const edge =
+        isAmong(ends[0]) || isAmong(ends[1]) ? FindStructuralEdge(all, ends) : nullptr;
+      if (edge != nullptr)
+      {
+        edges.push_back(static_cast<Id>(edge - all.data()));
+      }
+    }
+  }
+  return edges;
+}
+
+/** Brings what is known of the boundary up to date. */
+void RefinedMesh::FollowBoundary(const std::vector<Id>& moved)
 {
   const TriangleMesh& surface = this->Boundary.Surface;
   BoundaryChange change{ this->Splits->GetChangedTriangles(), {}, this->Splits->GetChangedEdges(),
     this->Splits->GetSegments() };
-  const auto isMoved = [&moved](Id id)
-  { return std::binary_search(moved.begin(), moved.end(), id); };
   for (Id point : moved)
   {
     const IdLists::Range triangles = this->Shape->PointTriangles[point];
     change.Triangles.insert(change.Triangles.end(), triangles.begin(), triangles.end());
   }
-  for (std::size_t e = 0; e < this->Boundary.Edges.size() && !moved.empty(); ++e)
-  {
-    const EdgeIds& ends = this->Boundary.Edges[e].Points;
-    if (isMoved(ends[0]) || isMoved(ends[1]))
-    {
-      change.Edges.push_back(static_cast<Id>(e));
-    }
-  }
   SortUnique(change.Triangles);
+  const std::vector<Id> movedEdges = this->FindEdgesAt(moved, change.Triangles);
+  change.Edges.insert(change.Edges.end(), movedEdges.begin(), movedEdges.end());
   SortUnique(change.Edges);
   for (Id t : change.Triangles)
   {
-    change.Parents.push_back(sourceTriangles[surface.SourceCells[t]]);
+    change.Parents.push_back(this->SourceTriangles[surface.SourceCells[t]]);
   }
+  this->Work.Triangles += static_cast<std::int64_t>(change.Triangles.size());
   this->Shape->Follow(change);
   this->Couplings.NoteTriangles(surface, change.Triangles);
-  this->Facts.Forget(this->FirstPreliminary);
-  this->Flatter.Forget(this->FirstPreliminary);
-  this->Slivers.Forget(this->FirstPreliminary);
-  this->Faulty.Forget(this->FirstPreliminary);
+  this->Facts.Forget(this->FirstPreliminary, this->NumberMadeBefore);
+  for (TetrahedronWatch* const watch : { &this->Flatter, &this->Slivers, &this->Faulty })
+  {
+    watch->Forget(this->FirstPreliminary, this->NumberMadeBefore);
+  }
   this->FirstPreliminary = std::numeric_limits<std::int64_t>::max();
 }
 
@@ -393,8 +426,8 @@ std::vector<Id> RefinedMesh::FindBelow(
   if (target > this->FlatterTarget)
   {
     this->FlatterTarget = target;
-    this->Flatter.Forget(0);
-    this->Slivers.Forget(0);
+    this->Flatter.Forget(0, -1);
+    this->Slivers.Forget(0, -1);
   }
   this->Facts.MakeRoom();
   std::vector<Id> found = watch.Update(this->Mesh, *this->Threads,
@@ -455,7 +488,7 @@ const std::vector<Id>& RefinedMesh::FindFaulty(bool isShapeTested) const
   if (isShapeTested != this->IsFaultyShape)
   {
     this->IsFaultyShape = isShapeTested;
-    this->Faulty.Forget(0);
+    this->Faulty.Forget(0, -1);
   }
   this->Facts.MakeRoom();
   return this->Faulty.Update(
@@ -497,6 +530,11 @@ void RefinedMesh::NoteChanges()
 void RefinedMesh::NoteSurfaceMove()
 {
   this->NoteChanges();
+  if (this->FirstPreliminary == std::numeric_limits<std::int64_t>::max())
+  {
+    this->NumberMadeBefore =
+      this->Mesh.CountMade() - static_cast<std::int64_t>(this->Mesh.GetChanged().size());
+  }
   for (Id t : this->Mesh.GetChanged())
   {
     this->FirstPreliminary = std::min(this->FirstPreliminary, this->Mesh.GetStamp(t));

@@ -30,6 +30,7 @@
 #include "Core/Improvement/BoundaryShape.h"
 #include "Core/Improvement/BoundarySplits.h"
 #include "Core/Improvement/NegativeCouplings.h"
+#include "Core/Improvement/RefinementWork.h"
 #include "Core/Improvement/SliverMemory.h"
 #include "Core/Improvement/TetrahedronFacts.h"
 #include "Core/Improvement/TetrahedronWatch.h"
@@ -118,6 +119,8 @@ public:
    */
   TetMesh TakeMesh();
   const RefinedMeshReport& GetReport() const { return this->Report; }
+  /** What this mesh has made and looked at so far. */
+  RefinementWork GetWork() const;
   /** Whether as many points have been inserted as allowed, or the time is over. */
   bool IsFull() const
   {
@@ -257,7 +260,9 @@ public:
 
 private:
   void ReservePoints();
-  void FollowBoundary(const std::vector<Id>& moved, const std::vector<Id>& sourceTriangles);
+  void FollowBoundary(const std::vector<Id>& moved);
+  std::vector<Id> FindEdgesAt(
+    const std::vector<Id>& points, const std::vector<Id>& triangles) const;
   void BoundSizes(const std::vector<Id>& tetrahedra);
   void BoundSizesAtSplits();
   bool TouchesOpenFacet(const PointCavity& cavity) const;
@@ -279,11 +284,15 @@ private:
   SliverMemory& Memory;
   std::unique_ptr<BoundaryShape> Shape;
   std::unique_ptr<BoundarySplits> Splits;
+  /** For each source cell of the surface a triangle that came from it before the first splits. */
+  std::vector<Id> SourceTriangles;
   /** One for each point of the mesh. */
   std::vector<InteriorPoint> Points;
   /** Interior points that have come, gone or moved since the last splits of the boundary. */
   std::vector<Id> ChangedInside;
   RefinedMeshReport Report;
+  /** What the members do not count themselves. */
+  RefinementWork Work;
   BoundaryRequests Requests;
   NegativeCouplings Couplings;
   mutable TetrahedronFacts Facts;
@@ -292,6 +301,8 @@ private:
    * been moved in the mesh only.
    */
   std::int64_t FirstPreliminary = std::numeric_limits<std::int64_t>::max();
+  /** How many tetrahedra had been made before these. */
+  std::int64_t NumberMadeBefore = 0;
   /** Tetrahedra with an angle below FlatterTarget, slivers among them, and those of FindFaulty(). */
   mutable TetrahedronWatch Flatter;
   mutable TetrahedronWatch Slivers;

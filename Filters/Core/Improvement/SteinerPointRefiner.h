@@ -60,6 +60,7 @@
 #include "Core/Basics/ExecutionContext.h"
 #include "Core/Basics/Status.h"
 #include "Core/Basics/Warning.h"
+#include "Core/Improvement/RefinementWork.h"
 #include "Core/Meshes/TetMesh.h"
 #include "Core/Sizing/TetrahedronLimits.h"
 #include "Core/Surface/DelaunaySurfaceRefiner.h"
@@ -177,6 +178,8 @@ struct SteinerPointRefinerReport
   bool IsLate = false;
   /** Edges of the boundary with a negative coupling. */
   Id NegativeCouplings = 0;
+  /** What all rounds have made and looked at. */
+  RefinementWork Work;
 };
 
 struct SteinerPointRefinerOutput

@@ -294,6 +294,7 @@ Status SteinerPointRounds::RemakeMesh()
   {
     this->HasSplitNothing = refined.NewPoints.empty();
     this->Report.BoundaryPoints += static_cast<Id>(refined.NewPoints.size());
+    this->Report.Work.PointsBeforeMesh += static_cast<std::int64_t>(refined.NewPoints.size());
     this->Report.UnresolvedTriangles = static_cast<Id>(refined.UnresolvedTriangles.size());
     this->Report.WeakTriangles = static_cast<Id>(refined.WeakTriangles.size());
   }
@@ -572,6 +573,7 @@ std::size_t SteinerPointRounds::CollectSurfaceSizes(const std::vector<Id>& trian
     return first;
   }
   this->SurfaceSizes.resize(this->Surface.Points.size(), -1.0);
+  this->Report.Work.Sizes += static_cast<std::int64_t>(this->SurfaceSizes.size() - first);
   this->SpreadSurfaceSizes(triangles);
   const auto find = [&](std::size_t begin, std::size_t end, int)
   {
@@ -685,6 +687,7 @@ void SteinerPointRounds::CollectReport()
     this->Report.InteriorPoints += report.InsertedPoints;
     this->Report.MovedPoints += report.MovedPoints;
     this->Report.RemovedPoints += report.RemovedPoints;
+    this->Report.Work += this->Mesh->GetWork();
   }
 }
 

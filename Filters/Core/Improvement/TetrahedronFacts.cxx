@@ -30,19 +30,20 @@ TetrahedronFacts::Known& TetrahedronFacts::Get(Id tetrahedron, Known& scratch)
   return known;
 }
 
-void TetrahedronFacts::Forget(std::int64_t first)
+void TetrahedronFacts::Forget(std::int64_t first, std::int64_t numberMade)
 {
   if (first >= this->Mesh.GetNextStamp())
   {
     return;
   }
-  for (Known& known : this->Facts)
-  {
-    if (known.GetStamp() >= first)
+  this->Mesh.VisitMadeSince(numberMade, this->Marks,
+    [&](Id t)
     {
-      known = Known();
-    }
-  }
+      if (static_cast<std::size_t>(t) < this->Facts.size() && this->Facts[t].GetStamp() >= first)
+      {
+        this->Facts[t] = Known();
+      }
+    });
 }
 
 double TetrahedronFacts::GetAngle(Id tetrahedron)

@@ -42,8 +42,11 @@ public:
    * other tetrahedra.
    */
   void MakeRoom() { this->Facts.resize(this->Mesh.GetMesh().Tetrahedra.size()); }
-  /** Forgets facts about tetrahedra with this stamp or a later one. */
-  void Forget(std::int64_t first);
+  /**
+   * Forgets facts about tetrahedra with this stamp or a later one.
+   * @param numberMade how many tetrahedra the mesh had made, at most, before the first of these
+   */
+  void Forget(std::int64_t first, std::int64_t numberMade);
   /** Forgets all, and gives the memory back. */
   void Forget() { this->Facts = {}; }
 
@@ -78,6 +81,8 @@ private:
   const DynamicTetrahedralization& Mesh;
   const TetrahedronLimits& Limits;
   std::vector<Known> Facts;
+  /** Work space, as for VisitAscending(). */
+  std::vector<std::uint64_t> Marks;
   bool IsFrozen = false;
 };
 } // namespace cdm

@@ -60,14 +60,17 @@ public:
     return this->Found;
   }
 
-  /** Asks again for tetrahedra with this stamp or a later one. */
-  void Forget(std::int64_t first)
+  /**
+   * Asks again for tetrahedra with this stamp or a later one.
+   * @param numberMade how many tetrahedra the mesh had made, at most, before the first of these
+   */
+  void Forget(std::int64_t first, std::int64_t numberMade)
   {
     if (first < this->NextStamp)
     {
       this->Keep([first](Id, std::int64_t stamp) { return stamp < first; });
       this->NextStamp = first;
-      this->NumberMade = -1;
+      this->NumberMade = std::min(this->NumberMade, numberMade);
     }
   }
 

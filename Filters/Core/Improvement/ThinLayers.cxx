@@ -51,6 +51,7 @@ ThinLayers::ThinLayers(
     const RegionPair& labels = surface.Labels[t];
     this->Faces.push_back({ 1.0 / Norm(normal) * normal, 0.0, labels.Front == OutsideRegion });
     this->Faces.push_back({ -1.0 / Norm(normal) * normal, 0.0, labels.Back == OutsideRegion });
+    this->NumberOfVisits += 2;
   }
   this->MeasureWidths();
 }
@@ -63,6 +64,7 @@ void ThinLayers::Follow(const std::vector<Id>& triangles, const std::vector<Id>&
   {
     faces.push_back(this->Faces[2 * parent]);
     faces.push_back(this->Faces[2 * parent + 1]);
+    this->NumberOfVisits += 2;
   }
   this->Faces.resize(2 * this->Surface.Triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i)

@@ -33,6 +33,7 @@
 #include "Core/Basics/IdLists.h"
 #include "Core/Meshes/TriangleMesh.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace cdm
@@ -52,6 +53,8 @@ public:
    * @param parents for each of them one of the surface before in the same surface facet
    */
   void Follow(const std::vector<Id>& triangles, const std::vector<Id>& parents);
+  /** How many faces have been looked at so far. */
+  std::int64_t GetNumberOfVisits() const { return this->NumberOfVisits; }
 
   /**
    * Whether a tetrahedron of a region is across a thin layer. Ids of interior points are larger
@@ -93,6 +96,7 @@ private:
   const double AspectRatio;
   /** 2 * t as seen from behind a triangle, 2 * t + 1 from its front. */
   std::vector<Face> Faces;
+  std::int64_t NumberOfVisits = 0;
 };
 } // namespace cdm
 

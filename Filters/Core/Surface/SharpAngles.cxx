@@ -85,6 +85,8 @@ SharpAngles::SharpAngles(const TriangleMesh& surface, const std::vector<Structur
   this->FindTips(pointTriangles, neighbors);
   this->FindArms(pointTriangles, neighbors);
   this->ListFacets(pointTriangles);
+  this->NumberOfVisits =
+    static_cast<std::int64_t>(surface.Points.size() + surface.Triangles.size() + this->Arms.size());
 }
 
 void SharpAngles::Follow(const std::vector<StructuralEdge>& edges,
@@ -95,6 +97,7 @@ void SharpAngles::Follow(const std::vector<StructuralEdge>& edges,
   for (std::size_t i = 0; i < triangles.size(); ++i)
   {
     this->Facets[triangles[i]] = this->Facets[parents[i]];
+    ++this->NumberOfVisits;
   }
   this->FollowFacets(triangles);
   this->FollowArms(edges, changedEdges);
@@ -120,6 +123,7 @@ void SharpAngles::FollowFacets(const std::vector<Id>& triangles)
   auto next = pairs.begin();
   for (Id point = first; point < static_cast<Id>(this->Surface.Points.size()); ++point)
   {
+    ++this->NumberOfVisits;
     facets.clear();
     for (; next != pairs.end() && next->first == point; ++next)
     {
@@ -181,6 +185,7 @@ void SharpAngles::FollowArms(
     {
       const std::vector<Id> one = this->ListArmsAt(findOlder(first + i, *ends.begin()));
       const std::vector<Id> other = this->ListArmsAt(findOlder(first + i, *(ends.end() - 1)));
+      this->NumberOfVisits += static_cast<std::int64_t>(one.size() + other.size());
       std::set_intersection(
         one.begin(), one.end(), other.begin(), other.end(), std::back_inserter(common));
     }

@@ -37,6 +37,7 @@
 #include "Core/Meshes/TriangleMesh.h"
 #include "Core/Surface/StructuralEdges.h"
 
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -81,6 +82,8 @@ public:
    * for slivers is across for shapes.
    */
   bool IsAcross(const TetrahedronIds& ids, SharpAngleUse use = SharpAngleUse::Shape) const;
+  /** How many points, triangles and arms have been looked at so far. */
+  std::int64_t GetNumberOfVisits() const { return this->NumberOfVisits; }
   /** The surface facet of each triangle. */
   const std::vector<Id>& GetFacets() const { return this->Facets; }
   /** For each surface facet whether it has a sharp angle, or a sharp plane angle at its edges. */
@@ -165,6 +168,7 @@ private:
   std::vector<Arm> Arms;
   /** Arms that each point lies on. A corner is listed only on arms of other corners. */
   IdLists PointArms;
+  std::int64_t NumberOfVisits = 0;
 };
 } // namespace cdm
 
