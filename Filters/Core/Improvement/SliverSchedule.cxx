@@ -28,6 +28,8 @@ constexpr int MaximumHalvings = 5;
 constexpr double FewLeftRatio = 0.0005;
 /** A halving that leaves this part of what was left, or more, is in vain. */
 constexpr double HalvingGain = 0.75;
+/** Turns of moves of surface points, and passes, at sharp angles. */
+constexpr int MaximumSharpTurns = 5;
 /** Passes over slivers and shapes, alternating, when the boundary stays as it is. */
 constexpr int MaximumLastPasses = 5;
 } // namespace
@@ -99,7 +101,7 @@ RoundResult SliverSchedule::PerturbMoveOrRequest(bool isFull)
     this->Rounds.CountRequests() > requests ? RoundEnd::Requested : RoundEnd::Open };
 }
 
-/** Means 6 to 10. */
+/** Means 6 to 11. */
 RoundResult SliverSchedule::MendCouplings()
 {
   if (this->RequestCouplings())
@@ -114,7 +116,12 @@ RoundResult SliverSchedule::MendCouplings()
   {
     return { {}, RoundEnd::Moved };
   }
+  const bool isTurn = !this->IsSharpPerturbed;
   Status status = this->PerturbLast();
+  if (status.IsOk() && isTurn && this->StartSharpTurn())
+  {
+    return { {}, RoundEnd::Moved };
+  }
   if (status.IsOk() && this->RequestCouplings())
   {
     return { {}, RoundEnd::Requested };
@@ -144,7 +151,7 @@ bool SliverSchedule::MayHalveSizes(const std::vector<Id>& left)
   return !left.empty() && (!isInVain || static_cast<double>(left.size()) <= few);
 }
 
-/** Means 10. */
+/** Means 11. */
 RoundResult SliverSchedule::MendWhatIsLeft()
 {
   Status status;
@@ -243,7 +250,7 @@ bool SliverSchedule::MoveSurfacePoints()
   return this->TakeSurfaceMoves(SliverPlace::Elsewhere);
 }
 
-/** Moves free surface points of slivers at sharp angles, once. False if all points stay. */
+/** Moves free surface points of slivers at sharp angles, once in a turn. False if all points stay. */
 bool SliverSchedule::MoveSharpSurfacePoints()
 {
   if (this->AreSharpMoved || this->GetMesh().IsFull())
@@ -252,6 +259,20 @@ bool SliverSchedule::MoveSharpSurfacePoints()
   }
   this->AreSharpMoved = true;
   return this->TakeSurfaceMoves(SliverPlace::SharpAngle);
+}
+
+/** Begins another turn at sharp angles. False if no point of the surface is moved any more. */
+bool SliverSchedule::StartSharpTurn()
+{
+  ++this->SharpTurns;
+  if (this->SharpTurns == MaximumSharpTurns)
+  {
+    return false;
+  }
+  this->AreSharpMoved = false;
+  const bool isMoved = this->MoveSharpSurfacePoints();
+  this->IsSharpPerturbed = !isMoved;
+  return isMoved;
 }
 
 bool SliverSchedule::TakeSurfaceMoves(SliverPlace place)
@@ -275,7 +296,7 @@ Status SliverSchedule::Perturb(SliverMeans means)
 
 /**
  * Perturbs the slivers that points inserted for shapes have left. Those at sharp angles are
- * perturbed once only: each time would make other couplings negative.
+ * perturbed once in a turn: each time would make other couplings negative.
  */
 Status SliverSchedule::PerturbLast()
 {

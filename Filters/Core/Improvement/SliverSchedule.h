@@ -16,8 +16,9 @@
  * | 6 | request splits for negative couplings            | Requested                |
  * | 7 | move surface points at sharp angles              | Moved                    |
  * | 8 | last passes: 2 and 5 in turns, then sharp angles | -                        |
- * | 9 | 6 again, for what the last passes have made      | Requested                |
- * |10 | come closer to the points of what is left        | Requested, or else Done  |
+ * | 9 | 7 again, after the passes at sharp angles        | Moved                    |
+ * |10 | 6 again, for what the last passes have made      | Requested                |
+ * |11 | come closer to the points of what is left        | Requested, or else Done  |
  *
  *  - 1 (PointRounding.h) is tried unless all flat tetrahedra are among those given up on: three
  *    tries in a row left more than three quarters of them;
@@ -29,9 +30,12 @@
  *  - 6 (NegativeCouplings.h) is given up after sixteen tries in a row that left as many couplings.
  *    Each try lets 1 to 5 begin anew, as splits make new slivers. It comes before 8, which takes
  *    long;
- *  - 7 is tried once. Along with 3 it would find hardly more, and take several times as long, as
- *    what it moves starts round after round;
- *  - 10 halves the sizes there, which only keep the refinement from going on without end, and searches
+ *  - 7 comes once, before 8. Along with 3 it would find hardly more, and take several times as long,
+ *    as what it moves starts round after round;
+ *  - 8 goes over sharp angles once after each of these moves, as it would make other couplings negative each
+ *    time. So 7 and 8 take turns, five at most, as long as 9 finds something to move: little is
+ *    searched again, as most points are known to be immovable by then;
+ *  - 11 halves the sizes there, which only keep the refinement from going on without end, and searches
  *    longer, up to five times in all: it is needed for one to three tetrahedra of a million. Where
  *    more than one in 2000 is left, it is given up after a halving that left three quarters of them:
  *    beside sharp angles each halving only makes half as many more;
@@ -103,6 +107,7 @@ private:
   bool RoundFlatTetrahedraAway();
   bool MoveSurfacePoints();
   bool MoveSharpSurfacePoints();
+  bool StartSharpTurn();
   bool TakeSurfaceMoves(SliverPlace place);
   Status RefineShapes();
   Status Perturb(SliverMeans means);
@@ -125,6 +130,8 @@ private:
   /** Whether points of the surface at sharp angles have been moved, and others there. */
   bool AreSharpMoved = false;
   bool IsSharpPerturbed = false;
+  /** How many turns of moves and passes at sharp angles have ended. */
+  int SharpTurns = 0;
   /** Limits the halvings of sizes where they are for more than a few tetrahedra. */
   Patience ManyHalvings;
   /** How many times sizes have been halved. */
