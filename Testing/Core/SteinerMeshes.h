@@ -152,6 +152,14 @@ inline SteinerPointRefinerOutput Refine(
   return Refine(input, options);
 }
 
+/** Tetrahedra below 15 degrees, those that are excused as well. */
+inline Id CountSlivers(const TetMesh& mesh)
+{
+  MeshCertificate check;
+  EXPECT_TRUE(CertifyMesh(mesh, nullptr, {}, check).IsOk());
+  return check.Under15Degrees.Count;
+}
+
 inline void ExpectNoFaults(const SteinerPointRefinerReport& report)
 {
   EXPECT_EQ(report.TooLarge, 0);

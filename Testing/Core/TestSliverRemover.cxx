@@ -618,19 +618,12 @@ TEST(SliverRemover, PointsOfTheBoundaryAreMovedInTheirPlanesAndOnTheirLinesOnly)
     AdvancingFrontTetrahedralizerOutput output;
     ASSERT_TRUE(TetrahedralizeByAdvancingFront(input, {}, {}, output).IsOk());
 
-    const auto countSlivers = [](const TetMesh& mesh)
-    {
-      const std::vector<Vec3>& p = mesh.Points;
-      return std::count_if(mesh.Tetrahedra.begin(), mesh.Tetrahedra.end(),
-        [&](const TetrahedronIds& ids)
-        { return GetSmallestDihedralAngle(p[ids[0]], p[ids[1]], p[ids[2]], p[ids[3]]) < 15.0; });
-    };
     TetMesh mesh = output.Mesh;
     RemoveWithMoves(mesh, 15.0);
     EXPECT_EQ(mesh.Points, output.Mesh.Points);
-    slivers[0] += countSlivers(mesh);
+    slivers[0] += Check(mesh).Under15Degrees.Count;
     RemoveWithMoves(mesh, 15.0, false, true);
-    slivers[1] += countSlivers(mesh);
+    slivers[1] += Check(mesh).Under15Degrees.Count;
 
     const TriangleMesh boundary = ExtractBoundary(mesh);
     EXPECT_EQ(boundary.Triangles.size(), output.Boundary.Triangles.size());
@@ -701,15 +694,6 @@ TEST(SliverRemover, QualityBeforeDelaunayKeepsTheRegions)
     std::mt19937 random(seed);
     const TetMesh input = MakeRaggedMesh(random, 400, false);
     const TriangleMesh boundary = ExtractBoundary(input);
-    const auto countSlivers = [](const TetMesh& mesh)
-    {
-      return std::count_if(mesh.Tetrahedra.begin(), mesh.Tetrahedra.end(),
-        [&](const TetrahedronIds& ids)
-        {
-          return GetSmallestDihedralAngle(mesh.Points[ids[0]], mesh.Points[ids[1]],
-                   mesh.Points[ids[2]], mesh.Points[ids[3]]) < 15.0;
-        });
-    };
     TetMesh delaunay = input;
     RemoveWithMoves(delaunay, 15.0);
     TetMesh mesh = input;
@@ -717,7 +701,7 @@ TEST(SliverRemover, QualityBeforeDelaunayKeepsTheRegions)
     EXPECT_GT(report.Flips, 0);
     EXPECT_GT(report.MovedPoints, 0);
     EXPECT_GE(report.SmallestDihedralAngleAfter, report.SmallestDihedralAngleBefore);
-    EXPECT_LT(countSlivers(mesh), countSlivers(input) / 2);
+    EXPECT_LT(Check(mesh).Under15Degrees.Count, Check(input).Under15Degrees.Count / 2);
 
     // All is as it was but the empty spheres.
     MeshCertificate check = Check(mesh, &boundary);

@@ -142,14 +142,13 @@ TEST(TetrahedronWatch, AsksAgainForWhatItHasToForget)
   DynamicTetrahedralization mesh(MakeRandomMesh(500, generator));
   TetrahedronWatch watch;
   Update(mesh, watch);
-  const std::int64_t stamp = mesh.GetNextStamp();
-  const std::int64_t made = mesh.CountMade();
+  const MeshMoment moment = mesh.GetMoment();
   ASSERT_TRUE(Insert({ 0.5, 0.5, 0.5 }, mesh));
   Update(mesh, watch);
   const auto count = static_cast<std::int64_t>(mesh.GetChanged().size());
   const std::int64_t before = watch.GetNumberOfTests();
   const std::int64_t visits = watch.GetNumberOfVisits();
-  watch.Forget(stamp, made);
+  watch.Forget(moment);
   EXPECT_EQ(Update(mesh, watch), FindAll(mesh));
   EXPECT_EQ(watch.GetNumberOfTests() - before, count);
   EXPECT_EQ(watch.GetNumberOfVisits() - visits, count);

@@ -42,6 +42,15 @@
 
 namespace cdm
 {
+/** A moment of a mesh that changes, to find what has been made since; by default its beginning. */
+struct MeshMoment
+{
+  /** Tetrahedra that are made from then on have this stamp or a later one. */
+  std::int64_t NextStamp = 0;
+  /** How many tetrahedra had been made by then; negative: none, not even those it begins with. */
+  std::int64_t NumberMade = -1;
+};
+
 class DynamicTetrahedralization
 {
 public:
@@ -70,6 +79,19 @@ public:
   std::int64_t GetStamp(Id tetrahedron) const { return this->Stamps[tetrahedron]; }
   /** The stamp of the next tetrahedron that is made: those of older ones are smaller. */
   std::int64_t GetNextStamp() const { return this->NextStamp; }
+  MeshMoment GetMoment() const { return { this->NextStamp, this->CountMade() }; }
+  /** The moment before the last change made its tetrahedra. */
+  MeshMoment GetMomentBeforeChange() const
+  {
+    const auto count = static_cast<std::int64_t>(this->Changed.size());
+    const std::int64_t first = count > 0 ? this->GetStamp(this->Changed.front()) : this->NextStamp;
+    return { first, this->CountMade() - count };
+  }
+  /** Whether the slot has a tetrahedron that was made since a moment. */
+  bool IsMadeSince(const MeshMoment& moment, Id tetrahedron) const
+  {
+    return this->GetStamp(tetrahedron) >= moment.NextStamp && !this->IsDead(tetrahedron);
+  }
   /** A tetrahedron at the point, or NoId. */
   Id GetTetrahedronAt(Id point) const { return this->PointTetrahedra[point]; }
   /** Whether a facet lies between two regions or at the outside: it is never removed. */
@@ -153,14 +175,15 @@ public:
     return this->FirstNoted + static_cast<std::int64_t>(this->Noted.size());
   }
   /**
-   * Calls visit(slot) for the slots of all tetrahedra that have been made since there were so many,
-   * once each, ascending. If that is too long ago to be known, all slots are visited.
+   * Calls visit(slot) for the slots of all tetrahedra that have been made since a moment, once each,
+   * ascending. If that is too long ago to be known, all slots are visited.
    * @param marks work space, as for VisitAscending()
    */
   template <typename Visitor>
-  void VisitMadeSince(std::int64_t count, std::vector<std::uint64_t>& marks, Visitor&& visit) const
+  void VisitMadeSince(
+    const MeshMoment& moment, std::vector<std::uint64_t>& marks, Visitor&& visit) const
   {
-    if (count < this->FirstNoted)
+    if (moment.NumberMade < this->FirstNoted)
     {
       for (Id t = 0; t < this->GetNumberOfTetrahedra(); ++t)
       {
@@ -168,8 +191,8 @@ public:
       }
       return;
     }
-    VisitAscending(
-      this->Noted.begin() + (count - this->FirstNoted), this->Noted.end(), marks, visit);
+    VisitAscending(this->Noted.begin() + (moment.NumberMade - this->FirstNoted), this->Noted.end(),
+      marks, visit);
   }
 
 private:

@@ -289,9 +289,9 @@ void NegativeCouplings::NoteTriangles(
 bool NegativeCouplings::CollectChanged(
   const DynamicTetrahedralization& mesh, const TriangleMesh& boundary, int numberOfThreads)
 {
-  const std::int64_t numberOfNew = mesh.CountMade() - this->NumberMade;
+  const std::int64_t numberOfNew = mesh.CountMade() - this->Last.NumberMade;
   const bool areAll =
-    this->NextStamp == 0 || numberOfNew > static_cast<std::int64_t>(boundary.Triangles.size());
+    this->Last.NumberMade < 0 || numberOfNew > static_cast<std::int64_t>(boundary.Triangles.size());
   if (areAll)
   {
     std::for_each(boundary.Triangles.begin(), boundary.Triangles.end(),
@@ -300,11 +300,11 @@ bool NegativeCouplings::CollectChanged(
   else
   {
     const Id numberOfPoints = static_cast<Id>(boundary.Points.size());
-    mesh.VisitMadeSince(this->NumberMade, this->Marks,
+    mesh.VisitMadeSince(this->Last, this->Marks,
       [&](Id t)
       {
         ++this->NumberOfVisits;
-        if (mesh.GetStamp(t) >= this->NextStamp && !mesh.IsDead(t))
+        if (mesh.IsMadeSince(this->Last, t))
         {
           ForEachBoundaryPair(mesh.GetMesh().Tetrahedra[t], numberOfPoints,
             [&](int i, const EdgeIds& edge) {
@@ -313,8 +313,7 @@ bool NegativeCouplings::CollectChanged(
         }
       });
   }
-  this->NumberMade = mesh.CountMade();
-  this->NextStamp = mesh.GetNextStamp();
+  this->Last = mesh.GetMoment();
   // Each edge becomes one candidate: the first one, which has a tetrahedron if any of them has.
   ParallelSort(this->Changed, numberOfThreads, {}, "",
     [](const Candidate& a, const Candidate& b)

@@ -80,10 +80,8 @@ private:
   std::vector<EdgeIds> Negative;
   /** Edges of triangles that have changed since the last update, then all that may have. */
   std::vector<Candidate> Changed;
-  /** Tetrahedra with this stamp or a later one are new. */
-  std::int64_t NextStamp = 0;
-  /** How many tetrahedra the mesh had made by then. */
-  std::int64_t NumberMade = 0;
+  /** Tetrahedra that have been made since then are new. */
+  MeshMoment Last;
   /** Work space, as for VisitAscending(), and what was found of each edge. */
   std::vector<std::uint64_t> Marks;
   std::vector<Answer> Answers;

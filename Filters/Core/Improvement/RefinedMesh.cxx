@@ -375,12 +375,15 @@ void RefinedMesh::FollowBoundary(const std::vector<Id>& moved)
   this->Work.Triangles += static_cast<std::int64_t>(change.Triangles.size());
   this->Shape->Follow(change);
   this->Couplings.NoteTriangles(surface, change.Triangles);
-  this->Facts.Forget(this->FirstPreliminary, this->NumberMadeBefore);
-  for (TetrahedronWatch* const watch : { &this->Flatter, &this->Slivers, &this->Faulty })
+  if (this->BeforeMoves)
   {
-    watch->Forget(this->FirstPreliminary, this->NumberMadeBefore);
+    this->Facts.Forget(*this->BeforeMoves);
+    for (TetrahedronWatch* const watch : { &this->Flatter, &this->Slivers, &this->Faulty })
+    {
+      watch->Forget(*this->BeforeMoves);
+    }
+    this->BeforeMoves.reset();
   }
-  this->FirstPreliminary = std::numeric_limits<std::int64_t>::max();
 }
 
 void RefinedMesh::SetImmovable(const std::vector<Id>& points, SliverPlace place)
@@ -426,8 +429,8 @@ std::vector<Id> RefinedMesh::FindBelow(
   if (target > this->FlatterTarget)
   {
     this->FlatterTarget = target;
-    this->Flatter.Forget(0, -1);
-    this->Slivers.Forget(0, -1);
+    this->Flatter.Forget({});
+    this->Slivers.Forget({});
   }
   this->Facts.MakeRoom();
   std::vector<Id> found = watch.Update(this->Mesh, *this->Threads,
@@ -488,7 +491,7 @@ const std::vector<Id>& RefinedMesh::FindFaulty(bool isShapeTested) const
   if (isShapeTested != this->IsFaultyShape)
   {
     this->IsFaultyShape = isShapeTested;
-    this->Faulty.Forget(0, -1);
+    this->Faulty.Forget({});
   }
   this->Facts.MakeRoom();
   return this->Faulty.Update(
@@ -530,14 +533,9 @@ void RefinedMesh::NoteChanges()
 void RefinedMesh::NoteSurfaceMove()
 {
   this->NoteChanges();
-  if (this->FirstPreliminary == std::numeric_limits<std::int64_t>::max())
+  if (!this->BeforeMoves)
   {
-    this->NumberMadeBefore =
-      this->Mesh.CountMade() - static_cast<std::int64_t>(this->Mesh.GetChanged().size());
-  }
-  for (Id t : this->Mesh.GetChanged())
-  {
-    this->FirstPreliminary = std::min(this->FirstPreliminary, this->Mesh.GetStamp(t));
+    this->BeforeMoves = this->Mesh.GetMomentBeforeChange();
   }
 }
 

@@ -36,10 +36,9 @@
 #include "Core/Improvement/TetrahedronWatch.h"
 #include "Core/Sizing/TetrahedronLimits.h"
 
-#include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace cdm
@@ -297,12 +296,10 @@ private:
   NegativeCouplings Couplings;
   mutable TetrahedronFacts Facts;
   /**
-   * Facts about tetrahedra with this stamp or a later one may be about surface points that have
-   * been moved in the mesh only.
+   * The moment before surface points were moved in the mesh only, if there are any: facts about
+   * tetrahedra that have been made since then may be about these.
    */
-  std::int64_t FirstPreliminary = std::numeric_limits<std::int64_t>::max();
-  /** How many tetrahedra had been made before these. */
-  std::int64_t NumberMadeBefore = 0;
+  std::optional<MeshMoment> BeforeMoves;
   /** Tetrahedra with an angle below FlatterTarget, slivers among them, and those of FindFaulty(). */
   mutable TetrahedronWatch Flatter;
   mutable TetrahedronWatch Slivers;

@@ -30,7 +30,7 @@ struct RefinementWork
   // What was looked at.
   /** Triangles and edges whose smallest spheres were put into BoundarySpheres. */
   std::int64_t Spheres = 0;
-  /** Points, triangles and arms that SharpAngles has looked at, for their shadows as well. */
+  /** Points, triangles and arms, which cast shadows, that SharpAngles has looked at. */
   std::int64_t SharpAngles = 0;
   /** Faces in ThinLayers. */
   std::int64_t Layers = 0;
@@ -38,7 +38,7 @@ struct RefinementWork
   std::int64_t Sizes = 0;
   /** Tetrahedra in NegativeCouplings. */
   std::int64_t Couplings = 0;
-  /** Tetrahedra that were asked for faults, and for angles below the target. */
+  /** Tetrahedra that were visited to find faults, and angles below the target. */
   std::int64_t Faults = 0;
 
   RefinementWork& operator+=(const RefinementWork& other)

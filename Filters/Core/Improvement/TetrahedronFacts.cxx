@@ -30,16 +30,13 @@ TetrahedronFacts::Known& TetrahedronFacts::Get(Id tetrahedron, Known& scratch)
   return known;
 }
 
-void TetrahedronFacts::Forget(std::int64_t first, std::int64_t numberMade)
+void TetrahedronFacts::Forget(const MeshMoment& moment)
 {
-  if (first >= this->Mesh.GetNextStamp())
-  {
-    return;
-  }
-  this->Mesh.VisitMadeSince(numberMade, this->Marks,
+  this->Mesh.VisitMadeSince(moment, this->Marks,
     [&](Id t)
     {
-      if (static_cast<std::size_t>(t) < this->Facts.size() && this->Facts[t].GetStamp() >= first)
+      if (static_cast<std::size_t>(t) < this->Facts.size() &&
+        this->Facts[t].GetStamp() >= moment.NextStamp)
       {
         this->Facts[t] = Known();
       }

@@ -42,11 +42,8 @@ public:
    * other tetrahedra.
    */
   void MakeRoom() { this->Facts.resize(this->Mesh.GetMesh().Tetrahedra.size()); }
-  /**
-   * Forgets facts about tetrahedra with this stamp or a later one.
-   * @param numberMade how many tetrahedra the mesh had made, at most, before the first of these
-   */
-  void Forget(std::int64_t first, std::int64_t numberMade);
+  /** Forgets facts about tetrahedra that have been made since a moment. */
+  void Forget(const MeshMoment& moment);
   /** Forgets all, and gives the memory back. */
   void Forget() { this->Facts = {}; }
 

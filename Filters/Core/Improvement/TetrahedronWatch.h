@@ -39,12 +39,12 @@ public:
     const auto visit = [&](Id t)
     {
       ++this->NumberOfVisits;
-      if (mesh.GetStamp(t) >= this->NextStamp && !mesh.IsDead(t))
+      if (mesh.IsMadeSince(this->Last, t))
       {
         this->New.push_back(t);
       }
     };
-    mesh.VisitMadeSince(this->NumberMade, this->Marks, visit);
+    mesh.VisitMadeSince(this->Last, this->Marks, visit);
     this->NumberOfTests += static_cast<std::int64_t>(this->New.size());
     this->Test(team, hasProperty);
     for (std::size_t i = 0; i < this->New.size(); ++i)
@@ -55,22 +55,17 @@ public:
         this->Stamps.push_back(mesh.GetStamp(this->New[i]));
       }
     }
-    this->NumberMade = mesh.CountMade();
-    this->NextStamp = mesh.GetNextStamp();
+    this->Last = mesh.GetMoment();
     return this->Found;
   }
 
-  /**
-   * Asks again for tetrahedra with this stamp or a later one.
-   * @param numberMade how many tetrahedra the mesh had made, at most, before the first of these
-   */
-  void Forget(std::int64_t first, std::int64_t numberMade)
+  /** Asks again for tetrahedra that have been made since a moment. */
+  void Forget(const MeshMoment& moment)
   {
-    if (first < this->NextStamp)
+    if (moment.NextStamp < this->Last.NextStamp)
     {
-      this->Keep([first](Id, std::int64_t stamp) { return stamp < first; });
-      this->NextStamp = first;
-      this->NumberMade = std::min(this->NumberMade, numberMade);
+      this->Keep([&moment](Id, std::int64_t stamp) { return stamp < moment.NextStamp; });
+      this->Last = moment;
     }
   }
 
@@ -117,12 +112,10 @@ private:
 
   std::vector<Id> Found;
   std::vector<std::int64_t> Stamps;
-  /** Tetrahedra with this stamp or a later one are new. */
-  std::int64_t NextStamp = 0;
+  /** Tetrahedra that have been made since then are new. */
+  MeshMoment Last;
   std::int64_t NumberOfTests = 0;
   std::int64_t NumberOfVisits = 0;
-  /** How many tetrahedra the mesh had made at the last update; negative: all have to be visited. */
-  std::int64_t NumberMade = -1;
   /** Work space: marks for VisitAscending(), new tetrahedra, and what these have. */
   std::vector<std::uint64_t> Marks;
   std::vector<Id> New;

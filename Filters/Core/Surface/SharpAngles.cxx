@@ -97,8 +97,8 @@ void SharpAngles::Follow(const std::vector<StructuralEdge>& edges,
   for (std::size_t i = 0; i < triangles.size(); ++i)
   {
     this->Facets[triangles[i]] = this->Facets[parents[i]];
-    ++this->NumberOfVisits;
   }
+  this->NumberOfVisits += static_cast<std::int64_t>(triangles.size());
   this->FollowFacets(triangles);
   this->FollowArms(edges, changedEdges);
 }
