@@ -115,9 +115,12 @@ Id CavitySearch::Locate(const Vec3& position, Id first)
 bool CavitySearch::IsInConflict(Id tetrahedron, const Vec3& position, Id number) const
 {
   const TetrahedronIds& ids = this->GetIds(tetrahedron);
-  const std::array<Vec3, 4> vertices = GetCorners(this->Mesh.Points, ids);
-  const int side = InSphere(vertices[0], vertices[1], vertices[2], vertices[3], position);
-  return side != 0 ? side > 0 : GetPulledPosition(vertices, ids, position, number, Orientation) > 0;
+  const Vec3* const points = this->Mesh.Points.data();
+  const int side =
+    InSphere(points[ids[0]], points[ids[1]], points[ids[2]], points[ids[3]], position);
+  return side != 0
+    ? side > 0
+    : GetPulledPosition(GetCorners(this->Mesh.Points, ids), ids, position, number, Orientation) > 0;
 }
 
 bool CavitySearch::IsAroundCavity(Id facet, const Vec3& position, Id number)

@@ -78,7 +78,8 @@ SurfacePointMoves::SurfacePointMoves(const DynamicTetrahedralization& mesh,
   const std::vector<StructuralEdge>& edges, const std::vector<StructuralEdge>& keptEdges,
   Rules rules, bool isRecording)
   : Mesh(mesh), Surface(surface), Points(points), PointTriangles(pointTriangles), Edges(edges),
-    KeptEdges(keptEdges), Given(std::move(rules)), IsRecording(isRecording)
+    KeptEdges(keptEdges), Given(std::move(rules)), IsCorner(points.size(), 0),
+    IsRecording(isRecording)
 {
   Box box;
   for (const Vec3& point : surface.Points)
@@ -136,8 +137,12 @@ bool SurfacePointMoves::ArePlanar(Id point, const std::vector<Id>& ends) const
   return true;
 }
 
-bool SurfacePointMoves::FindSupport(Id point, Support& support) const
+bool SurfacePointMoves::FindSupport(Id point, Support& support)
 {
+  if (this->IsCorner[point] != 0)
+  {
+    return false;
+  }
   const std::vector<Id> ends = this->FindEdgeEnds(point);
   const Vec3& origin = this->Points[point];
   support.IsLine = ends.size() == 2;
@@ -168,6 +173,7 @@ bool SurfacePointMoves::FindSupport(Id point, Support& support) const
   }
   else
   {
+    this->IsCorner[point] = 1;
     return false;
   }
   support.Directions = MakeDirections(support.Axis, support.IsLine);
@@ -499,20 +505,21 @@ std::array<Vec3, 4> SurfacePointMoves::GetMovedCorners(
 }
 
 /**
- * Whether the tetrahedron that made another position too bad is one of those of the cavity, and
- * makes this position too bad as well.
+ * Whether a tetrahedron that made another position too bad is one of those of the cavity, and makes
+ * this position too bad as well.
  */
-bool SurfacePointMoves::IsFlatAgain(Id point, const Vec3& position, double required) const
+bool SurfacePointMoves::IsFlatAgain(
+  const Spoiler& spoiler, Id point, const Vec3& position, double required) const
 {
-  const TetrahedronIds& ids = this->Flat.Ids;
+  const TetrahedronIds& ids = spoiler.Ids;
   const Cavity& cavity = this->Around.Inside;
   const auto isThere = [&](Id id) { return this->PointMarks[id] == this->LastMark; };
-  if (this->Flat.Region == NoId || !std::all_of(ids.begin(), ids.end(), isThere))
+  if (spoiler.Region == NoId || !std::all_of(ids.begin(), ids.end(), isThere))
   {
     return false;
   }
   const std::array<Vec3, 4> v = this->GetMovedCorners(ids, point, position);
-  if (this->GetSmallerAngle(180.0, ids, this->Flat.Region, v) > required ||
+  if (this->GetSmallerAngle(180.0, ids, spoiler.Region, v) > required ||
     Orientation(v[0], v[1], v[2], v[3]) <= 0)
   {
     return false;
@@ -528,6 +535,13 @@ bool SurfacePointMoves::IsFlatAgain(Id point, const Vec3& position, double requi
   return true;
 }
 
+/** Whether a position is too bad for the same reason as one before. */
+bool SurfacePointMoves::IsSpoiled(Id point, const Vec3& position, double required) const
+{
+  return std::any_of(this->Spoilers.begin(), this->Spoilers.end(),
+    [&](const Spoiler& spoiler) { return this->IsFlatAgain(spoiler, point, position, required); });
+}
+
 double SurfacePointMoves::Rate(
   Id point, const Vec3& position, double required, Neighborhood& around)
 {
@@ -536,7 +550,7 @@ double SurfacePointMoves::Rate(
     !this->IsClear(point, position, around.AtPoint.Inside) ||
     !this->AreSpheresEmpty(point, position, around.AtPoint) ||
     !this->CollectCavity(point, around.Star, position) ||
-    this->IsFlatAgain(point, position, required) ||
+    this->IsSpoiled(point, position, required) ||
     !this->IsClear(point, position, this->Around.Inside) ||
     !this->AreSpheresEmpty(point, position, this->Around))
   {
@@ -549,7 +563,8 @@ double SurfacePointMoves::Rate(
       this->GetSmallerAngle(smallest, ids, region, this->GetMovedCorners(ids, point, position));
     if (smallest <= required && Contains(ids, point))
     {
-      this->Flat = { ids, region };
+      std::rotate(this->Spoilers.begin(), this->Spoilers.end() - 1, this->Spoilers.end());
+      this->Spoilers.front() = { ids, region };
     }
     return smallest > required;
   };
@@ -582,7 +597,7 @@ bool SurfacePointMoves::Find(Id point, const TetrahedronIds& sliver, double targ
   }
   const Vec3& old = this->Points[point];
   const Support& support = around.Free;
-  this->Flat = {};
+  this->Spoilers.fill({});
   Place best{ old, around.Smallest + SmallestGain, false };
   const auto rate = [&](const Vec3& place, double required)
   { return this->Rate(point, place, required, around); };

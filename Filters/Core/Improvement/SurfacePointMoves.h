@@ -138,8 +138,14 @@ private:
     double Smallest = 0.0;
     double Nearest = 0.0;
   };
+  /** A tetrahedron with the point that made a position too bad, and its region; NoId: none. */
+  struct Spoiler
+  {
+    TetrahedronIds Ids{};
+    Id Region = NoId;
+  };
   Neighborhood& Explore(Id point);
-  bool FindSupport(Id point, Support& support) const;
+  bool FindSupport(Id point, Support& support);
   std::vector<Id> FindEdgeEnds(Id point) const;
   bool ArePlanar(Id point, const std::vector<Id>& ends) const;
   void MeasureStar(Id point, Neighborhood& around) const;
@@ -147,7 +153,8 @@ private:
     double angle, const TetrahedronIds& ids, Id region, const std::array<Vec3, 4>& corners) const;
   std::array<Vec3, 4> GetMovedCorners(
     const TetrahedronIds& ids, Id point, const Vec3& position) const;
-  bool IsFlatAgain(Id point, const Vec3& position, double required) const;
+  bool IsFlatAgain(const Spoiler& spoiler, Id point, const Vec3& position, double required) const;
+  bool IsSpoiled(Id point, const Vec3& position, double required) const;
   double Rate(Id point, const Vec3& position, double required, Neighborhood& around);
   bool KeepsOrientations(Id point, const Vec3& position) const;
   bool CollectConflicts(const std::vector<Id>& star, const Vec3& position);
@@ -168,6 +175,8 @@ private:
   const Rules Given;
   /** Triangles count as coplanar if they deviate by less than this. Model units. */
   double Flatness = 0.0;
+  /** One for each point: whether it is known that other than two structural edges meet there. */
+  std::vector<char> IsCorner;
   /** Neighborhoods of hubs, by the point, and of the last other point. */
   std::unordered_map<Id, Neighborhood> Hubs;
   Neighborhood Last;
@@ -182,12 +191,8 @@ private:
   /** One for each point: the last mark if it is in the cavity. */
   std::vector<Id> PointMarks;
   Surroundings Around;
-  /** A tetrahedron with the point that made a position too bad, and its region; NoId: none. */
-  struct
-  {
-    TetrahedronIds Ids{};
-    Id Region = NoId;
-  } Flat;
+  /** The last spoilers. */
+  std::array<Spoiler, 4> Spoilers;
   CavityFilling Filling;
   const bool IsRecording;
   std::vector<Id> Visited;

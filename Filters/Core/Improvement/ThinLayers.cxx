@@ -162,6 +162,9 @@ bool ThinLayers::IsAcross(const TetrahedronIds& ids, Id region) const
   {
     return false;
   }
+  // No layer is thin that is thicker than this part of a side's width.
+  const double least =
+    std::max(1.0, this->AspectRatio > 0.0 ? this->AspectRatio : UsualAspectRatio);
   double longest = 0.0;
   for (const auto& edge : TetrahedronEdges)
   {
@@ -178,7 +181,7 @@ bool ThinLayers::IsAcross(const TetrahedronIds& ids, Id region) const
         // How far it is to the other side.
         const double height = first != nullptr ? -Dot(first->Normal, direction) : 0.0;
         const bool isUpright = height >= AcrossCosine * length && length <= ThinRatio * longest;
-        if (height <= FlatRatio * length || height > first->Width ||
+        if (height <= FlatRatio * length || least * height > first->Width ||
           (!isUpright && height > VeryThinRatio * longest))
         {
           continue;
